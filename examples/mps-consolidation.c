@@ -1,7 +1,7 @@
-/* mps-consolidation - water in the pores of ground against exact solutions: a layer that
- * consolidates under a load (Terzaghi; with large strains Xie and Leo), Mandel's plate, Cryer's
- * sphere, Barron's vertical drain, and the undrained ground under a strip load.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* mps-consolidation - water in the pores of ground against exact solutions: a layer, or several,
+ * that consolidates under a load or steps of an oedometer (Terzaghi; with large strains Xie and
+ * Leo), Mandel's plate, Cryer's sphere, Barron's vertical drain, and the undrained ground under a
+ * strip load. SPDX-License-Identifier: BSD-3-Clause */
 #include "consolidation/consolidation.h"
 
 #include <math.h>
@@ -49,20 +49,33 @@ int main(int argc, char **argv) {
       OPTION_NUMBER(
           "load", "Pa", OPTION_ABOVE_TO(0.0, 1e12), &s->load,
           "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5; mcc initial"),
+      OPTION_CHOICE("drained", "top|bottom|both", &s->drained,
+                    "sides of a layer that drain; T counts its whole height in any case"),
+      OPTION_TEXT("layers", "FILE", &s->layers,
+                  "terzaghi: layers from the top, each thickness_m, permeability_m_s, modulus_Pa "
+                  "(M'); the model is 1 m high, times and settlements are printed of the layers as "
+                  "they are"),
+      OPTION_NUMBER("ramp", "T", OPTION_FROM_TO(0.0, 10.0), &s->ramp,
+                    "in which the load on a layer grows evenly; 0: at once"),
+      OPTION_TEXT("loads", "Pa,...", &s->loads,
+                  "of a layer, ascending, in place of --load: steps of an oedometer, each of which "
+                  "lasts as long as the last of --times, which then count from its beginning"),
       OPTION_NUMBER("stiffness", "1", OPTION_FROM_TO(5.0, 1e4), &s->stiffness,
-                    "of the water, (K_w/n)/M'"),
+                    "of the water, (K_w/n)/M', of --layers the stiffest M'"),
       OPTION_TEXT("times", "T,...", &s->times,
                   "T = c_v t/H^2, ascending, of the profiles; default 0.05,0.1,0.2,0.5,1, cryer "
                   "0.01,0.05,0.1,0.2"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
                     "that T = 1 lasts, which gives the permeability; default 300 times that of a "
-                    "wave through H, mandel and barron 1000"),
+                    "wave through H, mandel and barron 1000, large with --ramp 2000, and longer "
+                    "where the permeability would else be above 1 mm/s"),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
                     "along H, a or B, a whole number; default 20, mandel 10, strip 4"),
       OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
                     "pressures in time: explicit, or by the solution of a system in each step, "
-                    "which may then be longer; strip settles, where both are the same"),
+                    "which may then be longer; strip settles, where both are the same; default "
+                    "implicit with --layers"),
       OPTION_CHOICE("solver", "own|multigrid|direct", &s->solver,
                     "of implicit pressures: the library's, the same bit for bit on all numbers of "
                     "ranks, or to compare PETSc's algebraic multigrid or its direct solver, which "

@@ -1,7 +1,7 @@
-/* mps-slope - the stability of a slope by strength reduction: cohesion and tan(phi) are divided by
- * a factor until it fails; and, with a strength that softens, how far it runs out. WLS-MPM,
- * Mohr-Coulomb, plane strain. A vertical cut is a slope of 0.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* mps-slope - the stability of a slope, dry or with water in the ground and before it, by strength
+ * reduction: cohesion and tan(phi) are divided by a factor until it fails; and, with a strength
+ * that softens, how far it runs out. WLS-MPM, Mohr-Coulomb, plane strain. A vertical cut is a slope
+ * of 0. SPDX-License-Identifier: BSD-3-Clause */
 #include "slope/slope.h"
 
 #include <math.h>
@@ -46,6 +46,8 @@ static const char *settle(settings *s, const option *table) {
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
   if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
     return "--young must be at least 10 times the stress below the crest, density g height";
+  const char *wet = slope_settle_water(s, table);
+  if (wet) return wet;
   const double ground = s->height * (s->crest + 0.5 * s->slope * s->height) +
                         s->base * (s->crest + s->slope * s->height + s->toe);
   return mpm_model_too_large(ground / (s->h * s->h) * (double)s->ppc);
@@ -65,6 +67,9 @@ int main(int argc, char **argv) {
                                  .poisson = 0.3,
                                  .density = 2000.0,
                                  .gravity = 9.81,
+                                 .moist = NAN,
+                                 .table = NAN,
+                                 .drawdown = NAN,
                                  .factor = NAN,
                                  .tolerance = 0.02,
                                  .fails = 0.01,
@@ -97,6 +102,21 @@ int main(int argc, char **argv) {
       COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49), &s->poisson, NULL),
       COMMON_NUMBER("density", &s->density, NULL),
       COMMON_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
+      OPTION_HEADING("Water"),
+      OPTION_TEXT("water-table", "m|FILE", &s->table_text,
+                  "level above the toe, of a pool where it is above the ground; or a line, each of "
+                  "its points x_m from the crest's edge (to the toe) and level_m above the toe; "
+                  "below it phi and cohesion are effective, --density is saturated"),
+      OPTION_CHOICE("seepage", "rest|along", &s->flow,
+                    "pressures below a line: of water at rest, or of water that flows along it, "
+                    "cos^2 of its inclination times that"),
+      OPTION_NUMBER("drawdown", "m", OPTION_FROM_TO(-1e6, 1e6), &s->drawdown,
+                    "level above the toe from which a pool has fallen to --water-table at once, "
+                    "undrained: the pressures are less the load that the ground has lost"),
+      OPTION_NUMBER("ru", "1", OPTION_FROM_TO(0.0, 0.9), &s->ru,
+                    "pressure of the water over the weight of the ground above, everywhere"),
+      OPTION_NUMBER("moist-density", "kg/m3", OPTION_DENSITY, &s->moist,
+                    "of the ground above --water-table; default --density"),
       OPTION_HEADING("Factor of safety"),
       OPTION_NUMBER("factor", "1", OPTION_FROM_TO(0.05, 20.0), &s->factor,
                     "one trial with c and tan(phi) divided by it; default: it is sought"),

@@ -1,15 +1,16 @@
 /* mps-wall - earth pressure on a retaining wall that moves: active where it leaves the ground,
- * passive where it is pushed into it, smooth or rough. WLS-MPM, Mohr-Coulomb, plane strain.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * passive where it is pushed into it, smooth or rough, of layers and below a water table. WLS-MPM,
+ * Mohr-Coulomb, plane strain. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall/wall.h"
 
 #include <math.h>
 
 /* What depends on other options, and what they exclude. NULL: good. */
-static const char *settle(settings *s) {
+static const char *settle(settings *s, const option *table) {
   const double sine = sin(s->phi * 3.14159265358979323846 / 180.0);
   const bool active = s->pressure == ACTIVE;
   if (isnan(s->length)) s->length = (active ? 2.5 : 5.0) * s->height;
+  s->k0_given = !isnan(s->k0);
   if (isnan(s->k0)) s->k0 = 1.0 - sine; /* Jaky */
   if (isnan(s->path)) s->path = (active ? 0.01 : 0.02) * s->height;
   if (isnan(s->h)) s->h = s->height / 16.0;
@@ -30,7 +31,9 @@ static const char *settle(settings *s) {
     return "--sheet must be whole cells of --h";
   if (s->length < s->height) return "--length must be at least --height";
   if (s->path > 0.2 * s->height) return "--path must be at most a fifth of --height";
-  if (s->density * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
+  const char *why = wall_settle_ground(s, table);
+  if (why) return why;
+  if (s->heaviest * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
     return "--young must be at least 10 times the stress at the toe, density g height + surcharge";
   const double ground = s->length * (s->height + s->base) + s->front * s->base;
   return mpm_model_too_large(ground / (s->h * s->h) * (double)s->ppc);
@@ -47,6 +50,7 @@ int main(int argc, char **argv) {
                                  .gravity = 9.81,
                                  .corner = 0.6,
                                  .sheet = NAN,
+                                 .water = NAN,
                                  .path = NAN,
                                  .rate = 0.02,
                                  .h = NAN,
@@ -77,6 +81,14 @@ int main(int argc, char **argv) {
                     "with --motion toe"),
       OPTION_NUMBER("surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
                     "on the surface behind the wall"),
+      OPTION_NUMBER("water-table", "m", OPTION_FROM_TO(0.0, 1e6), &s->water,
+                    "depth below the surface; below it phi and cohesion are effective, densities "
+                    "saturated; the water is at rest on both sides of the wall, in front up to the "
+                    "ground"),
+      OPTION_TEXT("layers", "FILE", &s->layers_file,
+                  "of the ground from the surface behind the wall, in place of the following: each "
+                  "thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3; the last one "
+                  "continues downwards"),
       OPTION_NUMBER(
           "length", "m", OPTION_LENGTH, &s->length,
           "of the ground behind the wall, up to whole cells; default 2.5 heights, passive 5"),
@@ -105,7 +117,7 @@ int main(int argc, char **argv) {
       table};
   int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  const char *reason = settle(s);
+  const char *reason = settle(s, table);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {wall_build, wall_march, wall_finish};
   const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};

@@ -92,6 +92,45 @@ mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *va
   return status == MPS_OK && count > 0 ? app_share(m->a, m->a->rank == 0, count, values) : status;
 }
 
+/* On rank 0, as numbers that can be sent. */
+static mps_status list_whole(mps_particles *whole,
+                             bool (*chosen)(const void *user, const double *x), const void *user,
+                             double *count, double **named) {
+  mps_view x, id;
+  mps_status status = mps_particles_view(whole, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(whole, "id", &id);
+  if (status != MPS_OK) return status;
+  *named = malloc((size_t)(x.shape[0] + 1) * sizeof **named);
+  if (!*named) return MPS_ERROR_MEMORY;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    double at[3] = {0.0, 0.0, 0.0};
+    for (int32_t c = 0; c < x.shape[1]; c++) at[c] = *mps_view_f64(&x, k, c);
+    if (chosen(user, at)) (*named)[(int64_t)(*count)++] = (double)*mps_view_i64(&id, k, 0);
+  }
+  return MPS_OK;
+}
+
+mps_status mpm_model_list(mpm_model *m, bool (*chosen)(const void *user, const double *x),
+                          const void *user, int64_t *count, int64_t **ids) {
+  mps_particles *whole;
+  double *named = NULL, all = 0.0;
+  *ids = NULL;
+  mps_status status = mpm_model_whole(m, &whole);
+  if (status == MPS_OK && whole) status = list_whole(whole, chosen, user, &all, &named);
+  status = mpm_model_tell(m, status, 1, &all);
+  if (status == MPS_OK && !named) named = malloc((size_t)(all + 1.0) * sizeof *named);
+  if (status == MPS_OK) *ids = malloc((size_t)(all + 1.0) * sizeof **ids);
+  if (status == MPS_OK && (!named || !*ids)) status = MPS_ERROR_MEMORY;
+  status = mpm_model_tell(m, status, (int)all, named);
+  *count = (int64_t)all;
+  for (int64_t k = 0; status == MPS_OK && k < *count; k++) (*ids)[k] = (int64_t)named[k];
+  free(named);
+  if (status == MPS_OK) return status;
+  free(*ids);
+  *ids = NULL;
+  return status;
+}
+
 mps_status mpm_model_series(mpm_model *m, const char *directory, const char *what, double from,
                             mps_recorder **out) {
   mps_particles *whole;

@@ -76,6 +76,12 @@ int64_t *mpm_rows_by_id(mps_particles *particles);
  * sent to all. Collective. */
 mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values);
 
+/* Ids of the particles of all ranks at places x (m, as many values as the set has dimensions) that
+ * are chosen, the same list on all: that of a load. To be freed, NULL after an error. Collective.
+ */
+mps_status mpm_model_list(mpm_model *m, bool (*chosen)(const void *user, const double *x),
+                          const void *user, int64_t *count, int64_t **ids);
+
 /* A series for ParaView, as frame_series, and a frame of it at the present time. Collective: rank 0
  * has the series, the others NULL. */
 mps_status mpm_model_series(mpm_model *m, const char *directory, const char *what, double from,

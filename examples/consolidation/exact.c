@@ -1,12 +1,6 @@
-/* exact.c - exact solutions of mps-consolidation, for water and grains that keep their volume.
+/* exact.c - exact solutions of mps-consolidation but those of columns (column.c), for water and
+ * grains that keep their volume.
  *
- * terzaghi  Terzaghi and Froehlich (1936): u/q = sum 2/M sin(M z/H) exp(-M^2 T), M = (i + 1/2) pi
- * large     Xie and Leo (2004): sigma' = M' ln(V/V0), k = k0 (V/V0)^2, m = q/M':
- *           u/q = 1 + ln[e^-m + (1 - e^-m) u_T]/m, S/H = (1 - e^-m) U, u_T and U of Terzaghi
- * mcc       normally consolidated Cam-Clay, K0: e = e0 - lambda ln(s/s0), k = k0 (v/v0) s0/s; then
- *           w = ln(s/s0) follows dw/dt = c d2w/dZ2, c = k0 s0 v0/(lambda rho_w g), by depths Z
- *           before the load, as in Davis and Raymond (1965), and with m = ln(1 + q/s0):
- *           u/q = [e^m - e^(m (1 - u_T))]/(e^m - 1), S/H = lambda/v0 m U
  * mandel    Mandel (1953); tan(a)/a = (1 - nu)/(1/2 - nu)
  * cryer     Cryer (1963); (1 - eta x^2/2) tan(x) = x, eta = (1 - nu)/(1 - 2 nu)
  * barron    vertical drain of radius b in a cylinder of radius a, n = a/b, Barron (1948). Between a
@@ -24,26 +18,6 @@
 #define PI 3.14159265358979323846
 
 enum { TERMS = 400 };
-
-/* ---- Terzaghi -------------------------------------------------------------------------------- */
-
-static double terzaghi(double depth, double T) {
-  double u = 0.0;
-  for (int i = 0; i < TERMS; i++) {
-    const double M = (i + 0.5) * PI;
-    u += 2.0 / M * sin(M * depth) * exp(-M * M * T);
-  }
-  return u;
-}
-
-static double terzaghi_degree(double T) {
-  double left = 0.0;
-  for (int i = 0; i < TERMS; i++) {
-    const double M = (i + 0.5) * PI;
-    left += 2.0 / (M * M) * exp(-M * M * T);
-  }
-  return 1.0 - left;
-}
 
 /* ---- roots ----------------------------------------------------------------------------------- */
 
@@ -213,16 +187,8 @@ double exact_drain_equal(double n, double T) {
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
-double exact_pressure(const settings *s, double m, double depth, double T) {
+double exact_pressure(const settings *s, double depth, double T) {
   switch (s->kase) {
-  case TERZAGHI:
-    return terzaghi(depth, T);
-  case LARGE:
-    return 1.0 + log(exp(-m) + (1.0 - exp(-m)) * terzaghi(depth, T)) / m;
-  case MCC: {
-    const double most = log(1.0 + s->load / s->initial);
-    return (exp(most) - exp(most * (1.0 - terzaghi(depth, T)))) / (exp(most) - 1.0);
-  }
   case MANDEL:
     return mandel(s->nu, 1.0 - depth, T);
   case CRYER:
@@ -234,10 +200,4 @@ double exact_pressure(const settings *s, double m, double depth, double T) {
   }
 }
 
-double exact_settlement(const settings *s, double m, double T) {
-  if (s->kase == TERZAGHI) return m * terzaghi_degree(T);
-  if (s->kase == LARGE) return (1.0 - exp(-m)) * terzaghi_degree(T);
-  if (s->kase == MCC)
-    return s->lambda / (1.0 + s->e0) * log(1.0 + s->load / s->initial) * terzaghi_degree(T);
-  return s->kase == CRYER ? m * cryer_settlement(s->nu, T) : NAN;
-}
+double exact_sphere(double nu, double m, double T) { return m * cryer_settlement(nu, T); }

@@ -22,6 +22,7 @@
 #define WATER 1000.0
 #define STRIP_WIDTHS 10 /* half widths B of the ground, each way */
 #define COURANT 0.7
+#define FASTEST 1e-3 /* m/s: the inertia of the water, which is left out, counts above */
 
 enum { PLATE_POINTS = 2000 };
 
@@ -40,7 +41,7 @@ static const char *read_times(simulation *sim, const option *table) {
   if (!text) text = sim->s.kase == CRYER ? "0.01,0.05,0.1,0.2" : "0.05,0.1,0.2,0.5,1";
   for (sim->times = 0; *text || sim->times == 0; sim->times++) {
     const size_t length = strcspn(text, ",");
-    if (sim->times == MOST_TIMES) return "--times must be at most 32 numbers";
+    if (sim->times == MOST_TIMES) return "--times must be at most 64 numbers";
     if (length >= sizeof number) return "--times must be numbers with commas between them";
     memcpy(number, text, length);
     number[length] = '\0';
@@ -78,11 +79,42 @@ static const char *check_drain(const settings *s, const option *table) {
              : NULL;
 }
 
+static double softest(const simulation *sim) {
+  double least = INFINITY;
+  for (int i = 0; i < sim->ground.count; i++) least = fmin(least, sim->ground.layer[i].modulus);
+  return least * sim->modulus;
+}
+
+static double stiffest(const simulation *sim) {
+  double most = 0.0;
+  for (int i = 0; i < sim->ground.count; i++) most = fmax(most, sim->ground.layer[i].modulus);
+  return most * sim->modulus;
+}
+
+/* Of the fastest layer over the mean, and of Cam-Clay before the load over that of the end. */
+static double fastest(const simulation *sim) {
+  const settings *s = &sim->s;
+  double most = 0.0;
+  for (int i = 0; i < sim->ground.count; i++) most = fmax(most, sim->ground.layer[i].k);
+  return s->kase == MCC ? sim->modulus * s->lambda / ((1.0 + s->e0) * s->initial) : most;
+}
+
+/* Large strains make the ground swing as its surface passes from cell to cell, which counts most
+ * beside a load that is still small. */
+static double usual_duration(const simulation *sim) {
+  const settings *s = &sim->s;
+  const double waves = has_plate(s) ? 1000.0 : s->kase == LARGE && s->ramp > 0.0 ? 2000.0 : 300.0;
+  const double slow = WATER * MPS_PORE_GRAVITY * fastest(sim) / (sim->modulus * FASTEST);
+  return fmax(waves / sqrt(sim->modulus / DENSITY), slow);
+}
+
 const char *consolidation_settle(simulation *sim, const option *table) {
   settings *s = &sim->s;
   const char *unused = check_clay(s, table);
   if (unused) return unused;
   sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
+  unused = column_settle(sim, table);
+  if (unused) return unused;
   if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
   if (s->cells != floor(s->cells)) return "--cells must be a whole number";
   unused = check_drain(s, table);
@@ -100,14 +132,16 @@ const char *consolidation_settle(simulation *sim, const option *table) {
   if (s->kase == LARGE && !(exp(-s->load / sim->modulus) > 0.41))
     return "--load must leave pores: at most 0.89 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
            "nu))";
-  if (s->kase != LARGE && s->kase != MCC && !(s->load <= 0.02 * sim->modulus))
-    return "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
-           "nu)): "
-           "the exact solution is of small strains";
+  if (s->kase != LARGE && s->kase != MCC && !(s->load <= 0.02 * softest(sim)))
+    return s->layers
+               ? "--load must be small, at most 0.02 of the modulus of the softest layer: the "
+                 "exact solution is of small strains"
+               : "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + "
+                 "nu)(1 - 2 nu)): the exact solution is of small strains";
   if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
-  if (isnan(s->duration))
-    s->duration = (has_plate(s) ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);
-  return read_times(sim, table);
+  if (isnan(s->duration)) s->duration = usual_duration(sim);
+  unused = read_times(sim, table);
+  return unused ? unused : column_finish_settings(sim);
 }
 
 /* ---- ground ---------------------------------------------------------------------------------- */
@@ -116,7 +150,6 @@ static double porosity_of(const settings *s) {
   return s->kase == MCC ? s->e0 / (1.0 + s->e0) : s->kase == LARGE ? 0.6 : 0.4;
 }
 static double cell_of(const settings *s) { return 1.0 / s->cells; }
-static bool is_column(const settings *s) { return s->kase <= MCC; }
 static double drain_radius(const settings *s) { return s->kase == BARRON ? 1.0 / s->ratio : 0.0; }
 
 /* The vertical effective stress before the load, Pa. */
@@ -186,18 +219,33 @@ static mps_status find_profile(simulation *sim) {
 /* u/u0 of the profile, on all ranks. */
 static mps_status read_profile(simulation *sim, instant *now) {
   const settings *s = &sim->s;
-  const bool shifted = is_column(s) || s->kase == CRYER;
-  const double shift = shifted ? 1.0 + start_of(s) / s->load : 0.0;
+  const double unit = reference_load(sim, now->step);
+  const double load = is_column(s) ? column_load(sim, now->step, now->T) : s->load;
+  const double shift = is_column(s) || s->kase == CRYER ? load + start_of(s) : 0.0;
   mps_particles *whole;
   mps_view u;
   mps_status status = mpm_model_whole(&sim->m, &whole);
   if (status == MPS_OK && whole) status = mps_particles_view(whole, "pore_pressure", &u);
   for (int k = 0; status == MPS_OK && whole && k < sim->points; k++)
-    now->u[k] = *mps_view_f64(&u, mps_particles_index(whole, sim->id[k]), 0) / s->load + shift;
+    now->u[k] = (*mps_view_f64(&u, mps_particles_index(whole, sim->id[k]), 0) + shift) / unit;
   return mpm_model_tell(&sim->m, status, sim->points, now->u);
 }
 
 /* ---- water and loads ------------------------------------------------------------------------- */
+
+/* By layers; the mean is that of c_v = 1 m2 over the duration. */
+static mps_status set_permeability(simulation *sim, double mean) {
+  mps_particles *set = sim->m.particles;
+  mps_view x;
+  mps_edit k;
+  mps_status status = mps_particles_add_field(set, "permeability", 0);
+  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_edit(set, "permeability", &k);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i < x.shape[0]; i++)
+    *mps_edit_f64(&k, i, 0) = mean * column_layer(sim, 1.0 - *mps_view_f64(&x, i, 1))->k;
+  return mps_particles_commit(set, &k);
+}
 
 static mps_status add_water(simulation *sim) {
   const settings *s = &sim->s;
@@ -205,16 +253,21 @@ static mps_status add_water(simulation *sim) {
   water.density = WATER;
   if (s->scheme == IMPLICIT) water.scheme = MPS_PORE_SCHEME_IMPLICIT;
   water.porosity = porosity_of(s);
-  water.bulk = s->stiffness * sim->modulus * water.porosity;
+  water.bulk = s->stiffness * stiffest(sim) * water.porosity;
   if (s->kase != STRIP) /* c_v = 1 m2 over the duration */
     water.permeability = WATER * MPS_PORE_GRAVITY / (sim->modulus * s->duration);
   if (s->kase == LARGE) water.exponent = 2.0;
   if (s->kase == MCC) { /* k0 of the initial stress; see exact.c */
-    water.permeability *= sim->modulus * s->lambda / ((1.0 + s->e0) * s->initial);
+    water.permeability *= fastest(sim);
     water.exponent = 1.0;
     water.ratio_slope = s->lambda;
   }
-  return mps_mpm_add_pore_water(sim->m.mpm, &water);
+  mps_status status = MPS_OK;
+  if (s->layers) {
+    status = set_permeability(sim, water.permeability);
+    water.permeability = NAN;
+  }
+  return status == MPS_OK ? mps_mpm_add_pore_water(sim->m.mpm, &water) : status;
 }
 
 /* Choices of --solver after the first are those of mps_petsc_method. */
@@ -226,13 +279,25 @@ static mps_status choose_solver(mps_context *context, simulation *sim) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-static mps_status drain_surface(simulation *sim) {
+static mps_pore_face_def drains_of(const simulation *sim, double load) {
+  const settings *s = &sim->s;
   mps_pore_face_def face = mps_pore_face_defaults();
   face.kind = MPS_PORE_FACE_DRAINED;
-  face.pressure = -sim->s.load - start_of(&sim->s);
-  face.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
-  if (sim->s.kase == CRYER) face.sides |= 1u << MPS_MPM_SIDE_X_UPPER;
-  return mps_mpm_add_pore_face(sim->m.mpm, &face, NULL);
+  face.pressure = -load - start_of(s);
+  if (s->drained != DRAINED_BOTTOM) face.sides |= 1u << MPS_MPM_SIDE_Y_UPPER;
+  if (s->drained != DRAINED_TOP) face.sides |= 1u << MPS_MPM_SIDE_Y_LOWER;
+  if (s->kase == CRYER) face.sides |= 1u << MPS_MPM_SIDE_X_UPPER;
+  return face;
+}
+
+static mps_status add_drains(simulation *sim) {
+  const settings *s = &sim->s;
+  const mps_pore_face_def face = drains_of(sim, is_column(s) ? column_load(sim, 0, 0.0) : s->load);
+  mps_pore_face_def sealed = mps_pore_face_defaults(); /* the free surface else drains */
+  sealed.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+  mps_status status = MPS_OK;
+  if (s->drained == DRAINED_BOTTOM) status = mps_mpm_add_pore_face(sim->m.mpm, &sealed, NULL);
+  return status == MPS_OK ? mps_mpm_add_pore_face(sim->m.mpm, &face, &sim->drain) : status;
 }
 
 /* Undrained between the plates: u0 = F/(2 a), vertical effective stress -u0, horizontal u0. */
@@ -327,7 +392,7 @@ static mps_status add_case(mps_context *context, simulation *sim) {
   if (sim->s.kase == MCC)
     status = mps_particles_set(sim->m.particles, "pore_pressure", 0, -sim->s.initial);
   if (status != MPS_OK) return status;
-  if (!has_plate(&sim->s)) return drain_surface(sim);
+  if (!has_plate(&sim->s)) return add_drains(sim);
   status = sim->s.kase == MANDEL ? begin_mandel(sim) : begin_barron(sim);
   return status == MPS_OK ? drive_plate(context, sim) : status;
 }
@@ -352,11 +417,40 @@ static mps_mpm_def solver_of(const settings *s) {
   return def;
 }
 
+/* Of a layer, by its modulus of compression. */
+static double young_of(const simulation *sim, const stratum *layer) {
+  const double nu = sim->s.nu;
+  if (!sim->s.layers) return sim->s.young;
+  return layer->modulus * sim->modulus * (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu);
+}
+
+/* The law of a layer below the first. */
+static mps_status set_layer(mps_context *context, simulation *sim, const stratum *layer) {
+  mps_particles *set = sim->m.particles;
+  mps_material *law = NULL;
+  mps_view x, id;
+  int64_t count = 0, *ids = malloc((size_t)(mps_particles_count(set) + 1) * sizeof *ids);
+  mps_status status = ids ? mps_particles_view(set, "position", &x) : MPS_ERROR_MEMORY;
+  if (status == MPS_OK) status = mps_particles_view(set, "id", &id);
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
+    if (column_layer(sim, 1.0 - *mps_view_f64(&x, k, 1)) == layer)
+      ids[count++] = *mps_view_i64(&id, k, 0);
+  if (status == MPS_OK)
+    status = mps_material_create_linear_elastic(context, young_of(sim, layer), sim->s.nu, &law);
+  int64_t all = count;
+  if (status == MPS_OK) status = mpm_model_sum(&sim->m, &all);
+  if (status == MPS_OK && all > 0) status = mps_mpm_set_material(sim->m.mpm, law, count, ids);
+  mps_material_destroy(&law);
+  free(ids);
+  return status;
+}
+
 /* Cam-Clay that has been loaded to the initial stress without moving sideways; else elastic. */
 static mps_status make_law(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
   if (s->kase != MCC)
-    return mps_material_create_linear_elastic(context, s->young, s->nu, &sim->m.material);
+    return mps_material_create_linear_elastic(context, young_of(sim, &sim->ground.layer[0]), s->nu,
+                                              &sim->m.material);
   mps_particles *set = sim->m.particles;
   mps_material_cam_clay_def clay = mps_material_cam_clay_defaults();
   mps_consolidation_def state = mps_consolidation_defaults();
@@ -379,7 +473,7 @@ mps_status consolidation_build(mps_context *context, void *user) {
                              .m = &sim->m,
                              .directory = s->out,
                              .what = "ground",
-                             .duration = s->duration * sim->time[sim->times - 1],
+                             .duration = s->duration * sim->time[sim->times - 1] * sim->steps,
                              .key = "mps-consolidation 1",
                              .table = options_read(),
                              .pass = consolidation_pass,
@@ -394,6 +488,8 @@ mps_status consolidation_build(mps_context *context, void *user) {
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->kase == STRIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  for (int i = 1; i < sim->ground.count && status == MPS_OK; i++)
+    status = set_layer(context, sim, &sim->ground.layer[i]);
   if (status == MPS_OK) status = add_case(context, sim);
   if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
   if (status == MPS_OK) sim->volume = totals.volume;
@@ -428,16 +524,20 @@ static mps_status measure(simulation *sim) {
   mps_totals totals;
   mps_pore_budget water;
   mps_reaction plate = {0};
+  *now = (instant){.step = sim->rows / sim->times, .T = sim->time[sim->rows % sim->times]};
   mps_status status = read_profile(sim, now);
   if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
   if (status == MPS_OK) status = mps_mpm_get_pore_budget(sim->m.mpm, &water);
   if (status == MPS_OK && has_plate(s))
     status = mps_mpm_get_reaction(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
   if (status != MPS_OK) return status;
-  const double m = s->load / sim->modulus, lost = 1.0 - totals.volume / sim->volume;
-  now->T = sim->time[sim->rows];
+  const double lost = 1.0 - totals.volume / sim->volume;
   now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;
-  now->settlement_exact = exact_settlement(s, m, now->T);
+  now->settlement_exact = is_column(s)       ? column_settlement(sim, now->step, now->T)
+                          : s->kase == CRYER ? exact_sphere(s->nu, s->load / sim->modulus, now->T)
+                                             : NAN;
+  now->U = is_column(s) ? column_degree(sim, now->step, now->settlement) : NAN;
+  now->U_exact = is_column(s) ? column_degree(sim, now->step, now->settlement_exact) : NAN;
   now->force = has_plate(s) ? force_over_exact(s, &plate) : NAN;
   now->degree = s->kase == BARRON ? degree_of(sim, now) : NAN;
   now->degree_equal = s->kase == BARRON ? exact_drain_equal(s->ratio, now->T) : NAN;
@@ -446,22 +546,44 @@ static mps_status measure(simulation *sim) {
   return MPS_OK;
 }
 
+/* To the time of the next row. The load on a column is that of the middle of each interval in which
+ * it is constant. */
+static mps_status advance(simulation *sim) {
+  const settings *s = &sim->s;
+  const int step = sim->rows / sim->times, last = sim->rows % sim->times;
+  const double before = step * sim->time[sim->times - 1], end = sim->time[last];
+  mps_status status = MPS_OK;
+  double T = last > 0 ? sim->time[last - 1] : 0.0;
+  while (T < end && status == MPS_OK) {
+    const double next = is_column(s) ? fmin(end, column_next(sim, T)) : end;
+    if (s->duration * (before + next) <= mps_mpm_time(sim->m.mpm)) { /* a run that goes on */
+      T = next;
+      continue;
+    }
+    if (is_column(s)) {
+      const mps_pore_face_def face = drains_of(sim, column_load(sim, step, 0.5 * (T + next)));
+      status = mps_mpm_set_pore_face(sim->m.mpm, sim->drain, &face);
+    }
+    if (status == MPS_OK)
+      status = mpm_model_advance(&sim->m, s->duration * (before + next), INT64_MAX, NULL, NULL);
+    T = next;
+  }
+  return status;
+}
+
 mps_status consolidation_march(void *user) {
   simulation *sim = user;
   mps_particles *whole;
-  const double end = sim->s.duration * sim->time[sim->times - 1];
+  const int rows = sim->times * sim->steps;
   mps_status status = MPS_OK;
-  if (sim->s.kase != STRIP) progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, end);
-  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, sim->times);
-  while (sim->rows < sim->times && status == MPS_OK) {
+  if (sim->s.kase != STRIP) progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->course.duration);
+  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, rows);
+  while (sim->rows < rows && status == MPS_OK) {
     mps_mpm_settle_def rest = mps_mpm_settle_defaults();
     rest.max_steps = 200000;
-    status = sim->s.kase == STRIP
-                 ? mps_mpm_settle(sim->m.mpm, &rest, NULL)
-                 : mpm_model_advance(&sim->m, sim->s.duration * sim->time[sim->rows], INT64_MAX,
-                                     NULL, NULL);
+    status = sim->s.kase == STRIP ? mps_mpm_settle(sim->m.mpm, &rest, NULL) : advance(sim);
     if (status == MPS_OK) status = measure(sim);
-    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, sim->times);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, rows);
   }
   status = mpm_course_end(&sim->course, status);
   const mps_status brought = mpm_model_whole(&sim->m, &whole);

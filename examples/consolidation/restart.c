@@ -5,7 +5,7 @@
 void consolidation_pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);
-  if (resume_wrong(b, sim->rows < 0 || sim->rows > sim->times)) {
+  if (resume_wrong(b, sim->rows < 0 || sim->rows > sim->times * sim->steps)) {
     sim->rows = 0;
     return;
   }

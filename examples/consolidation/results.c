@@ -10,7 +10,22 @@ static const char *const names[] = {"terzaghi", "large", "mcc",   "mandel",
                                     "cryer",    "strip", "barron"};
 
 static double exact_at(const simulation *sim, int r, int point) {
-  return exact_pressure(&sim->s, sim->s.load / sim->modulus, sim->at[point], sim->row[r].T);
+  const instant *now = &sim->row[r];
+  if (is_column(&sim->s))
+    return column_pressure(sim, now->step, now->T, sim->at[point]) / reference_load(sim, now->step);
+  return exact_pressure(&sim->s, sim->at[point], now->T);
+}
+
+/* Time (s) of the layers as they are, not of the model, which is 1 m high; NaN without --layers. */
+static double real_time(const simulation *sim, const instant *now) {
+  const double c_v = sim->k * sim->modulus / (1000.0 * MPS_PORE_GRAVITY);
+  const double T = now->step * sim->time[sim->times - 1] + now->T;
+  return sim->s.layers ? T * sim->height * sim->height / c_v : NAN;
+}
+
+/* e after a settlement, of Cam-Clay. */
+static double void_ratio(const simulation *sim, double settlement) {
+  return sim->s.e0 - (1.0 + sim->s.e0) * settlement;
 }
 
 /* Error of u/u0 in row r: the largest over all points; for Mandel and Cryer that at the point
@@ -29,11 +44,13 @@ static double pressure_error(const simulation *sim, int r) {
 static bool write_profile(app *a, const simulation *sim) {
   output f;
   if (!output_open(&f, a, sim->s.out, "profile.csv")) return false;
-  csv_header(&f, "T,depth/H,u/u0,exact");
+  csv_header(&f, sim->s.loads ? "load_Pa,T,depth/H,u/u0,exact" : "T,depth/H,u/u0,exact");
   for (int r = 0; r < sim->rows; r++)
     for (int k = 0; k < sim->points; k++) {
-      const double line[] = {sim->row[r].T, sim->at[k], sim->row[r].u[k], exact_at(sim, r, k)};
-      csv_row(&f, 4, line);
+      const instant *now = &sim->row[r];
+      const double line[] = {sim->load[now->step + 1], now->T, sim->at[k], now->u[k],
+                             exact_at(sim, r, k)};
+      csv_row(&f, sim->s.loads ? 5 : 4, sim->s.loads ? line : line + 1);
     }
   return output_close(&f);
 }
@@ -41,13 +58,47 @@ static bool write_profile(app *a, const simulation *sim) {
 static bool write_times(app *a, const simulation *sim) {
   output f;
   if (!output_open(&f, a, sim->s.out, "times.csv")) return false;
-  csv_header(&f, "T,settlement?,settlement_exact?,pressure_error,plate_force?,drained_kg");
+  csv_header(&f, "T,settlement?,settlement_exact?,pressure_error,plate_force?,drained_kg,U?,"
+                 "U_exact?,load_Pa?,t_s?");
   for (int r = 0; r < sim->rows; r++) {
     const instant *now = &sim->row[r];
-    const double line[] = {
-        now->T,     now->settlement,   now->settlement_exact, pressure_error(sim, r),
-        now->force, now->water.drained};
-    csv_row(&f, 6, line);
+    const double line[] = {now->T,
+                           now->settlement,
+                           now->settlement_exact,
+                           pressure_error(sim, r),
+                           now->force,
+                           now->water.drained,
+                           now->U,
+                           now->U_exact,
+                           is_column(&sim->s) ? column_load(sim, now->step, now->T) : NAN,
+                           real_time(sim, now)};
+    csv_row(&f, 10, line);
+  }
+  return output_close(&f);
+}
+
+/* Ends of the load steps of an oedometer. */
+static bool write_steps(app *a, const simulation *sim) {
+  output f;
+  double before = 0.0;
+  if (!sim->s.loads) return true;
+  if (!output_open(&f, a, sim->s.out, "steps.csv")) return false;
+  csv_header(&f, "load_Pa,effective_stress_Pa,settlement,settlement_exact,U,modulus_Pa,"
+                 "void_ratio?,void_ratio_exact?");
+  for (int r = sim->times - 1; r < sim->rows; r += sim->times) {
+    const instant *now = &sim->row[r];
+    const bool clay = sim->s.kase == MCC;
+    const double load = sim->load[now->step + 1], start = clay ? sim->s.initial : 0.0;
+    const double line[] = {load,
+                           load + start,
+                           now->settlement,
+                           now->settlement_exact,
+                           now->U,
+                           reference_load(sim, now->step) / (now->settlement - before),
+                           clay ? void_ratio(sim, now->settlement) : NAN,
+                           clay ? void_ratio(sim, now->settlement_exact) : NAN};
+    csv_row(&f, 8, line);
+    before = now->settlement;
   }
   return output_close(&f);
 }
@@ -64,6 +115,10 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number(&f, "load", sim->s.load);
   json_number(&f, "settlement", last->settlement);
   json_number(&f, "settlement_exact", last->settlement_exact);
+  json_number(&f, "U", last->U);
+  json_number(&f, "U_exact", last->U_exact);
+  json_number_if(&f, sim->s.layers != NULL, "height", sim->height);
+  json_number_if(&f, sim->s.layers != NULL, "t", real_time(sim, last));
   json_number(&f, "pressure_error", worst);
   json_number(&f, "centre_pressure", last->u[sim->points - 1]);
   json_number(&f, "centre_pressure_exact", exact_at(sim, sim->rows - 1, sim->points - 1));
@@ -87,6 +142,7 @@ static bool draw_profile(app *a, const simulation *sim) {
                                        "Cryer",    "Strip load",  "Barron"};
   static const char *const depths[] = {"depth/H", "depth/H", "depth/H", "1 - x/a",
                                        "1 - r/a", "z/B",     "1 - r/a"};
+  const int column = sim->s.loads ? 2 : 1; /* of T */
   output f;
   if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
   output_text(&f,
@@ -96,14 +152,18 @@ static bool draw_profile(app *a, const simulation *sim) {
   for (int r = 0; r < sim->rows; r++) {
     const char *colour = colours[r % 8];
     char title[48] = "strip";
-    if (sim->s.kase != STRIP) snprintf(title, sizeof title, "T = %g", sim->row[r].T);
+    if (sim->s.loads)
+      snprintf(title, sizeof title, "%g kPa, T = %g", 1e-3 * sim->load[sim->row[r].step + 1],
+               sim->row[r].T);
+    else if (sim->s.kase != STRIP)
+      snprintf(title, sizeof title, "T = %g", sim->row[r].T);
     output_text(&f,
-                "%s'profile.csv' every ::%d::%d using 3:2 with points pointtype 7 pointsize 0.7 "
-                "linecolor rgb '%s' title '%s', \\\n  '' every ::%d::%d using 4:2 with lines "
+                "%s'profile.csv' every ::%d::%d using %d:%d with points pointtype 7 pointsize 0.7 "
+                "linecolor rgb '%s' title '%s', \\\n  '' every ::%d::%d using %d:%d with lines "
                 "linecolor rgb '%s' title '%s'",
-                r ? ", \\\n  " : "", r * sim->points + 1, (r + 1) * sim->points, colour, title,
-                r * sim->points + 1, (r + 1) * sim->points, colour,
-                r + 1 < sim->rows ? "" : "exact");
+                r ? ", \\\n  " : "", r * sim->points + 1, (r + 1) * sim->points, column + 2,
+                column + 1, colour, title, r * sim->points + 1, (r + 1) * sim->points, column + 3,
+                column + 1, colour, r + 1 < sim->rows ? "" : "exact");
   }
   output_text(&f, "\n");
   return plot_close(&f, sim->s.out, "profile");
@@ -113,7 +173,7 @@ bool consolidation_finish(app *a, void *user) {
   simulation *sim = user;
   if (sim->rows == 0) return true;
   if (!write_profile(a, sim) || !write_times(a, sim) || !write_summary(a, sim) ||
-      !draw_profile(a, sim))
+      !write_steps(a, sim) || !draw_profile(a, sim))
     return false;
   app_tell_results(a, sim->s.out);
   for (int r = 0; r < sim->rows; r++) {
@@ -123,10 +183,15 @@ bool consolidation_finish(app *a, void *user) {
              100.0 * pressure_error(sim, r));
       continue;
     }
+    if (sim->s.loads) printf("%g kPa, ", 1e-3 * sim->load[now->step + 1]);
     printf("T = %-6g u/u0 within %.2f %%", now->T, 100.0 * pressure_error(sim, r));
     if (!isnan(now->settlement))
       printf(", settlement %.5f H (exact %.5f, %+.1f %%)", now->settlement, now->settlement_exact,
              100.0 * (now->settlement / now->settlement_exact - 1.0));
+    if (!isnan(now->U)) printf(", U %.4f (%.4f)", now->U, now->U_exact);
+    if (sim->s.layers)
+      printf(", %.3g days, %.3g mm", real_time(sim, now) / 86400.0,
+             1e3 * now->settlement * sim->height);
     if (!isnan(now->degree)) printf(", U %.4f (equal strain %.4f)", now->degree, now->degree_equal);
     if (!isnan(now->force)) printf(", force of the plate %.4f of the exact one", now->force);
     printf("\n");

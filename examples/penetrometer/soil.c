@@ -3,8 +3,6 @@
  */
 #include "penetrometer.h"
 
-#include "common/ranks.h"
-
 #include <mps/geostatic.h>
 #include <mps/pore_water.h>
 #include <mps/soil.h>
@@ -57,7 +55,6 @@ static const char *check_start(const penetrometer *p) {
     return "--sides free asks for --start, in ground far from the surface";
   if (s->sides == PEN_FREE && s->surcharge > 0.0)
     return "--sides free is for ground without stress: --surcharge must be 0";
-  if (ranks_launched() > 1 && s->start > 0.0) return "--start is for one process";
   if (s->law == PEN_CAM_CLAY && !(s->surcharge > 0.0))
     return "--law mcc asks for a --surcharge > 0, the vertical effective stress of its ground";
   return NULL;
@@ -135,23 +132,28 @@ static mps_status make_cam_clay(mps_context *context, const pen_settings *s, dou
   return mps_material_create_cam_clay(context, &clay, out);
 }
 
-/* State of the ground of Cam-Clay, which is the same everywhere: `stress` vertical and horizontal,
+/* State of the ground of Cam-Clay, which is the same everywhere, and 0 on a rank without particles
+ * until all have the greatest: `stress` vertical and horizontal,
  * and su in triaxial compression from p and pc, (M/2) p^(1 - Lambda) (pc/2)^Lambda. */
-static mps_status read_state(penetrometer *p, pen_run *r) {
+static mps_status read_state(penetrometer *p, pen_run *r, mps_status status) {
   const pen_settings *s = &p->s;
   mps_view stress, pc, any;
-  mps_status status = mps_particles_view(r->m.particles, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "stress", &stress);
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "preconsolidation", &pc);
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "id", &any);
-  if (status != MPS_OK || any.shape[0] == 0) return status;
   const int up = pen_up(r);
-  double mean = 0.0;
-  for (int c = 0; c < 3; c++) mean -= *mps_view_f64(&stress, 0, c) / 3.0;
-  p->state.sideways = -*mps_view_f64(&stress, 0, up == 0 ? 1 : 0);
+  double mean = 0.0, found[2] = {0.0, 0.0};
+  for (int c = 0; status == MPS_OK && any.shape[0] > 0 && c < 3; c++)
+    mean -= *mps_view_f64(&stress, 0, c) / 3.0;
   const double part = 1.0 - s->kappa / s->lambda; /* Lambda */
-  p->state.strength =
-      0.5 * s->M * pow(mean, 1.0 - part) * pow(0.5 * *mps_view_f64(&pc, 0, 0), part);
-  return MPS_OK;
+  if (status == MPS_OK && any.shape[0] > 0) {
+    found[0] = -*mps_view_f64(&stress, 0, up == 0 ? 1 : 0);
+    found[1] = 0.5 * s->M * pow(mean, 1.0 - part) * pow(0.5 * *mps_view_f64(&pc, 0, 0), part);
+  }
+  status = app_settle(r->m.a, status);
+  if (status == MPS_OK && r->m.a->domain) status = mps_domain_max(r->m.a->domain, 2, found);
+  p->state.sideways = found[0], p->state.strength = found[1];
+  return status;
 }
 
 /* Cam-Clay at rest under the surcharge. G = Ir su needs the state that su follows from. */
@@ -170,7 +172,7 @@ static mps_status settle_cam_clay(penetrometer *p, pen_run *r) {
     status = make_cam_clay(p->context, s, shear, &r->m.material);
     if (status == MPS_OK)
       status = mps_particles_set_consolidation(r->m.particles, r->m.material, &state);
-    if (status == MPS_OK) status = read_state(p, r);
+    status = read_state(p, r, status);
     shear = s->ir * p->state.strength;
   }
   p->state.shear = shear;
@@ -228,41 +230,27 @@ static mps_status make_law(penetrometer *p, pen_run *r) {
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-/* The place lies in the tip or its shaft as they stand at the start. */
-static bool in_hole(const penetrometer *p, const pen_run *r, const double *x) {
-  const int up = pen_up(r);
-  const double over = x[up] - (r->size[up] - p->s.start), R = pen_radius(p);
+typedef struct place_of {
+  const penetrometer *p;
+  const pen_run *r;
+} place_of;
+
+/* Outside the tip and its shaft as they stand at the start. */
+static mps_status outside_hole(void *user, const double *x, int32_t *inside) {
+  const place_of *of = user;
+  const penetrometer *p = of->p;
+  const int up = pen_up(of->r);
+  const double over = x[up] - (of->r->size[up] - p->s.start), R = pen_radius(p);
   const double away = up == 2 ? hypot(x[0], x[1]) : fabs(x[0]);
-  return over > 0.0 && away < fmin(R, R * over / pen_shoulder(p)) + 1e-6 * p->s.h;
-}
-
-typedef bool (*choice_fn)(const penetrometer *p, const pen_run *r, const double *x);
-
-/* Ids of the chosen particles, to be freed. */
-static mps_status choose(const penetrometer *p, const pen_run *r, choice_fn chosen, int64_t *count,
-                         int64_t **ids) {
-  mps_view x, id;
-  mps_status status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "id", &id);
-  if (status != MPS_OK) return status;
-  *count = 0;
-  *ids = malloc((size_t)(x.shape[0] + 1) * sizeof **ids);
-  if (!*ids) return MPS_ERROR_MEMORY;
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    double at[3] = {0.0, 0.0, 0.0};
-    for (int c = 0; c <= pen_up(r); c++) at[c] = *mps_view_f64(&x, k, c);
-    if (chosen(p, r, at)) (*ids)[(*count)++] = *mps_view_i64(&id, k, 0);
-  }
+  *inside = !(over > 0.0 && away < fmin(R, R * over / pen_shoulder(p)) + 1e-6 * p->s.h);
   return MPS_OK;
 }
 
-static mps_status make_hole(const penetrometer *p, pen_run *r) {
-  int64_t *ids = NULL, count = 0;
-  if (p->s.start == 0.0) return MPS_OK;
-  mps_status status = choose(p, r, in_hole, &count, &ids);
-  if (status == MPS_OK && count > 0) status = mps_particles_remove(r->m.particles, count, ids);
-  free(ids);
-  return status;
+static mps_status fill(penetrometer *p, pen_run *r, const double *lower) {
+  place_of of = {p, r};
+  return p->s.start > 0.0
+             ? mps_particles_fill_where(r->m.particles, lower, r->size, outside_hole, &of, NULL)
+             : mps_particles_fill_box(r->m.particles, lower, r->size, NULL);
 }
 
 /* The places at the start, for the displacements at the end. */
@@ -285,28 +273,28 @@ mps_status pen_make_soil(penetrometer *p, pen_run *r, const double *lower) {
   set.dim = pen_up(r) + 1;
   set.spacing = s->h / nearbyint(cbrt((double)s->ppc));
   mps_status status = mpm_model_particles(&r->m, p->context, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(r->m.particles, lower, r->size, NULL);
-  if (status == MPS_OK) status = make_hole(p, r);
+  if (status == MPS_OK) status = fill(p, r, lower);
   r->particles = mps_particles_count(r->m.particles);
   if (status == MPS_OK) status = mpm_model_sum(&r->m, &r->particles);
   if (status == MPS_OK) status = mps_particles_set(r->m.particles, "density", 0, s->density);
   if (status == MPS_OK) status = set_stress(p, r);
   if (status == MPS_OK) status = keep_places(r);
+  status = app_settle(r->m.a, status);
   return status == MPS_OK ? make_law(p, r) : status;
 }
 
 /* ---- water and load -------------------------------------------------------------------------- */
 
-static bool at_surface(const penetrometer *p, const pen_run *r, const double *x) {
-  (void)p;
+static bool at_surface(const void *user, const double *x) {
+  const pen_run *r = user;
   return x[pen_up(r)] > r->size[pen_up(r)] - mps_particles_spacing(r->m.particles);
 }
 
 /* The surcharge, on the uppermost particles. */
 static mps_status press(const penetrometer *p, pen_run *r) {
   mps_mpm_load_def load = mps_mpm_load_defaults();
-  int64_t *ids = NULL;
-  mps_status status = choose(p, r, at_surface, &load.id_count, &ids);
+  int64_t *ids;
+  mps_status status = mpm_model_list(&r->m, at_surface, r, &load.id_count, &ids);
   load.ids = ids;
   load.traction[pen_up(r)] = -p->s.surcharge;
   if (status == MPS_OK) status = mps_mpm_add_load(r->m.mpm, &load, NULL);

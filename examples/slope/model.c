@@ -107,7 +107,8 @@ mps_status slope_build_trial(simulation *sim) {
   mps_status status = mpm_model_particles(m, sim->context, &set);
   if (status == MPS_OK) status = fill(s, m->particles);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
-  if (status == MPS_OK) status = set_stress(s, m->particles);
+  if (status == MPS_OK)
+    status = slope_is_wet(s) ? slope_wet(&sim->s, m->particles) : set_stress(s, m->particles);
   if (status == MPS_OK) status = make_law(sim);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;

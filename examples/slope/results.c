@@ -30,6 +30,12 @@ static double found_factor(const simulation *sim) {
   return sqrt(stands * fails);
 }
 
+/* Of slip circles; NaN in a run-out, whose strength softens, and where there is none. */
+static double circles_factor(const settings *s, slope_circle *circle) {
+  const double factor = s->runout ? NAN : slope_circles(s, circle);
+  return isinf(factor) ? NAN : factor;
+}
+
 /* ---- tables ---------------------------------------------------------------------------------- */
 
 static bool write_trials(app *a, const simulation *sim) {
@@ -80,6 +86,12 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number_if(&f, stands > 0.0, "stands", stands);
   json_number(&f, "fails", fails);
   json_number(&f, "stability_number", stability_number(s, factor));
+  slope_circle circle;
+  const double circles = circles_factor(s, &circle);
+  json_number(&f, "slip_circles", circles);
+  json_number_if(&f, !isnan(circles), "circle_x", circle.x + s->crest);
+  json_number_if(&f, !isnan(circles), "circle_y", circle.y + s->base);
+  json_number_if(&f, !isnan(circles), "circle_radius", circle.radius);
   json_number_if(&f, s->runout && ended(sim) > 0, "runout", sim->front);
   json_number_if(&f, s->runout && ended(sim) > 0, "lost_behind_crest", sim->lost);
   json_end(&f);
@@ -117,6 +129,24 @@ static double greatest(const mpm_snapshot *shot, int column) {
   return most;
 }
 
+/* The water table, and the level of the pool before a drawdown. */
+static void draw_water(output *f, const settings *s, double wide) {
+  static const char arrow[] = "set arrow from %.9g,%.9g to %.9g,%.9g nohead linewidth 2 linecolor "
+                              "rgb '#2e86c1'%s front\n";
+  if (!isnan(s->drawdown))
+    output_text(f, arrow, 0.0, s->drawdown + s->base, wide, s->drawdown + s->base,
+                " dashtype '..'");
+  if (s->points == 0 && isnan(s->table)) return;
+  double from = 0.0;
+  for (int64_t k = 0; k <= s->points; k++) {
+    const double to = k < s->points ? s->line[2 * k] + s->crest : wide;
+    if (!(to > from && to <= wide)) continue;
+    output_text(f, arrow, from, slope_table(s, from - s->crest) + s->base, to,
+                slope_table(s, to - s->crest) + s->base, "");
+    from = to;
+  }
+}
+
 static bool draw_slope(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double foot = s->crest + s->slope * s->height, top = s->base + s->height;
@@ -140,6 +170,7 @@ static bool draw_slope(app *a, const simulation *sim) {
               sim->shot.time, wide, high);
   output_text(&f, "set arrow from %.9g,%.9g to %.9g,%.9g nohead dashtype '--' front\n", s->crest,
               top, foot, s->base);
+  draw_water(&f, s, wide);
   plot_colours(&f, 0.0, 0.5 * greatest(&sim->shot, 2), image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "slope.bin", &image, 1.0, 1.0);
@@ -168,6 +199,9 @@ static void print(const simulation *sim) {
   else
     printf("factor of safety %.3f: stands with the strength divided by %.4g, fails with %.4g\n",
            found_factor(sim), stands, fails);
+  slope_circle circle;
+  const double circles = circles_factor(s, &circle);
+  if (!isnan(circles)) printf("slip circles (Bishop's simplified method): %.3f\n", circles);
 }
 
 /* The first stress is no equilibrium: ground that stands moves, in proportion to 1/E, until it has

@@ -1,13 +1,17 @@
 /* slope.h - the parts of mps-slope: ground and one trial (model.c), the search for the factor
- * (search.c), results (results.c). SPDX-License-Identifier: BSD-3-Clause */
+ * (search.c), water in the ground (water.c), slip circles (circles.c), results (results.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_SLOPE_H
 #define EXAMPLES_SLOPE_H
 
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
+#include "common/units.h"
 
-enum { SLOPE_SAMPLES = 40, SLOPE_TRIALS = 24 };
+enum { SLOPE_SAMPLES = 40, SLOPE_TRIALS = 24, SLOPE_POINTS = 64 };
+enum { FLOW_NONE, FLOW_ALONG };
+#define WATER 1000.0 /* kg/m3 */
 
 typedef struct settings {
   double height, slope, base, crest, toe;    /* m; slope: horizontal per vertical */
@@ -17,6 +21,12 @@ typedef struct settings {
   double slip;                               /* m */
   double young, poisson, density, gravity;   /* Pa, -, kg/m3, m/s2 */
   double factor, tolerance, fails, falls, h; /* NaN: it is sought; -, of H, (H/g)^1/2, m */
+  double moist, ru;                          /* kg/m3 above the table; pressure over weight */
+  double table, drawdown; /* m above the toe: the water table, and the pool before; NaN: none */
+  double line[2 * SLOPE_POINTS]; /* m, the table: x from the crest's edge, level above the toe */
+  int64_t points;                /* of that; 0: none */
+  int flow;
+  const char *table_text;
   int64_t ppc, threads;
   int spline; /* degree of the weights less 2 */
   bool runout;
@@ -51,6 +61,24 @@ typedef struct simulation {
 void slope_bracket(const simulation *sim, int trials, double *stands, double *fails);
 /* Whether they are as close as requested, or the one trial has ended. */
 bool slope_found(const simulation *sim, int trials);
+
+/* water.c: x from the crest's edge to the toe, y above the toe, m. */
+const char *slope_settle_water(settings *s, const option *table);
+bool slope_is_wet(const settings *s);
+double slope_surface(const settings *s, double x);
+double slope_table(const settings *s, double x); /* level; -infinity: none */
+double slope_pool(const settings *s); /* level of water that stands at the toe; -infinity: none */
+double slope_density(const settings *s, double x, double y);
+double slope_overburden(const settings *s, double x, double y); /* Pa, ground and pool above */
+double slope_pressure(const settings *s, double x, double y);   /* Pa, of the water */
+/* Densities, effective stresses and the water's force on the particles. */
+mps_status slope_wet(settings *s, mps_particles *set);
+
+/* circles.c: the least factor of all slip circles by Bishop's simplified method; infinite: none. */
+typedef struct slope_circle {
+  double x, y, radius; /* m, as in water.c */
+} slope_circle;
+double slope_circles(const settings *s, slope_circle *out);
 
 /* model.c */
 double slope_duration(const settings *s);

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DEGREE (3.14159265358979323846 / 180.0)
 #define RAMP 0.05  /* of the path: up to the full speed */
 #define THICK 0.25 /* of the height */
 #define ABOVE 0.5  /* of the height: the wall reaches above the ground, which rises */
@@ -50,7 +49,7 @@ static mps_status set_stress(const settings *s, mps_particles *set) {
   return status == MPS_OK && s->surcharge > 0.0 && s->base > 0.0 ? unload_front(s, set) : status;
 }
 
-static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
+static mps_status make_ground(mps_context *context, settings *s, mpm_model *m) {
   const double thick = wall_thickness(s);
   const double lo[] = {0.0, 0.0}, hi[] = {s->length, s->base + s->height};
   const double before_lo[] = {-s->front, 0.0};
@@ -65,32 +64,21 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
   if (status == MPS_OK && s->sheet > 0.0)
     status = mps_particles_fill_box(m->particles, below_lo, below_hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
-  return status == MPS_OK ? set_stress(s, m->particles) : status;
+  if (status != MPS_OK) return status;
+  return wall_is_plain(s) ? set_stress(s, m->particles) : wall_set_ground(s, m->particles);
 }
 
-static mps_status make_law(mps_context *context, const settings *s, mps_material **out) {
-  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-  law.young = s->young, law.poisson = s->poisson;
-  law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE, law.cohesion = s->cohesion;
-  return mps_material_create_mohr_coulomb(context, &law, out);
-}
+static bool is_above(const void *level, const double *x) { return x[1] > *(const double *)level; }
 
 /* The surcharge is a load on the uppermost particles, which it follows. */
 static mps_status press(const settings *s, mpm_model *m) {
-  mps_view x, id;
-  mps_mpm_load_def load = mps_mpm_load_defaults();
-  int64_t count = 0;
-  mps_status status = mps_particles_view(m->particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(m->particles, "id", &id);
-  if (status != MPS_OK) return status;
-  int64_t *ids = malloc((size_t)(x.shape[0] + 1) * sizeof *ids);
-  if (!ids) return MPS_ERROR_MEMORY;
   const double top = s->base + s->height - mps_particles_spacing(m->particles);
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > top) ids[count++] = *mps_view_i64(&id, k, 0);
-  load.ids = ids, load.id_count = count;
+  mps_mpm_load_def load = mps_mpm_load_defaults();
+  int64_t *ids;
+  mps_status status = mpm_model_list(m, is_above, &top, &load.id_count, &ids);
+  load.ids = ids;
   load.traction[1] = -s->surcharge;
-  status = mps_mpm_add_load(m->mpm, &load, NULL);
+  if (status == MPS_OK) status = mps_mpm_add_load(m->mpm, &load, NULL);
   free(ids);
   return status;
 }
@@ -165,8 +153,8 @@ mps_status wall_build(mps_context *context, void *user) {
                              .pass = pass,
                              .user = sim};
   mps_status status = mpm_course_peek(&sim->course, context);
-  if (status == MPS_OK) status = make_ground(context, s, &sim->m);
-  if (status == MPS_OK) status = make_law(context, s, &sim->m.material);
+  if (status == MPS_OK) status = make_ground(context, &sim->s, &sim->m);
+  if (status == MPS_OK) status = wall_make_law(context, s, 0, &sim->m.material);
   if (status == MPS_OK) status = make_wall(context, sim);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -175,6 +163,7 @@ mps_status wall_build(mps_context *context, void *user) {
   def.lower[0] = -s->front, def.lower[1] = 0.0;
   def.upper[0] = s->length;
   status = mpm_model_create(&sim->m, context, status, &def);
+  if (status == MPS_OK && s->layers > 1) status = wall_set_laws(context, s, &sim->m);
   if (status == MPS_OK && s->base > 0.0)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK && s->surcharge > 0.0) status = press(s, &sim->m);

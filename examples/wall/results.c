@@ -17,42 +17,50 @@ typedef struct pressure {
   double reduced;               /* Rankine with Davis' strength: active, smooth, psi < phi; NaN */
 } pressure;
 
-static double unit(const settings *s) {
-  return 0.5 * s->density * s->gravity * s->height * s->height;
-}
-
 /* Rankine's coefficient without cohesion. */
-static double rankine(const settings *s) {
+static double rankine(const settings *s, const wall_layer *l) {
   const double side = s->pressure == ACTIVE ? -1.0 : 1.0;
-  return pow(tan((45.0 + side * 0.5 * s->phi) * DEGREE), 2.0);
+  return pow(tan((45.0 + side * 0.5 * l->phi) * DEGREE), 2.0);
 }
 
-/* Rankine: K (rho g H^2/2 + q H) -+ 2 c sqrt(K) H. Coulomb's wedge on a vertical wall whose
- * friction is at most that of the ground: within some percent of the exact one in the active case,
- * not in the passive one, nor on a smooth bed, on which the ground at the toe slides along with the
- * wall. */
-static double find_theory(const settings *s) {
-  const double phi = s->phi * DEGREE, side = s->pressure == ACTIVE ? -1.0 : 1.0;
-  const double k = rankine(s);
-  const double above = s->surcharge * s->height / unit(s);
-  if (s->friction == 0.0)
-    return k * (1.0 + above) + side * 2.0 * s->cohesion * sqrt(k) * s->height / unit(s);
-  if (s->pressure == PASSIVE || s->cohesion > 0.0 || s->base == 0.0) return NAN;
-  const double delta = fmin(atan(s->friction), phi);
+/* Coulomb's, across the wall. */
+static double coulomb(const settings *s, const wall_layer *l) {
+  const double phi = l->phi * DEGREE, delta = fmin(atan(s->friction), phi);
   const double root = sqrt(sin(phi + delta) * sin(phi) / cos(delta));
-  return (1.0 + above) * pow(cos(phi), 2.0) / pow(1.0 + root, 2.0); /* across the wall */
+  return pow(cos(phi), 2.0) / pow(1.0 + root, 2.0);
+}
+
+/* Rankine's of the strength that Davis takes. */
+static double davis(const settings *s, const wall_layer *l) {
+  const double phi = l->phi * DEGREE, psi = l->psi * DEGREE;
+  const double less = atan(cos(psi) * sin(phi) / (1.0 - sin(psi) * sin(phi)));
+  (void)s;
+  return pow(tan(45.0 * DEGREE - 0.5 * less), 2.0);
+}
+
+static double most_cohesion(const settings *s) {
+  double most = 0.0;
+  for (int k = 0; k < s->layers; k++) most = fmax(most, s->layer[k].cohesion);
+  return most;
+}
+
+/* Rankine: K (rho g H^2/2 + q H) -+ 2 c sqrt(K) H, layer by layer. Coulomb's wedge on a vertical
+ * wall whose friction is at most that of the ground: within some percent of the exact one in the
+ * active case, not in the passive one, nor on a smooth bed, on which the ground at the toe slides
+ * along with the wall. */
+static double find_theory(const settings *s) {
+  if (s->friction == 0.0) return wall_theory(s, rankine, false) / wall_unit(s);
+  if (s->pressure == PASSIVE || most_cohesion(s) > 0.0 || s->base == 0.0) return NAN;
+  return wall_theory(s, coulomb, false) / wall_unit(s);
 }
 
 /* A wall cannot pull: Rankine's stress where it is a pressure, below 2 c/(rho g sqrt(K)). It is in
  * equilibrium and within the strength, so that the wall needs no more; with Rankine's tension it
  * would need less than the ground does. */
 static double find_cracked(const settings *s) {
-  if (s->pressure == PASSIVE || s->friction > 0.0 || s->cohesion == 0.0) return NAN;
-  const double k = rankine(s);
-  const double depth =
-      (2.0 * s->cohesion / sqrt(k) - s->surcharge) / (s->density * s->gravity); /* of the crack */
-  if (depth <= 0.0) return NAN;
-  return k * pow(fmax(0.0, 1.0 - depth / s->height), 2.0);
+  if (s->pressure == PASSIVE || s->friction > 0.0 || most_cohesion(s) == 0.0) return NAN;
+  const double all = wall_theory(s, rankine, false), pressed = wall_theory(s, rankine, true);
+  return pressed > all * (1.0 + 1e-9) ? pressed / wall_unit(s) : NAN;
 }
 
 /* Sand that dilates by less than its friction slides along planes on which less than its strength
@@ -60,12 +68,12 @@ static double find_cracked(const settings *s) {
  * between Rankine's of phi and of phi*. On a smooth bed the ground is free to take planes of phi.
  */
 static double find_reduced(const settings *s) {
-  if (s->pressure == PASSIVE || s->friction > 0.0 || s->cohesion > 0.0 || s->base == 0.0 ||
-      !(s->psi < s->phi))
+  bool less = false;
+  for (int k = 0; k < s->layers; k++) less = less || s->layer[k].psi < s->layer[k].phi;
+  if (s->pressure == PASSIVE || s->friction > 0.0 || most_cohesion(s) > 0.0 || s->base == 0.0 ||
+      !less)
     return NAN;
-  const double phi = s->phi * DEGREE, psi = s->psi * DEGREE;
-  const double less = atan(cos(psi) * sin(phi) / (1.0 - sin(psi) * sin(phi)));
-  return pow(tan(45.0 * DEGREE - 0.5 * less), 2.0) * (1.0 + s->surcharge * s->height / unit(s));
+  return wall_theory(s, davis, false) / wall_unit(s);
 }
 
 /* Mean over the last fifth of the path; NaN where it has not ended. */
@@ -82,11 +90,11 @@ static pressure measure(const simulation *sim) {
   double moment = 0.0;
   p.across = p.along = 0.0;
   for (int k = sim->rows - n; k < sim->rows; k++) {
-    p.across += sim->across[k] / n / unit(s);
-    p.along += sim->along[k] / n / unit(s);
+    p.across += sim->across[k] / n / wall_unit(s);
+    p.along += sim->along[k] / n / wall_unit(s);
     moment += sim->moment[k] / n;
   }
-  p.height = moment / (p.across * unit(s) * s->height);
+  p.height = moment / (p.across * wall_unit(s) * s->height);
   if (s->motion == TURNS_ABOUT_TOP) p.height += 1.0;
   return p;
 }
@@ -99,8 +107,8 @@ static bool write_pressure(app *a, const simulation *sim) {
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
   csv_header(&f, "path_over_height,force_kN_m,K,K_along");
   for (int k = 0; k < sim->rows; k++) {
-    const double row[] = {sim->path[k] / s->height, 1e-3 * sim->across[k], sim->across[k] / unit(s),
-                          sim->along[k] / unit(s)};
+    const double row[] = {sim->path[k] / s->height, 1e-3 * sim->across[k],
+                          sim->across[k] / wall_unit(s), sim->along[k] / wall_unit(s)};
     csv_row(&f, 4, row);
   }
   return output_close(&f);
@@ -118,6 +126,8 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   json_number(&f, "K_theory", p->theory);
   json_number(&f, "K_cracked", p->cracked);
   json_number(&f, "K_reduced", p->reduced);
+  json_number(&f, "force", p->across * wall_unit(s));
+  json_number_if(&f, !isnan(s->water), "water_force", wall_water(s));
   json_end(&f);
   return output_close(&f);
 }
@@ -129,18 +139,28 @@ static const char *name_of(const settings *s) {
   return names[s->motion];
 }
 
+static const char *ground_of(const settings *s) {
+  static char text[80];
+  if (s->layers > 1)
+    snprintf(text, sizeof text, "%d layers", s->layers);
+  else
+    snprintf(text, sizeof text, "{/Symbol f} = %g°, {/Symbol y} = %g°", s->layer[0].phi,
+             s->layer[0].psi);
+  return text;
+}
+
 static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
   const settings *s = &sim->s;
   output f;
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
   output_text(&f,
-              "set title \"%s pressure on a wall that %s\\n{/*0.85 {/Symbol f} = %g°, "
-              "{/Symbol y} = %g°, friction of the wall %g, h = H/%.3g}\"\n"
+              "set title \"%s pressure on a wall that %s\\n{/*0.85 %s, "
+              "friction of the wall %g, h = H/%.3g}\"\n"
               "set xlabel 'path of the wall over its height'\nset ylabel 'K, force across the wall "
               "over {/Symbol g}H^2/2'\nset yrange [0:*]\nset key right %s opaque\n"
               "plot 'pressure.csv' every ::1 using 1:3 with lines linewidth 2 linecolor rgb "
               "'#1f4e8c' title 'WLS-MPM'",
-              s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), s->phi, s->psi, s->friction,
+              s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), ground_of(s), s->friction,
               s->height / s->h, s->pressure == ACTIVE ? "top" : "bottom");
   if (!isnan(p->theory))
     output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'", p->theory,
@@ -220,6 +240,10 @@ static void print(const settings *s, const pressure *p) {
            100.0 * (p->across / p->theory - 1.0));
   if (!isnan(p->reduced))
     printf(", %.4f with the strength that Davis takes for psi < phi", p->reduced);
+  if (!wall_is_plain(s)) printf(", %.4g kN/m", 1e-3 * p->across * wall_unit(s));
+  if (!isnan(s->water))
+    printf(", besides %.4g kN/m of water at %.3f H", 1e-3 * wall_water(s),
+           (s->height - s->water) / (3.0 * s->height));
   printf("\n");
 }
 

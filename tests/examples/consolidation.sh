@@ -38,6 +38,23 @@ run barron --cells 10 --times 0.2,1
 within barron 0.03 0
 awk -v u="$(value barron degree)" -v e="$(value barron degree_equal_strain)" -v f="$(value barron plate_force)" 'BEGIN {
   exit !(u > 0.97 * e && u < 1.03 * e && f > 0.98 && f < 1.02) }' || fail "barron: degree and force of the plate"
+# Both sides drained, two layers, a load that grows, and steps of an oedometer.
+run terzaghi --scheme implicit --drained both --times 0.05,0.2
+within terzaghi 0.015 0.02
+run terzaghi --drained bottom --cells 10 --stiffness 50 --times 0.3
+within terzaghi 0.02 0.02
+run terzaghi --layers "$(dirname "$0")/data/consolidation_layers.csv" --times 0.1,0.5
+within terzaghi 0.015 0.02
+in_range "$work/terzaghi/summary.json" height 5 5
+in_range "$work/terzaghi/summary.json" U 0.69 0.73 # by finite differences 0.7144
+in_range "$work/terzaghi/summary.json" t 1.53e7 1.57e7 # s: 0.5 H^2/c_v, c_v = 2.174e-9 3.636e6/9806.65 m2/s
+run terzaghi --scheme implicit --ramp 0.2 --times 0.1,0.2,0.5
+within terzaghi 0.015 0.02
+run mcc --scheme implicit --loads 100kPa,300kPa --times 0.2,2
+within mcc 0.03 0.01
+in_range "$work/mcc/summary.json" U 0.99 1.0
+[ "$(wc -l <"$work/mcc/steps.csv")" = 3 ] || fail "rows of steps.csv"
+awk -F, 'NR > 1 && ($7 - $8) ^ 2 > 1e-5 { exit 1 }' "$work/mcc/steps.csv" || fail "void ratios of the steps"
 refused() {
   if "$programs/mps-consolidation" --out "$work/refused" "$@" 2>"$work/log"; then fail "$* is not refused"; fi
 }

@@ -23,6 +23,22 @@ grows="--h 1 --slope 1 --phi 0 --strength-gradient 6kPa/m --young 1GPa --threads
 has "$work/log" "the slope stands"
 "$1/mps-slope" $grows --factor 1.33 --out "$work/grows" >"$work/log"
 has "$work/log" "the slope fails"
+# Water: around the factors by slip circles, and of a line along the surface of sand (1 - gamma_w/gamma) 1.4.
+water() { # STANDS FAILS OPTION...
+  stands=$1 fails=$2
+  shift 2
+  "$programs/mps-slope" --h 1 --factor "$stands" --threads 1 --out "$work/wet" "$@" >"$work/log"
+  has "$work/log" "the slope stands"
+  "$programs/mps-slope" --h 1 --factor "$fails" --threads 1 --out "$work/wet" "$@" >"$work/log"
+  has "$work/log" "the slope fails"
+}
+programs=$1
+water 1.06 1.19 --ru 0.25
+in_range "$work/wet/summary.json" slip_circles 1.112 1.122
+water 1.75 2.0 --water-table 10
+in_range "$work/wet/summary.json" slip_circles 1.83 1.85
+water 0.80 0.90 --water-table 0 --drawdown 10
+water 1.3 1.5 --slope 4 --phi 35 --cohesion 1Pa --water-table "$(dirname "$0")/data/water_line.csv" --seepage along
 for kind in 15kPa 4kPa; do
   "$1/mps-slope" --runout --phi 0 --cohesion 15kPa --residual-cohesion "$kind" --h 1 --falls 12 --threads 1 \
     --out "$work/$kind" >"$work/log" || exit 1

@@ -42,6 +42,24 @@ in_range "$work/loaded/summary.json" K 0.506 0.538
 in_range "$work/loaded/summary.json" K_theory 0.52209 0.52211
 wall both --surcharge 5kPa --base 0.5 --psi 30
 in_range "$work/both/summary.json" K 0.49 0.555
+# Water at rest in the ground, layers, and friction of the wall between none and full: psi = phi.
+wall wet --water-table 0.25 --density 2000
+in_range "$work/wet/summary.json" K_theory 0.23957 0.23959 # (1 - 0.5 0.75^2)/3
+in_range "$work/wet/summary.json" K 0.230 0.247
+in_range "$work/wet/summary.json" water_force 2759 2759.1
+wall drowned --water-table 0 --density 2000 --pressure passive --length 3
+in_range "$work/drowned/summary.json" K_theory 1.49999 1.50001
+in_range "$work/drowned/summary.json" K 1.46 1.55
+layers=$(dirname "$0")/data/wall_layers.csv
+wall layers --layers "$layers"
+# 0.27099 1700 g/8 + 0.40586 (1700 g/4 + 1900 g/8) = 3202.6 N/m over (1700/8 + 1700/4 + 1900/8) g = 8583.8 N/m
+in_range "$work/layers/summary.json" K_theory 0.37305 0.37312
+in_range "$work/layers/summary.json" K 0.36 0.385
+wall pushed --layers "$layers" --pressure passive --length 3
+in_range "$work/pushed/summary.json" K 2.68 2.85
+wall delta --base 0.5 --psi 30 --friction 0.17633
+in_range "$work/delta/summary.json" K_theory 0.30377 0.30379 # Coulomb, 10 degrees
+in_range "$work/delta/summary.json" K 0.285 0.32
 wall top --motion top
 awk -v low="$(value active force_height)" -v high="$(value top force_height)" \
   'BEGIN { exit !(high > low + 0.02) }' || fail "the height of the force"

@@ -32,9 +32,17 @@ same box mps-sliding-box --h 0.02
 same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
 same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
 same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
+# A hole, a surcharge and a state of the ground that a rank without particles does not know; implicit pressures.
+same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 6x6x6 --h 0.025 --surcharge 100kPa --rate 16 --ppc 1 \
+  --permeability 1e-4
 # Water in the pores: explicit pressures, and implicit ones.
 same layer mps-consolidation --cells 8 --times 0.01
 same mandel mps-consolidation --case mandel --cells 16 --scheme implicit --times 0.002,0.01
+# Layers of other laws and permeabilities, of which a rank may have none; water in a slope.
+data=$(dirname "$0")/../examples/data
+same layers mps-consolidation --layers "$data/consolidation_layers.csv" --times 0.002
+same slope mps-slope --h 1 --factor 1 --falls 0.3 --water-table 0 --drawdown 10
+same backfill mps-wall --h 0.1 --path 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa
 pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
 # shellcheck disable=SC2086
 same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.06
