@@ -76,6 +76,8 @@ const char *element_settle(settings *s, const option *table) {
   const bool starts = s->law != NEO_HOOKEAN && s->law != NEWTONIAN;
   if (!isnan(s->nu) && options_given(table, "poisson"))
     return "--nu and --poisson exclude each other";
+  if (options_given(table, "yield") && options_given(table, "cohesion"))
+    return "--yield and --cohesion exclude each other";
   if (s->path_file && (options_given(table, "path") || options_given(table, "strain") ||
                        options_given(table, "steps")))
     return "--path-file excludes --path, --strain and --steps, which stand in the file";
@@ -102,10 +104,24 @@ const char *element_settle(settings *s, const option *table) {
   const bool softens = s->residual < 1.0 || !isnan(s->residual_phi) || !isnan(s->residual_cohesion);
   if (softens && (isnan(s->slip) || isnan(s->band)))
     return "softening needs --slip and --band, the width over which it is spread";
+  if (!softens && (!isnan(s->slip) || !isnan(s->band) || s->linear))
+    return "--slip, --band and --linear are of a strength that falls to --residual, "
+           "--residual-phi or --residual-cohesion";
+  if (options_given(table, "rate-reference") && s->rate_factor == 0.0)
+    return "--rate-reference needs --rate-factor above 0";
   return NULL;
 }
 
 /* ---- the law --------------------------------------------------------------------------------- */
+
+/* pc: --ocr times that of the yield surface through the first stress, which with --lode is smaller
+ * in extension, horizontal stresses above the vertical one. */
+static double first_preconsolidation(const settings *s) {
+  const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0), q = fabs(1.0 - s->k0) * vertical;
+  const double sine = 3.0 * s->M / (6.0 + s->M);
+  const double slope = s->lode && s->k0 > 1.0 ? s->M * (3.0 - sine) / (3.0 + sine) : s->M;
+  return s->ocr * (s->p0 + q * q / (slope * slope * s->p0));
+}
 
 static bool make_cam_clay(element *x) {
   const settings *s = &x->s;
@@ -117,8 +133,7 @@ static bool make_cam_clay(element *x) {
   d.shear_modulus = s->shear_modulus;
   d.void_ratio = s->e0;
   d.lode = s->lode;
-  const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0), q = fabs(1.0 - s->k0) * vertical;
-  d.preconsolidation = s->ocr * (s->p0 + q * q / (s->M * s->M * s->p0));
+  d.preconsolidation = first_preconsolidation(s);
   return app_check(&x->a, mps_material_create_cam_clay(x->a.context, &d, &x->material));
 }
 
@@ -234,8 +249,7 @@ bool element_start(element *x) {
 
 /* p of the critical state at the first void ratio: undrained. */
 static double critical_p(const settings *s) {
-  const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0), q = fabs(1.0 - s->k0) * vertical;
-  const double pc = s->ocr * (s->p0 + q * q / (s->M * s->M * s->p0)), share = s->kappa / s->lambda;
+  const double pc = first_preconsolidation(s), share = s->kappa / s->lambda;
   return pow(0.5 * pc, 1.0 - share) * pow(s->p0, share);
 }
 

@@ -67,7 +67,8 @@ static bool read_line(reader *r, bool *end) {
   for (*end = false; fgets(r->text, sizeof r->text, r->file);) {
     r->line++;
     size_t length = strlen(r->text);
-    if (length + 1 == sizeof r->text && r->text[length - 1] != '\n')
+    /* a NUL hides the newline that ends the line */
+    if ((length == 0 || r->text[length - 1] != '\n') && !feof(r->file))
       return bad(r, "line longer than 1022 characters, or no text", "");
     while (length > 0 && strchr("\r\n \t", r->text[length - 1])) r->text[--length] = '\0';
     if (length > 0 && r->text[0] != '#') return true;

@@ -210,9 +210,17 @@ static mps_status find_rates(const control *c, double *rate, mps_material_point 
     for (int half = 0; half < HALVINGS; half++, share *= 0.5) {
       for (int k = 0; k < c->n; k++) next[k] = rate[k] + share * direction[k];
       status = try_rates(c, next, point, miss, size);
+      if (status == MPS_ERROR_NUMERIC) { /* refused: strains too large for the law */
+        status = MPS_OK;
+        *size = INFINITY;
+      }
       if (status != MPS_OK || *size < former) break;
     }
-    if (status != MPS_OK || !(*size < former)) return status;
+    if (status != MPS_OK) return status;
+    if (!(*size < former)) {
+      *size = former;
+      return MPS_OK;
+    }
     memcpy(rate, next, (size_t)c->n * sizeof *rate);
   }
   return status;

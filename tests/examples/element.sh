@@ -74,6 +74,25 @@ fi
 has "$work/log" "no strain gives the target stress"
 has "$work/beyond/summary.json" '"outcome": "failed"'
 is "$work/beyond/path.csv" q -1 198000 3000 # Kp - 1 times 100 kPa is 200 kPa
+# Of clay too, though on the way there are strains that its law refuses.
+printf 'sxx,syy,szz,steps\n0,0,-6e5,1000\n' >"$work/beyond.csv"
+if "$element" --law mcc --M 1.35 --ocr 1.7 --k0 0.7 --path-file "$work/beyond.csv" --out "$work/clay" 2>"$work/log"; then
+  fail "a stress beyond the strength of clay"
+fi
+has "$work/log" "no strain gives the target stress"
+
+# --ocr 1 is on the yield surface: a first state in extension on that of the Lode option, with
+# a M = 1.35 (3 - s)/(3 + s), s = 3 M/(6 + M) = 0.55102, p 73 kPa, q 31.286 kPa.
+run first --M 1.35 --lode --p0 73kPa --k0 1.6 --path extension
+is "$work/first/path.csv" pc 1 88468.1 0.2
+
+# What contradicts itself, and files that are no text.
+refuses() { wanted=$1; shift; if "$element" "$@" --out "$work/no" 2>"$work/log"; then fail "$*"; fi; has "$work/log" "$wanted"; }
+refuses "exclude each other" --law vonmises --yield 10kPa --cohesion 5kPa
+refuses "of a strength that falls" --law tresca --slip 10mm --band 0.1m
+refuses "needs --rate-factor" --law tresca --rate-reference 1
+printf 'szz\n-1e3\000\n-2e3\n' >"$work/nul.csv"
+refuses "no text" --path-file "$work/nul.csv"
 
 # Other laws: what they bear.
 run mises --law vonmises --cohesion 20kPa --path ps-undrained --strain 0.05
