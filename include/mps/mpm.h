@@ -55,13 +55,13 @@ typedef enum mps_mpm_step_from {
 
 /** Volumetric strain rate that the laws receive, against volumetric locking and oscillating
  *  pressures in nearly incompressible material; and the filter of the mean stress of frictional
- *  laws, whose particles else share it unevenly once the ground has flowed. */
+ *  laws and fluids, whose particles else share it unevenly once they have flowed. */
 typedef enum mps_mpm_volumetric {
   MPS_MPM_VOLUMETRIC_BY_LAW = 0, /* for each material: Mohr-Coulomb and Drucker-Prager with an angle
                                of friction above 0, and users' frictional laws, as NODES; those
                                without friction or dilation (undrained clay), von Mises, and elastic
                                laws (linear, neo-Hookean, users' that state their moduli) with nu >=
-                               0.45 as CELL; all others, fluids among them, as POINT */
+                               0.45 as CELL; all others as POINT, fluids with a filter besides */
   MPS_MPM_VOLUMETRIC_POINT = 1,  /* each particle's own tr(d), in axisymmetry with the hoop */
   MPS_MPM_VOLUMETRIC_CELL = 2, /* F-bar: the mean of tr(d), weighted by volumes, over the particles
                              of the cell (quadratic: of the cell-sized box about a node); the part

@@ -2,7 +2,7 @@
  * nearly incompressible, asks each particle for its own condition of constant volume, more than the
  * nodes can satisfy: it locks, and takes a mean. Under friction a mean would do harm: the strength
  * follows the pressure that the mean has made, and bearing capacities fall. There each particle
- * keeps its own strain, and what is rough in its mean stress is filtered.
+ * keeps its own strain, and what is rough in its mean stress is filtered. So it is with a fluid.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
@@ -20,6 +20,7 @@ static bool is_nearly_incompressible(const mpsi_law *law) {
 
 mpsi_volume mpsi_material_volume(const mps_material *material) {
   const mpsi_law *law = &material->law;
+  if (material->type->kept == MPSI_KEPT_PRESSURE) return MPSI_VOLUME_FILTERED;
   if (mpsi_material_opens(material)) {
     if (is_frictional(law)) return MPSI_VOLUME_FILTERED;
     return mpsi_material_dilates(material) ? MPSI_VOLUME_OWN : MPSI_VOLUME_MEAN;

@@ -145,16 +145,26 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
   }
 }
 
+/* Change (J) of a fluid's energy between two stresses whose volumes differ by dV. */
+static double fluid_energy(const double *s0, const double *s1, double dV) {
+  return (s0[0] + s0[1] + s0[2] + s1[0] + s1[1] + s1[2]) / 6.0 * dV;
+}
+
 void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
                               const mpsi_energy *energy, const mpsi_cell_block *cells,
                               const mpsi_before_law *before, int64_t begin, int64_t end) {
   mpsi_cell_energy *sum = of_cells(grid, energy, cells);
   for (int64_t k = begin; k < end; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
-    if (!mpsi_law_of(p, k)->filtered) continue;
+    const mpsi_law_use *law = mpsi_law_of(p, k);
+    if (!law->filtered) continue;
     mpsi_mpm_elastic(p, k, &wave, &shear);
     for (int c = 0; c < 2 * grid->dim; c++)
       s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
+    if (law->gap < 0) {
+      sum->smoothed -= fluid_energy(s0, s1, p->V[k] - before->volume[k - begin]);
+      continue;
+    }
     const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
     const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
     sum->smoothed += lost;

@@ -95,7 +95,7 @@ static void apply_run(const mpsi_law_block *laws, int64_t begin, int64_t end, do
   find_columns(laws->grid, p, laws->run, law, begin, end, flags, seen);
   take_strains(laws->grid, D, first, seen);
   for (int c = 0; mean && c < 3; c++) seen->gradient[4 * c] = mean[c] + first;
-  for (int64_t k = begin; law->filtered && k < end; k++)
+  for (int64_t k = begin; law->filtered && law->strain >= 0 && k < end; k++)
     p->rough[k] = law->history[law->strain][k]; /* filter.c subtracts it from the new one */
   mpsi_before_law before;
   if (counts) mpsi_mpm_energy_before_law(laws->grid, p, begin, end, &before);
@@ -123,7 +123,7 @@ void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_r
     const mpsi_law_use *law = mpsi_law_of(p, k);
     mps_material_block block;
     int64_t flags[MPSI_CHUNK];
-    if (!law->filtered) continue;
+    if (!law->filtered || law->gap < 0) continue;
     mpsi_mpm_begin_block(&block);
     find_columns(grid, p, run, law, k, next, flags, &block);
     for (int c = 0; c < 9; c++)

@@ -64,7 +64,9 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
                               4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
   choose_volume(def, &law);
-  if (law.filtered) mpsi_material_sand_columns(material, &law.strain, &law.gap);
+  law.strain = law.gap = -1;
+  if (law.filtered && mpsi_material_opens(material))
+    mpsi_material_sand_columns(material, &law.strain, &law.gap);
   const bool at_once = law.own_volume && p->laws.at_once;
   const bool some_filtered = law.filtered || p->laws.some_filtered;
   if (p->laws.count > 0 &&

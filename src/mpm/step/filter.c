@@ -1,4 +1,4 @@
-/* filter.c - the filter of the mean stress of frictional laws.
+/* filter.c - the filter of the mean stress of frictional laws, and of the pressure of fluids.
  *
  * Sand that has flowed bears its weight by half of its particles: the others are open, at no stress
  * at all, and the nodes, which see sums, do not notice. What is filtered, every eighth step, is e =
@@ -21,24 +21,47 @@
  *
  * p' is e' where that is closed, else what is left of p, the gap the rest; the deviatoric stress
  * stays; then the law's own return, without strain. V follows the elastic volume strain of p' - p.
- * Velocities do not change. The elastic energy that goes is counted as spent (energy.h).
  *
- * Both passes have loops of their own for each dimension and degree, and for blocks beside thin
- * bodies. SPDX-License-Identifier: BSD-3-Clause */
+ * A fluid remembers no more than its volume, so that what the filter does to a true gradient does
+ * not add up: its pressure is back by a wave over a cell. So for it a = 1 without bound, every
+ * fourth step, and V/V0 is that of p'. Velocities do not change. The elastic energy that goes is
+ * counted as spent (energy.h).
+ *
+ * Both passes have loops of their own for each kind of law, dimension and degree, and for blocks
+ * beside thin bodies. SPDX-License-Identifier: BSD-3-Clause */
 #include "means.h"
+
+#include "material/state_equation.h"
 
 #include <string.h>
 
 #define BETA 0.06
-#define EVERY 8 /* steps */
+enum { EVERY = 8, EVERY_OF_FLUID = 4 }; /* steps */
+
+/* Sand and fluids are filtered each by themselves: a mean over both would be of neither. */
+typedef enum filtered_kind { SAND, FLUID } filtered_kind;
+
+static filtered_kind kind_of(const mpsi_law_use *law) { return law->gap < 0 ? FLUID : SAND; }
+
+/* Whether this step filters that kind, of which there is some law. */
+static bool filters(const mpsi_columns *p, const mpsi_run *run, filtered_kind kind) {
+  bool any = false;
+  if (run->steps % (kind == FLUID ? EVERY_OF_FLUID : EVERY) != 0) return false;
+  for (int32_t k = 0; k < p->laws.count; k++)
+    any = any || (p->laws.law[k].filtered && kind_of(&p->laws.law[k]) == kind);
+  return any;
+}
 
 bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run) {
-  return p->laws.some_filtered && run->steps % EVERY == 0;
+  return p->laws.some_filtered && (filters(p, run, SAND) || filters(p, run, FLUID));
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static bool is_filtered(const mpsi_columns *p, int64_t k) { return mpsi_law_of(p, k)->filtered; }
+MPSI_INLINE bool is_filtered(const mpsi_columns *p, int64_t k, filtered_kind kind) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  return law->filtered && kind_of(law) == kind;
+}
 
 static double mean_stress(const mpsi_columns *p, int64_t k) {
   return (p->s[0][k] + p->s[1][k] + p->s[2][k]) * (1.0 / 3.0);
@@ -53,10 +76,11 @@ static double bulk_of(const mpsi_columns *p, int64_t k) {
 
 /* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
  * without lateral strain; none where it is open. */
-static double closed_stress(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *def,
-                            int64_t k, double *slope) {
+MPSI_INLINE double closed_stress(const mpsi_grid *grid, const mpsi_columns *p,
+                                 const mps_mpm_def *def, filtered_kind kind, int64_t k,
+                                 double *slope) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
-  const double gap = *gap_of(law, k), density = p->m[k] / p->V[k];
+  const double gap = kind == FLUID ? 0.0 : *gap_of(law, k), density = p->m[k] / p->V[k];
   const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * grid->cell;
   for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
   return mean_stress(p, k) + bulk_of(p, k) * gap;
@@ -69,8 +93,9 @@ static double made_stress(const mpsi_columns *p, int64_t k) {
 }
 
 /* r: of the difference `off` from the nodes' mean; `made`, the nodes' mean of K dg. */
-static double find_rough_part(const mpsi_grid *grid, const mpsi_columns *p, double dt, int64_t k,
-                              double off, double made) {
+MPSI_INLINE double find_rough_part(const mpsi_grid *grid, const mpsi_columns *p, double dt,
+                                   filtered_kind kind, int64_t k, double off, double made) {
+  if (kind == FLUID) return off;
   const double modulus = mpsi_law_of(p, k)->modulus * mpsi_mpm_stiffness(p, k);
   const double wave = sqrt(modulus * p->V[k] / p->m[k]);
   const double decay = fmin(1.0, EVERY * BETA * wave * grid->inverse * dt);
@@ -196,74 +221,49 @@ typedef enum loop {
 } loop;
 
 MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                          int dim, int spline, bool thin, loop which) {
+                          int dim, int spline, bool thin, filtered_kind kind, loop which) {
   double *rough = mpm->p.rough;
   double slope[3];
   axes all;
   support s;
   find_axes(&mpm->grid, cells, &all);
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (!is_filtered(&mpm->p, k)) continue;
+    if (!is_filtered(&mpm->p, k, kind)) continue;
     find_support(mpm, cells, &all, dim, spline, thin, k, &s);
     const double closed = which == SUM_STRESS || which == FIND_ROUGH
-                              ? closed_stress(&mpm->grid, &mpm->p, &mpm->def, k, slope)
+                              ? closed_stress(&mpm->grid, &mpm->p, &mpm->def, kind, k, slope)
                               : 0.0;
     if (which == SUM_STRESS)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope, made_stress(&mpm->p, k));
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope,
+           kind == FLUID ? 0.0 : made_stress(&mpm->p, k));
     else if (which == SUM_ROUGH)
       give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL, 0.0);
     else if (which == FIND_ROUGH)
-      rough[k] = find_rough_part(&mpm->grid, &mpm->p, mpm->run.dt, k,
-                                 closed + rise(dim, spline, &s, slope) -
-                                     take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE),
-                                 take(worker, dim, spline, thin, &s, MPSI_SUM_FLOW));
+      rough[k] =
+          find_rough_part(&mpm->grid, &mpm->p, mpm->run.dt, kind, k,
+                          closed + rise(dim, spline, &s, slope) -
+                              take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE),
+                          kind == FLUID ? 0.0 : take(worker, dim, spline, thin, &s, MPSI_SUM_FLOW));
     else
       rough[k] -= take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE);
   }
 }
 
-MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, loop which) {
+MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, filtered_kind kind,
+                             loop which) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   const int dim = mpm->grid.dim, spline = mpm->grid.spline;
   if (dim == 2 && !cells->thin && spline == 2)
-    run_loop(mpm, cells, worker, 2, 2, false, which);
+    run_loop(mpm, cells, worker, 2, 2, false, kind, which);
   else if (dim == 2 && !cells->thin)
-    run_loop(mpm, cells, worker, 2, 3, false, which);
+    run_loop(mpm, cells, worker, 2, 3, false, kind, which);
   else if (dim == 3 && !cells->thin && spline == 2)
-    run_loop(mpm, cells, worker, 3, 2, false, which);
+    run_loop(mpm, cells, worker, 3, 2, false, kind, which);
   else if (dim == 3 && !cells->thin)
-    run_loop(mpm, cells, worker, 3, 3, false, which);
+    run_loop(mpm, cells, worker, 3, 3, false, kind, which);
   else
-    run_loop(mpm, cells, worker, dim, spline, true, which);
-}
-
-static void sum_stress(void *data, int64_t b, int32_t number) {
-  mps_mpm *mpm = data;
-  mpsi_clear_sums(&mpm->grid, b, number);
-  choose_loop(mpm, b, number, SUM_STRESS);
-}
-
-static void sum_rough(void *data, int64_t b, int32_t number) {
-  mps_mpm *mpm = data;
-  mpsi_clear_sums(&mpm->grid, b, number);
-  choose_loop(mpm, b, number, SUM_ROUGH);
-}
-
-static void add_stress(void *data, int64_t b, int32_t worker) {
-  mps_mpm *mpm = data;
-  mpsi_add_sums(mpm, b, worker, sum_stress);
-}
-
-static void add_rough(void *data, int64_t b, int32_t worker) {
-  mps_mpm *mpm = data;
-  mpsi_add_sums(mpm, b, worker, sum_rough);
-}
-
-static void find_rough(void *data, int64_t b, int32_t number) {
-  mps_mpm *mpm = data;
-  gather_means(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number]);
-  choose_loop(mpm, b, number, FIND_ROUGH);
+    run_loop(mpm, cells, worker, dim, spline, true, kind, which);
 }
 
 /* ---- stresses -------------------------------------------------------------------------------- */
@@ -287,26 +287,92 @@ static void change_stress(const mpsi_columns *p, int64_t k) {
   if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
 }
 
-static void filter_stress(void *data, int64_t b, int32_t number) {
-  mps_mpm *mpm = data;
+/* The same for a fluid, whose state is its volume. One without tension bears none. */
+static void change_pressure(const mpsi_columns *p, int64_t k) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  const double was = mean_stress(p, k);
+  const double now = fmin(was - p->rough[k], fmax(was, 0.0));
+  const double J = mpsi_material_fluid_volume(law->material, -now);
+  if (!(J > 0.0 && isfinite(J))) return; /* tension that no volume has */
+  for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
+  p->V[k] *= J / p->J[k];
+  p->J[k] = J;
+}
+
+static void change(mps_mpm *mpm, const mpsi_cell_block *cells, filtered_kind kind, int64_t begin,
+                   int64_t end) {
+  for (int64_t k = begin; k < end; k++)
+    if (is_filtered(&mpm->p, k, kind) && kind == FLUID)
+      change_pressure(&mpm->p, k);
+    else if (is_filtered(&mpm->p, k, kind))
+      change_stress(&mpm->p, k);
+  if (kind == SAND) mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
+}
+
+static void change_block(mps_mpm *mpm, int64_t b, filtered_kind kind) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  gather_means(&mpm->grid, cells, &mpm->grid.workers[number]);
-  choose_loop(mpm, b, number, FIND_SMOOTH);
   for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
     end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
     mpsi_before_law before;
     if (mpm->energy.counts) mpsi_mpm_energy_before_law(&mpm->grid, &mpm->p, begin, end, &before);
-    for (int64_t k = begin; k < end; k++)
-      if (is_filtered(&mpm->p, k)) change_stress(&mpm->p, k);
-    mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
+    change(mpm, cells, kind, begin, end);
     if (mpm->energy.counts)
       mpsi_mpm_energy_smoothed(&mpm->grid, &mpm->p, &mpm->energy, cells, &before, begin, end);
   }
+}
+
+/* ---- the passes ------------------------------------------------------------------------------ */
+
+/* The tasks of the four loops over a block, for each kind: all that a pass hands them is the solver
+ * and the block. */
+#define DEFINE_TASKS(kind, KIND)                                                                   \
+  static void sum_stress_of_##kind(void *data, int64_t b, int32_t number) {                        \
+    sum(data, b, number, KIND, SUM_STRESS);                                                        \
+  }                                                                                                \
+  static void sum_rough_of_##kind(void *data, int64_t b, int32_t number) {                         \
+    sum(data, b, number, KIND, SUM_ROUGH);                                                         \
+  }                                                                                                \
+  static void add_stress_of_##kind(void *data, int64_t b, int32_t number) {                        \
+    mpsi_add_sums(data, b, number, sum_stress_of_##kind);                                          \
+  }                                                                                                \
+  static void add_rough_of_##kind(void *data, int64_t b, int32_t number) {                         \
+    mpsi_add_sums(data, b, number, sum_rough_of_##kind);                                           \
+  }                                                                                                \
+  static void find_rough_of_##kind(void *data, int64_t b, int32_t number) {                        \
+    find_rough(data, b, number, KIND);                                                             \
+  }                                                                                                \
+  static void filter_##kind(void *data, int64_t b, int32_t number) {                               \
+    filter_stress(data, b, number, KIND);                                                          \
+  }
+
+MPSI_INLINE void sum(mps_mpm *mpm, int64_t b, int32_t number, filtered_kind kind, loop which) {
+  mpsi_clear_sums(&mpm->grid, b, number);
+  choose_loop(mpm, b, number, kind, which);
+}
+
+MPSI_INLINE void find_rough(mps_mpm *mpm, int64_t b, int32_t number, filtered_kind kind) {
+  gather_means(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number]);
+  choose_loop(mpm, b, number, kind, FIND_ROUGH);
+}
+
+MPSI_INLINE void filter_stress(mps_mpm *mpm, int64_t b, int32_t number, filtered_kind kind) {
+  gather_means(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number]);
+  choose_loop(mpm, b, number, kind, FIND_SMOOTH);
+  change_block(mpm, b, kind);
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
   mpm->kernels->speed(&work);
 }
 
+DEFINE_TASKS(sand, SAND)
+DEFINE_TASKS(fluid, FLUID)
+
 void mpsi_mpm_filter(mps_mpm *mpm) {
-  mpsi_run_sums(mpm, sum_stress, add_stress, find_rough);
-  mpsi_run_sums(mpm, sum_rough, add_rough, filter_stress);
+  if (filters(&mpm->p, &mpm->run, SAND)) {
+    mpsi_run_sums(mpm, sum_stress_of_sand, add_stress_of_sand, find_rough_of_sand);
+    mpsi_run_sums(mpm, sum_rough_of_sand, add_rough_of_sand, filter_sand);
+  }
+  if (filters(&mpm->p, &mpm->run, FLUID)) {
+    mpsi_run_sums(mpm, sum_stress_of_fluid, add_stress_of_fluid, find_rough_of_fluid);
+    mpsi_run_sums(mpm, sum_rough_of_fluid, add_rough_of_fluid, filter_fluid);
+  }
 }
