@@ -24,6 +24,7 @@ typedef struct settings {
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
   double h, mu, corner, rate, half_width, k, settlement; /* m, 1, cells, m/s, m, N/m, m */
+  double flip_time; /* s */
   int64_t ppc, threads;
   bool settled; /* --quasi-static */
   mpm_course_options course;

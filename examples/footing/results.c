@@ -141,6 +141,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
   json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
   json_number(&f, "h", s->h);
+  json_number(&f, "flip_time", s->flip_time);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
   json_number(&f, "rate", s->rate);
