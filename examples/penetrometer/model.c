@@ -46,8 +46,8 @@ static const char *check_tip(const pen_settings *s) {
 /* Where soil flows around the tip, what transfers take from it in each step would be a part of the
  * resistance that grows with the speed and the cell: docs/theory/transfers.md. */
 static double flip_time_of(const pen_settings *s) {
-  const bool flows = s->law == PEN_CLAY || s->law == PEN_TRESCA || s->law == PEN_SAND;
-  return flows ? s->diameter / (40.0 * s->rate) : 0.0;
+  const bool none = s->law == PEN_ELASTIC || !isnan(s->permeability);
+  return none ? 0.0 : s->diameter / (40.0 * s->rate);
 }
 
 const char *pen_check(penetrometer *p, const option *table) {
