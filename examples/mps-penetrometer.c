@@ -104,7 +104,7 @@ int main(int argc, char **argv) {
                     "change of volume: as suits the law, each particle's own, or F-bar by cell"),
       COMMON_NUMBER("courant", &s->courant, "Nakamura (49)"),
       COMMON_NUMBER("flip-time", &s->flip_time,
-                    "default diameter/(40 rate), 0 in elastic ground and where water flows"),
+                    "default diameter/(40 rate) in clay, tresca and sand, else 0"),
       OPTION_HEADING("Run"),
       OPTION_FLAG("axisymmetric", &s->axisymmetric,
                   "then the same by the axisymmetric solver, in a cylinder with the box's section"),

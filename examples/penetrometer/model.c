@@ -46,7 +46,7 @@ static const char *check_tip(const pen_settings *s) {
 /* Where soil flows around the tip, what transfers take from it in each step would be a part of the
  * resistance that grows with the speed and the cell: docs/theory/transfers.md. */
 static double flip_time_of(const pen_settings *s) {
-  const bool none = s->law == PEN_ELASTIC || !isnan(s->permeability);
+  const bool none = s->law == PEN_ELASTIC || s->law == PEN_CAM_CLAY;
   return none ? 0.0 : s->diameter / (40.0 * s->rate);
 }
 
