@@ -578,10 +578,8 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("h", &s->h, "default width/20"),
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
-      OPTION_NUMBER("flip-time", "s", OPTION_FROM_TO(0.0, 1e6), &s->flip_time,
-                    "time in which a particle loses what the nodes do not represent of its "
-                    "velocity; 0: at each step, which takes energy out of the flow; try "
-                    "(H0/g)^1/2/10"),
+      COMMON_NUMBER("flip-time", &s->flip_time,
+                    "which takes energy out of the flow; try (H0/g)^1/2/10"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->falls,
                     "where the run ends, if the column does not come to rest before"),

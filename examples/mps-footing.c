@@ -3,7 +3,7 @@
  * circle (Tresca) 5.69 c and 6.05 c; ground with friction and weight (Drucker-Prager) against the
  * method of characteristics.
  *
- * Half of it is computed: x = 0 is the line of symmetry.
+ * Half of it is computed: x = 0 is the line of symmetry. Under an eccentric load all of it is.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "footing/footing.h"
 
@@ -57,6 +57,8 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Footing"),
       OPTION_CHOICE("shape", "strip|circle", &s->shape, "circle: axisymmetry; cohesive ground"),
       OPTION_NUMBER("half-width", "m", OPTION_LENGTH, &s->half_width, "B/2; radius of a circle"),
+      OPTION_NUMBER("eccentricity", "m", OPTION_FROM_TO(0.0, 1e3), &s->eccentricity,
+                    "of the load on a strip, which is free to turn about its line; von Mises"),
       COMMON_NUMBER("friction", &s->mu, "of its base"),
       COMMON_NUMBER("corner", &s->corner, NULL),
       COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
@@ -71,6 +73,7 @@ int main(int argc, char **argv) {
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
       COMMON_CHOICE("volumetric", &s->volumetric, "for ground that hardly changes its volume"),
+      COMMON_NUMBER("flip-time", &s->flip_time, "and while the ground comes to rest"),
       OPTION_HEADING("Run"),
       OPTION_FLAG("quasi-static", &s->settled,
                   "the ground comes to rest after each of 30 parts of the path: less inertia in "

@@ -61,6 +61,7 @@ int main(int argc, char **argv) {
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
       COMMON_NUMBER("courant", &s->courant, "Nakamura (49)"),
+      COMMON_NUMBER("flip-time", &s->flip_time, NULL),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("rest", "s", OPTION_FROM_TO(0.0, 1e6), &s->rest,
                     "time before the pile moves, to see whether the soil rests"),

@@ -105,6 +105,7 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("h", &s->h, "default height/16"),
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
+      COMMON_NUMBER("flip-time", &s->flip_time, NULL),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, WALL_SAMPLES),
       OPTION_OUT(&s->out),

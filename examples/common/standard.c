@@ -56,6 +56,9 @@ static const struct {
     {"disturb", "spacings", OPTION_FROM_TO(0.0, 0.2),
      "random displacement of the water's particles at the start, at most"},
     {"courant", "1", OPTION_FROM_TO(1e-3, 1.0), "time step over the stability limit"},
+    {"flip-time", "s", OPTION_FROM_TO(0.0, 1e6),
+     "time in which a particle loses what the nodes do not represent of its velocity; 0: at each "
+     "step"},
     {"dt", "s", OPTION_DURATION, "time step"},
     {"integrator", "verlet|leapfrog|euler", NONE, "time integration"},
     {"rotation", "mean-matrix|mean-angle", NONE, "how the rigid rotation of a pair is removed"},

@@ -18,12 +18,14 @@ typedef struct settings {
   double cohesion, young;   /* Pa */
   double gradient;          /* Pa/m, growth of the cohesion with depth */
   double surcharge;         /* Pa, on the ground beside the footing */
+  double eccentricity;      /* m, of the load's line from the middle of a strip */
   double tolerance;         /* of the ground at rest, in the second half of the path */
   double top, top_cohesion; /* m, Pa: of an upper layer; 0: none */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
   double h, mu, corner, rate, half_width, k, settlement; /* m, 1, cells, m/s, m, N/m, m */
+  double flip_time;                                      /* s */
   int64_t ppc, threads;
   bool settled; /* --quasi-static */
   mpm_course_options course;
@@ -50,6 +52,8 @@ typedef struct footing_unit {
 footing_unit footing_unit_of(const settings *s);
 /* A layer on rigid rough ground that is thinner than a mechanism is deep. */
 bool footing_is_thin(const settings *s);
+/* The load is eccentric: both halves are computed. */
+bool footing_is_whole(const settings *s);
 
 /* Fills in what depends on the model. Returns why settings are not consistent; NULL: good. */
 const char *footing_settle(settings *s, const option *table);

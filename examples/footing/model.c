@@ -13,7 +13,9 @@
 #define DEGREE (3.14159265358979323846 / 180.0)
 #define TOLERANCE 2e-3 /* of the ground at rest, on the way */
 #define SETTLE_STEPS 200000
-#define RAMP 0.1 /* s to full speed at the paper's rate; the same path at others */
+#define CONCRETE 2400.0 /* kg/m3: of a strip that turns */
+#define HEAVY 1e15      /* kg/m: nothing changes the speed of such a strip */
+#define RAMP 0.1        /* s to full speed at the paper's rate; the same path at others */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -31,6 +33,17 @@ static double faster(const settings *s) {
   return fmin(60.0, fmax(1.0, times));
 }
 
+static const char *check_eccentricity(const settings *s) {
+  if (s->eccentricity == 0.0) return NULL;
+  if (s->model == DRUCKER_PRAGER || s->shape == CIRCLE || s->top > 0.0 || s->gradient > 0.0 ||
+      footing_is_thin(s))
+    return "--eccentricity is for a strip on even, deep ground of --model vonmises";
+  if (s->settled) return "--eccentricity and --quasi-static exclude each other";
+  if (s->eccentricity > s->half_width - 2.0 * s->h * (1.0 - 1e-9))
+    return "--eccentricity must be at least 2 cells of --h less than --half-width";
+  return NULL;
+}
+
 const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
   double *const sides[] = {&s->width, &s->depth};
@@ -42,8 +55,11 @@ const char *footing_settle(settings *s, const option *table) {
   if (cone && s->shape == CIRCLE) return "--shape circle is for --model vonmises";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
-  const char *large = mpm_model_too_large(s->width * s->depth / (s->h * s->h) * (double)s->ppc);
+  const double cells = (footing_is_whole(s) ? 2.0 : 1.0) * s->width * s->depth / (s->h * s->h);
+  const char *large = mpm_model_too_large(cells * (double)s->ppc);
   if (large) return large;
+  const char *eccentric = check_eccentricity(s);
+  if (eccentric) return eccentric;
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
   if (!s->settled && options_given(table, "tolerance")) return "--tolerance is for --quasi-static";
   const bool grows = s->gradient > 0.0, layer = !cone && s->shape == STRIP && !grows;
@@ -71,6 +87,8 @@ const char *footing_settle(settings *s, const option *table) {
   return NULL;
 }
 
+bool footing_is_whole(const settings *s) { return s->eccentricity > 0.0; }
+
 bool footing_is_thin(const settings *s) { return s->depth < 1.5 * s->half_width * (1.0 - 1e-9); }
 
 footing_unit footing_unit_of(const settings *s) {
@@ -84,9 +102,27 @@ footing_unit footing_unit_of(const settings *s) {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
+/* A strip that keeps its speed, whatever the reaction, and turns by the moment about the load's line,
+ * where its reference point is. */
+static mps_status make_turning(mps_context *context, const settings *s, simulation *sim) {
+  const double a = s->half_width, e = s->eccentricity, high = s->half_width;
+  const double corner[8] = {-a - e, -0.5 * high, a - e,  -0.5 * high,
+                            a - e,  0.5 * high,  -a - e, 0.5 * high};
+  mps_body_def def = mps_body_defaults();
+  sim->ramp = 0.0;
+  sim->t_end = s->settlement / s->rate;
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.position[0] = e, def.position[1] = s->depth + 0.5 * high;
+  def.velocity[1] = -s->rate;
+  def.mass = HEAVY;
+  def.inertia[2] = CONCRETE * 2.0 * a * high * ((4.0 * a * a + high * high) / 12.0 + e * e);
+  return mps_body_create_polygon(context, &def, 4, corner, &sim->m.body[0]);
+}
+
 /* Speed up over the ramp, then constant until the settlement is reached. */
 static mps_status make_footing(mps_context *context, const settings *s, simulation *sim) {
   const double speed = s->rate;
+  if (footing_is_whole(s)) return make_turning(context, s, sim);
   sim->ramp = RAMP * fmin(1.0, 0.5e-3 / s->rate);
   sim->t_end = s->settlement / speed + 0.5 * sim->ramp;
   const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, speed, speed};
@@ -137,7 +173,7 @@ static mps_status set_stress(mps_particles *set, const settings *s) {
 }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
-  const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->depth};
+  const double lo[2] = {footing_is_whole(s) ? -s->width : 0.0, 0.0}, hi[2] = {s->width, s->depth};
   mps_particles_def def = mps_particles_defaults();
   def.spacing = s->h / sqrt((double)s->ppc);
   mps_status status = mpm_model_particles(m, context, &def);
@@ -247,7 +283,9 @@ mps_status footing_build(mps_context *context, void *user) {
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
-  def.lower[0] = def.lower[1] = 0.0;
+  def.flip_time = s->flip_time;
+  def.lower[0] = footing_is_whole(s) ? -s->width : 0.0;
+  def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -s->gravity;
   if (status == MPS_OK) status = make_footing(context, s, sim);
@@ -261,9 +299,11 @@ mps_status footing_build(mps_context *context, void *user) {
   return status;
 }
 
-/* Area of the base that the force of the model acts on: half a strip 1 m long, or the circle. */
+/* Area of the base that the force of the model acts on: half a strip 1 m long, all of it under an
+ * eccentric load, or the circle. */
 static double footing_area(const settings *s) {
-  return s->shape == CIRCLE ? 180.0 * DEGREE * s->half_width * s->half_width : s->half_width;
+  if (s->shape == CIRCLE) return 180.0 * DEGREE * s->half_width * s->half_width;
+  return footing_is_whole(s) ? 2.0 * s->half_width : s->half_width;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */

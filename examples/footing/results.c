@@ -75,6 +75,8 @@ static void find_cohesive_limits(const settings *s, capacity *c) {
     c->smooth = NAN;
     c->exact = s->mu >= 1.0 ? c->rough : NAN;
   }
+  if (footing_is_whole(s)) /* G. G. Meyerhof (1953): the width B - 2 e bears, without tension */
+    c->smooth = c->rough = c->exact = (2.0 + PI) * (1.0 - s->eccentricity / s->half_width);
   if (s->shape == STRIP) return;
   c->smooth = 5.69, c->rough = 6.05;
   c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
@@ -141,9 +143,16 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
   json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
   json_number(&f, "h", s->h);
+  json_number(&f, "flip_time", s->flip_time);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
   json_number(&f, "rate", s->rate);
+  if (footing_is_whole(s)) {
+    mps_body_state body;
+    json_number(&f, "eccentricity", s->eccentricity);
+    if (mps_body_get_state(sim->m.body[0], &body) == MPS_OK)
+      json_number(&f, "turned", body.rotation[2] * 180.0 / PI); /* degrees, anticlockwise */
+  }
   json_text(&f, "loading", s->settled ? "quasi-static" : "steady");
   json_number(&f, "q_over_c", c->last);
   json_number(&f, "q_over_c_undeformed", c->undeformed);
@@ -189,9 +198,10 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   const bool circle = s->shape == CIRCLE;
   if (!cone && !circle)
     draw_limit(&f, scale * c->exact, "--",
-               s->gradient > 0.0    ? "characteristics"
-               : footing_is_thin(s) ? "Meyerhof, Chaplin"
-                                    : "Prandtl");
+               s->gradient > 0.0     ? "characteristics"
+               : footing_is_whole(s) ? "Meyerhof, B - 2 e"
+               : footing_is_thin(s)  ? "Meyerhof, Chaplin"
+                                     : "Prandtl");
   if (circle && c->exact != c->rough)
     draw_limit(&f, scale * c->smooth, "--", "smooth base, Shield");
   if (circle && c->exact != c->smooth)
@@ -207,7 +217,7 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
 /* `user`: the corner of the footing, m. */
 static bool in_footing(const void *user, double x, double y) {
   const double *corner = user;
-  return x < corner[0] && y > corner[1];
+  return fabs(x) < corner[0] && y > corner[1];
 }
 
 /* shear_bands.bin: the plastic strain. */
@@ -244,8 +254,9 @@ static bool image_bands(app *a, const settings *s, const simulation *sim, const 
 /* The mechanism reaches farther in frictional ground. */
 static bool draw_bands(app *a, const settings *s, const simulation *sim) {
   const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
-  const double lower[2] = {0.0, fmax(0.0, s->depth - 3.0 * s->half_width)};
   const double upper[2] = {fmin(s->width, wide * s->half_width), top};
+  const double left = footing_is_whole(s) ? -upper[0] : 0.0;
+  const double lower[2] = {left, fmax(0.0, s->depth - 3.0 * s->half_width)};
   area image;
   if (!image_bands(a, s, sim, lower, upper, &image)) return false;
   output f;
@@ -254,9 +265,10 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
   output_text(&f,
               "set title 'Plastic strain (-)'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
               "set size ratio -1\nset palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')\n"
-              "set xrange [0:%.9g]\nset yrange [%.9g:%.9g]\n"
-              "set object 1 rectangle from 0,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n",
-              upper[0], lower[1], top, s->depth - sim->path[sim->rows - 1], s->half_width, top);
+              "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
+              "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n",
+              left, upper[0], lower[1], top, fmax(left, -s->half_width),
+              s->depth - sim->path[sim->rows - 1], s->half_width, top);
   plot_colours(&f, 0.0, 0.5 * sim->strain, image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "shear_bands.bin", &image, 1.0, 1.0);
@@ -292,11 +304,12 @@ static void print(const settings *s, const capacity *c) {
   }
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
-           footing_is_thin(s)  ? "thin layer, rough base"
-           : s->gradient > 0.0 ? "characteristics"
-           : s->shape == STRIP ? "Prandtl"
-           : s->mu > 0.0       ? "rough base"
-                               : "smooth base",
+           footing_is_thin(s)    ? "thin layer, rough base"
+           : footing_is_whole(s) ? "Meyerhof, B - 2 e"
+           : s->gradient > 0.0   ? "characteristics"
+           : s->shape == STRIP   ? "Prandtl"
+           : s->mu > 0.0         ? "rough base"
+                                 : "smooth base",
            c->exact, 100.0 * (c->last / c->exact - 1.0));
     return;
   }

@@ -43,8 +43,16 @@ static const char *check_tip(const pen_settings *s) {
   return NULL;
 }
 
+/* Where soil flows around the tip, what transfers take from it in each step would be a part of the
+ * resistance that grows with the speed and the cell: docs/theory/transfers.md. */
+static double flip_time_of(const pen_settings *s) {
+  const bool none = s->law == PEN_ELASTIC || s->law == PEN_CAM_CLAY;
+  return none ? 0.0 : s->diameter / (40.0 * s->rate);
+}
+
 const char *pen_check(penetrometer *p, const option *table) {
   pen_settings *s = &p->s;
+  if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   const char *reason = check_tip(s);
   if (reason) return reason;
   double *const sides[] = {&s->width, &s->breadth, &s->height};
@@ -112,6 +120,7 @@ static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   def.spline = s->spline + 2;
   def.volumetric = volumetric_of(s);
   def.courant = s->courant;
+  def.flip_time = s->flip_time;
   for (int c = 0; c <= up; c++) {
     def.lower[c] = lower_of(p, r, c);
     if (c == up) continue;

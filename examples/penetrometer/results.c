@@ -86,6 +86,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_text(f, "law", laws[s->law]);
   json_text(f, "geometry", p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric");
   json_number(f, "h", s->h);
+  json_number(f, "flip_time", s->flip_time);
   json_number(f, "diameter", s->diameter);
   json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);

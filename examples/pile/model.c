@@ -151,6 +151,7 @@ mps_status pile_build(mps_context *context, void *user) {
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.courant = s->courant;
+  def.flip_time = s->flip_time;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -PILE_GRAVITY;

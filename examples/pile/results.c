@@ -85,6 +85,7 @@ static bool write_load(app *a, const pile *p) {
 static void write_settings(output *f, const pile *p) {
   const pile_settings *s = &p->s;
   json_number(f, "h", s->h);
+  json_number(f, "flip_time", s->flip_time);
   json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);
   json_number(f, "phi", s->phi);

@@ -159,6 +159,7 @@ mps_status wall_build(mps_context *context, void *user) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.spline = s->spline + 2;
+  def.flip_time = s->flip_time;
   def.gravity[1] = -s->gravity;
   def.lower[0] = -s->front, def.lower[1] = 0.0;
   def.upper[0] = s->length;

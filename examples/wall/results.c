@@ -119,6 +119,7 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
+  json_number(&f, "flip_time", s->flip_time);
   json_number(&f, "K", p->across);
   json_number(&f, "K_along", p->along);
   json_number(&f, "K_resultant", hypot(p->across, p->along));

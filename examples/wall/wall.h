@@ -31,6 +31,7 @@ typedef struct settings {
   int layers; /* 1: of the options */
   wall_layer layer[WALL_LAYERS];
   const char *layers_file;
+  double flip_time; /* s */
   int64_t ppc, threads;
   int spline; /* degree of the weights less 2 */
   mpm_course_options course;

@@ -28,6 +28,15 @@ grep -q "was made with other options" "$work/log" || fail "which option differs"
 has "$work/log" "characteristics"
 in_range "$work/grows/summary.json" q_exact 7.818 7.82
 in_range "$work/grows/summary.json" q_over_c 7.4 8.4
+# A load a fifth of the width off the middle is borne by B - 2 e, and the strip turns to its side; a run that goes on is the whole run.
+off="--eccentricity 0.2 --domain 3x1 --rate 5mm/s --flip-time 10ms --settlement 0.4mm"
+"$1/mps-footing" $off --threads 1 --checkpoint "$work/off.h5" --out "$work/off" >"$work/log"
+has "$work/log" "Meyerhof, B - 2 e"
+in_range "$work/off/summary.json" q_exact 3.0849 3.085
+in_range "$work/off/summary.json" q_over_c 2.93 3.24
+in_range "$work/off/summary.json" turned -0.2 -0.02
+"$1/mps-footing" $off --threads 2 --restart "$work/off.h5" --out "$work/off2" >/dev/null
+cmp "$work/off/pressure.csv" "$work/off2/pressure.csv" || fail "the eccentric run that went on"
 # Ten times the cohesion is borne after ten times the path, by default; a path too short for it is warned of.
 "$1/mps-footing" --cohesion 100kPa --quasi-static --h 0.125 --domain 2x1.25 --threads 1 --out "$work/strong" >"$work/log" 2>&1
 in_range "$work/strong/summary.json" q_over_c 5.0 5.5

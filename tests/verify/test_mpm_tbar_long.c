@@ -50,6 +50,7 @@ static mpm_scene make_clay(double cell) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = cell;
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  def.flip_time = DIAMETER / (40.0 * SPEED);
   def.lower[0] = -SOIL, def.lower[1] = 0.0;
   def.upper[0] = def.upper[1] = SOIL;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
@@ -80,28 +81,23 @@ static double resistance(double cell, double alpha) {
   return 2.0 * (half.impulse[0] - all.impulse[0]) / (0.5 * WAY / SPEED) / (COHESION * DIAMETER);
 }
 
-/* At D/16 the resistance is within 6 %, and with it what the strength adds to the smooth bar's
- * within 15 %; that of the smooth bar, which lets soil flow nearest to it, is farthest off. */
+/* The resistance is within 3 % at D/8 and D/16 (within 14 and 5 % where each transfer takes what the
+ * nodes do not represent), and at D/16 what the strength adds to the smooth bar's within 15 %. */
 static void bars_are_drawn(void **state) {
   (void)state;
   const double alpha[] = {0.0, 0.5, 1.0};
-  double error[2][3];
   for (int r = 0; r < 2; r++) {
     double smooth = 0.0;
     for (int k = 0; k < 3; k++) {
       const double N = resistance(DIAMETER / (8 << r), alpha[k]), more = exact(alpha[k]) - exact(0);
       if (k == 0) smooth = N;
-      error[r][k] = N / exact(alpha[k]) - 1.0;
+      mps_assert_near(N / exact(alpha[k]), 1.0, 0.03);
       print_message("T-bar, alpha %g, D/%d: N = %.4f of %.4f\n", alpha[k], 8 << r, N,
                     exact(alpha[k]));
       if (k == 0) continue;
       print_message("  over the smooth one: %.4f of %.4f\n", N - smooth, more);
       if (r == 1) mps_assert_near((N - smooth) / more, 1.0, 0.15);
     }
-  }
-  for (int k = 0; k < 3; k++) {
-    mps_assert_near(error[1][k], 0.0, 0.06);
-    assert_true(error[1][k] < 0.6 * error[0][k]);
   }
 }
 
