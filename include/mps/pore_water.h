@@ -70,8 +70,7 @@ static inline mps_pore_water_def mps_pore_water_defaults(void) {
  *  `pore_pressure` (where the set has none: 0). The limit of the step follows at once: waves with K
  *  + 4G/3 + K_w/n, and where water flows 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever
  *  `courant`; with implicit pressures it is that of dry ground, and steps may fail with
- *  MPS_ERROR_NUMERIC where these are not found; a warning is logged where they lag by more than 300
- *  steps, and in undrained ground. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a
+ *  MPS_ERROR_NUMERIC where these are not found. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a
  *  member of `def` or a field out of range (the message names the particle), a density below that
  *  of the water in the pores, a law without a modulus at rest and no `bulk`, or a fixed dt above
  *  the new limit; MPS_ERROR_STATE: the solver has taken steps or has water already;

@@ -263,7 +263,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_add_pore_water(s.mpm, &def));
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
   TRY(mps_mpm_set_pore_level(s.mpm, level));
-  if (what == NO_SOLUTION) TRY(mps_mpm_step(s.mpm, 1));
+  if (what == NO_SOLUTION) TRY(mps_mpm_step(s.mpm, 2));
   TRY(mps_mpm_get_pore_flow(s.mpm, what == OTHER_NUMBER && rank == 2 ? 0 : -1, NULL, &mass));
   end_scene(&s);
   return status;

@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
-#include "test_journal.h"
 
 #include <mps/contact.h>
 #include <mps/mpm_settle.h>
@@ -246,33 +245,6 @@ static void undrained_ground_settles(void **state) {
   settles_undrained(MPS_PORE_SCHEME_IMPLICIT);
 }
 
-/* Steps of undrained ground and of such that hardly drains are warned of with implicit pressures,
- * once; settling of undrained ground, which takes explicit ones, is not, nor is ground that drains.
- */
-static void implicit_is_for_flow(void **state) {
-  (void)state;
-  static const double permeability[] = {NAN, 1e-9, 1e-4};
-  static const char *const word[] = {"undrained", "least permeable", NULL};
-  for (int ground = 0; ground < 3; ground++) {
-    const bool flows = !isnan(permeability[ground]);
-    journal log = {0};
-    mps_context *own = journal_context(&log, NULL);
-    pore_column c = pore_column_begin(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
-    mps_pore_water_def def = mps_pore_water_defaults();
-    def.porosity = 0.4, def.scheme = MPS_PORE_SCHEME_IMPLICIT;
-    def.permeability = permeability[ground];
-    mps_assert_ok(own, mps_mpm_add_pore_water(c.s.mpm, &def));
-    if (!flows) mps_assert_ok(own, mps_mpm_settle(c.s.mpm, NULL, NULL));
-    assert_int_equal(log.count, 0);
-    mps_assert_ok(own, mps_mpm_step(c.s.mpm, 2));
-    mps_assert_ok(own, mps_mpm_step(c.s.mpm, 2));
-    assert_int_equal(log.count, word[ground] ? 1 : 0);
-    if (word[ground]) assert_non_null(strstr(log.last, word[ground]));
-    mpm_scene_end(&c.s);
-    mps_context_destroy(&own);
-  }
-}
-
 /* Water at a pressure of its own leaves through the surface, but not where a body lies on it. */
 static void lets_water_out(bool lid, int32_t scheme) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 8.0, 0.0, 10.0);
@@ -314,7 +286,6 @@ int main(void) {
       cmocka_unit_test(definitions_are_checked),  cmocka_unit_test(fields_are_checked),
       cmocka_unit_test(faces_are_checked),        cmocka_unit_test(threads_change_no_bit),
       cmocka_unit_test(restarts_change_no_bit),   cmocka_unit_test(implicit_steps_are_long),
-      cmocka_unit_test(undrained_ground_settles), cmocka_unit_test(bodies_are_impervious),
-      cmocka_unit_test(implicit_is_for_flow)};
+      cmocka_unit_test(undrained_ground_settles), cmocka_unit_test(bodies_are_impervious)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

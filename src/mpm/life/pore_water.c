@@ -103,14 +103,6 @@ static mps_status find_bulk(mps_context *context, const mpsi_columns *p, double 
   return MPS_OK;
 }
 
-/* Largest rho_w g/(k rho) of the particles (1/s), which the lag of implicit pressures goes with. */
-static double find_lag(const mpsi_columns *p, const mpsi_water *water) {
-  double most = 0.0;
-  for (int64_t k = 0; p->k && k < p->count; k++)
-    most = fmax(most, water->def.density * MPS_PORE_GRAVITY * p->V[k] / (p->k[k] * p->m[k]));
-  return most;
-}
-
 /* New limit of the time step, and check of a given dt against it. */
 static mps_status renew_limit(mps_mpm *mpm) {
   mpm->p.laws.one_modulus = false;
@@ -145,14 +137,12 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
 
 /* `status`: so far on this rank. Collective. */
 static mps_status begin(mps_mpm *mpm, mps_status status) {
-  double most[2] = {0.0, 0.0}; /* of all particles: bulk modulus, lag */
-  if (status == MPS_OK) status = add_fields(mpm, &most[0]);
-  if (status == MPS_OK) most[1] = find_lag(&mpm->p, mpm->water);
-  if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 2, most);
+  double bulk = 0.0; /* of all particles */
+  if (status == MPS_OK) status = add_fields(mpm, &bulk);
+  if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 1, &bulk);
   if (status != MPS_OK) return status;
-  if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = most[0];
+  if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = bulk;
   mpm->p.K_w = mpm->water->def.bulk;
-  mpm->water->lag = most[1];
   return renew_limit(mpm);
 }
 

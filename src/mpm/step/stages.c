@@ -70,7 +70,9 @@ static void gather(void *solver, int64_t b, int32_t worker) {
 mps_status mpsi_step_predict(mps_mpm *mpm, const char *function) {
   for (int64_t b = 0; b < mpm->grid.cell_count && mpm->undo.on; b++)
     mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
-  return mpsi_pore_predict(mpm, function);
+  const mps_status status = mpsi_pore_predict(mpm, function);
+  if (status != MPS_OK) mpm->run.broken = true;
+  return status;
 }
 
 mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm) {

@@ -131,9 +131,7 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   mpsi_step_complete(mpm);
   status = mpsi_mpm_collect_block_results(mpm, function);
   if (mpm->run.broken) return status;
-  const mps_status solved = mpsi_pore_update(mpm, function);
-  if (solved != MPS_OK) mpm->run.broken = true;
-  if (solved != MPS_OK) return solved;
+  mpsi_pore_update(mpm);
   mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
   return status;
 }

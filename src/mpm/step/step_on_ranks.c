@@ -115,11 +115,8 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (refused)
     return mpsi_domain_agree(mpm->partition->domain, function, mpsi_step_refuse(mpm, function));
   mpsi_step_complete(mpm);
-  if (mpm->water && !mpsi_any_failed(&mpm->grid, mpm->partition)) {
-    status = mpsi_pore_update(mpm, function);
-    if (status != MPS_OK) mpm->run.broken = true;
-  }
-  return status != MPS_OK ? status : mpsi_mpm_collect_block_results(mpm, function);
+  if (mpm->water && !mpsi_any_failed(&mpm->grid, mpm->partition)) mpsi_pore_update(mpm);
+  return mpsi_mpm_collect_block_results(mpm, function);
 }
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {

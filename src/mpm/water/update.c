@@ -7,8 +7,6 @@
 
 #include <string.h>
 
-#define MOST_LAG 300.0 /* steps by which implicit pressures may lag without a warning */
-
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Of blocks of cells that have been laid out; those of other ranks come last. */
@@ -90,24 +88,6 @@ void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
-/* Each step takes dt^2 G^T m^-1 G d of the changes of volume for a motion to come (implicit.c).
- * Flow makes up for it, the later the less it is; without any it is missing for good. */
-static void warn_of_implicit(mps_mpm *mpm) {
-  mpsi_water *water = mpm->water;
-  const double dt = mpm->run.dt, lag = dt * dt * water->lag; /* dt: of the step before */
-  if (water->warned || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
-  if (!water->flows)
-    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
-             "implicit pressures of undrained ground are too even, beside bodies too low, by the "
-             "square of the step: take explicit ones");
-  else if (lag > MOST_LAG * dt)
-    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
-             "implicit pressures are too even, beside bodies too low, for some %.3g s after a "
-             "change, %.0f steps, where the ground is least permeable: take explicit ones",
-             lag, lag / dt);
-  water->warned = !water->flows || lag > MOST_LAG * dt;
-}
-
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status) {
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
@@ -115,7 +95,6 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
     status = mpsi_pore_make_system(mpm, function, status);
   if (status != MPS_OK) return status;
-  warn_of_implicit(mpm);
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
         c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
@@ -157,12 +136,10 @@ static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
   }
 }
 
-mps_status mpsi_pore_update(mps_mpm *mpm, const char *function) {
-  if (!mpm->water) return MPS_OK;
+void mpsi_pore_update(mps_mpm *mpm) {
+  if (!mpm->water) return;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
   mpsi_pore_flow(mpm);
-  (void)function;
   if (mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
-  return MPS_OK;
 }

@@ -61,8 +61,7 @@ enum {
 struct mpsi_water {
   mps_pore_water_def def;
   bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
-  bool flows, warned; /* warned: of the lag of implicit pressures */
-  double lag; /* 1/s, largest rho_w g/(k rho) at the start: pressures lag by dt^2 times that */
+  bool flows;
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
@@ -179,8 +178,9 @@ mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function);
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status);
 /* update.c: how the pressures are advanced from now on, with the wave speeds of the blocks. */
 void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme);
-/* update.c: after a step whose values are numbers. Collective. */
-mps_status mpsi_pore_update(mps_mpm *mpm, const char *function);
+/* update.c: after a step whose values are numbers. On several ranks a failure of the transport
+ * stays in the partition. */
+void mpsi_pore_update(mps_mpm *mpm);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
 mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
                            const char *function);
