@@ -5,23 +5,25 @@
 #include "mpm_ranks.h"
 #include "ranks_team.h"
 
-#include <mps/pore_water.h>
+#include <mps/pore_solver.h>
 
 /* Ground that falls on a corner, so that its surface crosses cells: layers in the plane, a body
- * that goes into it, a ring and a block in space. */
-enum { LAYERS, SETTLED, AROUND, BLOCK, UNDRAINED, KINDS };
+ * that goes into it, a ring and a block in space; a finer one has a coarse equation with implicit
+ * pressures. */
+enum { LAYERS, SETTLED, AROUND, BLOCK, FINE_BLOCK, UNDRAINED, KINDS };
 enum { IMPLICIT = KINDS }; /* to add to these: pressures are implicit */
 
-static int dim_here(int kind) { return kind == BLOCK ? 3 : 2; }
+static bool in_space(int kind) { return kind == BLOCK || kind == FINE_BLOCK; }
+static int dim_here(int kind) { return in_space(kind) ? 3 : 2; }
 
 static mps_mpm_def ground_def(mps_domain *domain, int kind) {
   mps_mpm_def def = mps_mpm_defaults();
   def.domain = domain;
-  def.geometry = kind == AROUND  ? MPS_MPM_GEOMETRY_AXISYMMETRIC
-                 : kind == BLOCK ? MPS_MPM_GEOMETRY_SPACE
-                                 : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.geometry = kind == AROUND   ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                 : in_space(kind) ? MPS_MPM_GEOMETRY_SPACE
+                                  : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.spline = kind == UNDRAINED ? 2 : 3;
-  def.cell = kind == BLOCK ? 0.08 : 0.04;
+  def.cell = kind == BLOCK ? 0.08 : kind == FINE_BLOCK ? 0.062 : 0.04;
   def.gravity[1] = -9.81;
   if (kind == SETTLED || kind == UNDRAINED) def.flip_time = 0.02;
   for (int c = 0; c < dim_here(kind); c++) def.lower[c] = 0.0;
@@ -31,11 +33,11 @@ static mps_mpm_def ground_def(mps_domain *domain, int kind) {
 static mps_status make_ground(mps_context *own, int kind, mps_particles **out) {
   mps_particles_def def = mps_particles_defaults();
   const double lo[3] = {kind == AROUND ? 0.0 : 0.03, 0.01, 0.03};
-  const double hi[3] = {kind == BLOCK ? 0.83 : 1.13, 0.57, 0.75};
+  const double hi[3] = {in_space(kind) ? 0.83 : 1.13, 0.57, 0.75};
   mps_view x;
   mps_edit v, k_of;
   def.dim = dim_here(kind);
-  def.spacing = kind == BLOCK ? 0.04 : 0.02;
+  def.spacing = in_space(kind) ? 0.5 * ground_def(NULL, kind).cell : 0.02;
   mps_status status = mps_particles_create(own, &def, out);
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1900.0));
@@ -127,6 +129,11 @@ static mps_status compute_wet(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_step(s.mpm, steps - steps / 2));
   mps_snapshot_destroy(&then);
   TRY(keep_wet(domain, &s, r));
+  mps_pore_report report = {0};
+  TRY(mps_mpm_get_pore_report(s.mpm, &report));
+  if (status == MPS_OK && (what == IMPLICIT + FINE_BLOCK || what == IMPLICIT + LAYERS) &&
+      report.coarse < 16)
+    status = MPS_ERROR_INTERNAL; /* with a coarse equation */
   if (status == MPS_OK && what % IMPLICIT != UNDRAINED &&
       (r->other[11] == 0.0 || r->other[13] == 0.0))
     status = MPS_ERROR_INTERNAL; /* water goes through both */
@@ -157,6 +164,9 @@ static void test_implicit_around(void **state) {
 }
 static void test_implicit_block(void **state) {
   (void)state, compare_teams(compute_wet, IMPLICIT + BLOCK, 8, true);
+}
+static void test_implicit_fine_block(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + FINE_BLOCK, 4, true);
 }
 static void test_implicit_undrained(void **state) {
   (void)state, compare_teams(compute_wet, IMPLICIT + UNDRAINED, 16, true);
@@ -283,6 +293,7 @@ int main(void) {
                                      cmocka_unit_test(test_implicit_settled),
                                      cmocka_unit_test(test_implicit_around),
                                      cmocka_unit_test(test_implicit_block),
+                                     cmocka_unit_test(test_implicit_fine_block),
                                      cmocka_unit_test(test_implicit_undrained),
                                      cmocka_unit_test(test_cut),
                                      cmocka_unit_test(test_refused_memory),
