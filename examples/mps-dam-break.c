@@ -77,6 +77,22 @@ static double pressure_at(const settings *s, double x, double y) {
   return DENSITY * G * p;
 }
 
+#define GOLDEN 0.6180339887498949
+#define STAGGER 0.98 /* the outermost particles stay inside */
+
+/* Displaces the rows of particles along the bed by parts of a spacing that are spread evenly, by
+ * the golden section. Else the columns of a lattice are still files when the water is drawn out,
+ * and there are cells between them without particles. */
+static mps_status stagger(mps_particles *water, double spacing) {
+  mps_edit x;
+  mps_status status = mps_particles_edit(water, "position", &x);
+  for (int64_t k = 0; status == MPS_OK && k < x.view.shape[0]; k++) {
+    const double part = GOLDEN * nearbyint(*mps_edit_f64(&x, k, 1) / spacing - 0.5);
+    *mps_edit_f64(&x, k, 0) += spacing * STAGGER * (part - floor(part) - 0.5);
+  }
+  return status == MPS_OK ? mps_particles_commit(water, &x) : status;
+}
+
 static mps_status fill(mps_context *context, const settings *s, simulation *sim) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->base, column_height(s)};
   const double K = DENSITY * speed_of_sound(s) * speed_of_sound(s);
@@ -85,6 +101,7 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
   mps_status status = mpm_model_particles(&sim->m, context, &set);
   mps_particles *water = sim->m.particles;
   if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
+  if (status == MPS_OK && !s->rest) status = stagger(water, set.spacing);
   if (status == MPS_OK) status = mps_particles_set(water, "density", 0, DENSITY);
   if (status == MPS_OK) status = mps_particles_set(water, "stress", 0, 0.0);
   if (status == MPS_OK) status = mps_particles_set(water, "volume_ratio", 0, 1.0);
