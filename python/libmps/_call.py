@@ -2,6 +2,7 @@
 
 import difflib
 import os
+import reprlib
 from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -208,11 +209,7 @@ class Call:
     def struct(self, kind, members, where=""):
         """A definition: its defaults, then the members given. `where` begins the error of an unknown one."""
         made = ffi.new(f"{kind.cname} *")
-        init = getattr(library, kind.cname + "_init", None)
-        if init and len(ffi.typeof(init).args) == 2:
-            status = init(made, ffi.sizeof(kind))
-            if status != 0:
-                raise Error(kind.cname + "_init", status)
+        _set_defaults(made, kind)
         fields = dict(kind.fields)
         for name in fields:  # bytes of one struct of an array: layer_size of layers
             rows = fields.get(name[:-5] + "s") if name.endswith("_size") else None
@@ -253,6 +250,11 @@ class Call:
             self.fits(name, kind, value)
             for k, item in enumerate(value):
                 getattr(made, name)[k] = self.to_c(item, kind.item, True)
+        elif kind.kind == "array" and kind.item.cname == "char":
+            text = os.fsencode(value)
+            if b"\0" in text or len(text) >= kind.length:
+                raise ValueError(f"{name!r} is {value!r}: a text of less than {kind.length} bytes without a NUL is wanted")
+            setattr(made, name, text)
         elif kind.kind == "array":
             try:
                 numbers = [float(x) for x in value]
@@ -339,6 +341,15 @@ def _is_object(kind):
     return _is_struct(kind) and kind.item.fields is None
 
 
+def _set_defaults(made, kind):
+    """The defaults of a struct that has some."""
+    name = kind.cname + "_init"
+    if name in _cdef.PARAMETERS and len(_cdef.PARAMETERS[name]) == 2:
+        status = getattr(library, name)(made, ffi.sizeof(kind))
+        if status != 0:
+            raise Error(name, status)
+
+
 def _output(kind):
     """What a trailing pointer points to, for the caller who gave none; None where that is no result."""
     if kind.kind != "pointer":
@@ -346,7 +357,9 @@ def _output(kind):
     if kind.item.kind == "pointer" and _is_object(kind.item):
         return ffi.new(f"{kind.item.cname}[1]")
     if _is_struct(kind) and kind.item.fields:
-        return ffi.new(f"{kind.item.cname}[1]")
+        made = ffi.new(f"{kind.item.cname}[1]")
+        _set_defaults(made, kind.item)  # C reads some first, as mps_checkpoint
+        return made
     if kind.item.kind == "primitive":
         return ffi.new(f"{kind.item.cname}[1]")
     return None
@@ -395,14 +408,14 @@ class _Arguments:
         try:
             return self.state.to_c(value, kind, constant)
         except (TypeError, ValueError, OverflowError) as error:
-            raise type(error)(f"{self.place()}: {word!r} is {value!r}: {error}") from error
+            raise type(error)(f"{self.place()}: {word!r} is {reprlib.repr(value)}: {error}") from error
 
     def number(self, value, kind, word):
         """Refuses what is no number where C wants one, which cffi would say without the argument's name."""
         try:
             ffi.new(f"{kind.cname} *", [] if value is None else value)  # None would be no initial value
         except (TypeError, OverflowError) as error:
-            raise type(error)(f"{self.place()}: {word!r} is {value!r}: {error}") from error
+            raise type(error)(f"{self.place()}: {word!r} is {reprlib.repr(value)}: {error}") from error
 
     def one(self, kind, word, constant, given, members):
         state = self.state

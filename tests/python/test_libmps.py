@@ -6,8 +6,10 @@ import gc
 import pickle
 import re
 import signal
+import tempfile
 import types
 import unittest
+from pathlib import Path
 
 import numpy as np
 
@@ -73,6 +75,28 @@ class Values(unittest.TestCase):
         self.assertEqual(solver.steps(), 20)
         solver.step(30)
         self.assertTrue(np.array_equal(once, sand["position"]))
+
+    @unittest.skipUnless(mps.library_has(mps.FEATURE_HDF5), "checkpoints need HDF5")
+    def test_a_file_is_the_way_on_bit_for_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "run.h5")
+            context = mps.Context(executor=mps.CONTEXT_EXECUTOR_SERIAL)
+            sand = block(context)
+            solver = falling(context, sand)
+            solver.step(20)
+            solver.save(path, {"user_key": "mine"})
+            solver.step(30)
+            other = block(context)
+            second = falling(context, other)
+            info = second.restore(path)
+            self.assertEqual((info.step, info.user_key, second.steps()), (20, "mine", 20))
+            with self.assertRaisesRegex(ValueError, "'user_key' is 'x+': a text of less than 64 bytes"):
+                solver.save(path, {"user_key": "x" * 64})
+            with self.assertRaisesRegex(TypeError, "'info' is {'user_key': 7}"):
+                solver.save(path, {"user_key": 7})
+            self.assertEqual(context.checkpoint_info(path).step, 20)
+            second.step(30)
+            self.assertTrue(np.array_equal(sand["position"], other["position"]))
 
     def test_a_law_in_python(self):
         """Linear elasticity moves the particles as the library's own does, and counts its steps."""
@@ -192,6 +216,7 @@ class Errors(unittest.TestCase):
         refused("Particles.set(): 'value' is 'x': ", sand.set, "density", 0, "x")
         refused("Particles.set(): 'value' is None: ", sand.set, "density", 0, None)
         refused("Particles.remove(): 'count' is [1]: ", sand.remove, [1])
+        refused("Particles.remove(): 'count' is array([  0,  ...97, 498, 499]): ", sand.remove, np.arange(500))
         refused("Particles.count() takes no keyword, and was given only: count()", sand.count, only=1)
         refused("'layers' is [{'thicknes': 2}]: row 0 has no member 'thicknes' (is it 'thickness'?): it has thickness, ",
                 sand.set_geostatic, layers=[{"thicknes": 2}])
