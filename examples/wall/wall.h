@@ -18,7 +18,7 @@ typedef struct settings {
   double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
   double friction, corner, path, rate, h;  /* -, cells, m, m/s, m */
   double surcharge, sheet; /* Pa on the ground behind; m of the wall below the ground in front */
-  double flip_time; /* s */
+  double flip_time;        /* s */
   int64_t ppc, threads;
   int spline; /* degree of the weights less 2 */
   mpm_course_options course;
