@@ -102,8 +102,8 @@ footing_unit footing_unit_of(const settings *s) {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-/* A strip that keeps its speed, whatever the reaction, and turns by the moment about the load's line,
- * where its reference point is. */
+/* A strip that keeps its speed, whatever the reaction, and turns by the moment about the load's
+ * line, where its reference point is. */
 static mps_status make_turning(mps_context *context, const settings *s, simulation *sim) {
   const double a = s->half_width, e = s->eccentricity, high = s->half_width;
   const double corner[8] = {-a - e, -0.5 * high, a - e,  -0.5 * high,

@@ -37,7 +37,7 @@ typedef struct pen_settings {
   double surcharge, k0, ir;                /* Pa, horizontal over vertical stress, G/su */
   double M, lambda, kappa, e0, ocr;        /* of Cam-Clay */
   double permeability;                     /* m/s; NaN: undrained */
-  double h, courant, flip_time; /* m, 1, s; NaN: by law and speed */
+  double h, courant, flip_time;            /* m, 1, s; NaN: by law and speed */
   bool axisymmetric, no_space;
   int64_t ppc, threads;
   mpm_course_options course;

@@ -23,7 +23,7 @@ typedef struct pile_settings {
   double density, young, poisson; /* kg/m3, Pa, 1 */
   double phi, psi, cohesion, k0;  /* degrees, degrees, Pa; k0 NaN: nu/(1 - nu) */
   int cone;                       /* see pile_cone */
-  double h, courant, flip_time; /* m, 1, s */
+  double h, courant, flip_time;   /* m, 1, s */
   int64_t ppc, frames, threads;
   int spline;                       /* degree of the weights less 2 */
   const char *checkpoint, *restart; /* files, NULL: none */

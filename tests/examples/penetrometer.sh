@@ -46,8 +46,13 @@ in_range "$work/w/summary.json" force_total \
 # (verification); with sharp ones 10.8.
 blunt="--axisymmetric --no-space --soil 6x6x5 --depth 0.2 --angle 120 --threads 1"
 "$1/mps-penetrometer" $blunt --out "$work/blunt" >/dev/null
-in_range "$work/blunt/summary.json" n_factor 8.7 9.6
+in_range "$work/blunt/summary.json" n_factor 8.7 9.2
 in_range "$work/blunt/summary.json" particles_inside 0 0
+# What transfers take is kept for D/(40 rate): without that the same cone bears 9.51 c.
+in_range "$work/blunt/summary.json" flip_time 0.00999999 0.01000001
+"$1/mps-penetrometer" $blunt --flip-time 0 --out "$work/blunt0" >/dev/null
+in_range "$work/blunt0/summary.json" n_factor 9.3 9.7
+in_range "$work/q/summary.json" flip_time 0 0
 "$1/mps-penetrometer" $blunt --threads 3 --out "$work/blunt3" >/dev/null
 cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give another force.csv"
 

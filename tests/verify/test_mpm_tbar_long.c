@@ -81,8 +81,9 @@ static double resistance(double cell, double alpha) {
   return 2.0 * (half.impulse[0] - all.impulse[0]) / (0.5 * WAY / SPEED) / (COHESION * DIAMETER);
 }
 
-/* The resistance is within 3 % at D/8 and D/16 (within 14 and 5 % where each transfer takes what the
- * nodes do not represent), and at D/16 what the strength adds to the smooth bar's within 15 %. */
+/* The resistance is within 3 % at D/8 and D/16 (within 14 and 5 % where each transfer takes what
+ * the nodes do not represent), and at D/16 what the strength adds to the smooth bar's within 15 %.
+ */
 static void bars_are_drawn(void **state) {
   (void)state;
   const double alpha[] = {0.0, 0.5, 1.0};
