@@ -10,30 +10,38 @@
 #define RED "#c0392b"
 #define GREY "#888888"
 
+static void draw_spectra(output *f, const simulation *sim, bool exact) {
+  output_text(f,
+              "set size 0.5,0.5\nset origin 0,0\nset logscale x\nset xrange [%.9g:*]\n"
+              "set xtics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5)\nset yrange [0:*]\n"
+              "set xlabel 'period (s)'\nset ylabel 'spectral acceleration, 5 %% (m/s^2)'\n"
+              "plot 'spectrum.csv' using 1:2 every ::1 with lines linecolor rgb '" BLUE
+              "' title 'surface', \\\n"
+              "  '' using 1:3 every ::1 with lines linecolor rgb '" RED "' title 'input'\n",
+              0.5 / sim->s.highest);
+  output_text(f,
+              "set origin 0.5,0\nunset logscale\nset xrange [0:*]\nset xtics autofreq\n"
+              "set xlabel 'frequency (Hz)'\nset ylabel 'surface over input, Fourier'\n"
+              "plot 'amplification.csv' using 1:2 every ::1 with lines linecolor rgb '" BLUE
+              "' title 'libmps'%s\nunset multiplot\n",
+              exact ? ", '' using 1:3 every ::1 with lines dashtype 2 linecolor rgb '" RED
+                      "' title 'exact'"
+                    : "");
+}
+
 static bool draw_surface(app *a, const simulation *sim, bool exact) {
   output f;
   if (!plot_open(&f, a, sim->s.out, "surface", 1100, 900)) return false;
   output_text(&f,
-              "set multiplot\nset size 1,0.48\nset origin 0,0.52\n"
-              "set xlabel 'time (s)'\nset ylabel 'acceleration (m/s^2)'\nset key top right\n"
+              "set multiplot\nset size 1,0.48\nset origin 0,0.52\nset xrange [0:%.9g]\n"
+              "set key outside top center horizontal\n"
+              "set xlabel 'time (s)'\nset ylabel 'acceleration (m/s^2)'\n"
               "plot 'surface.csv' using 1:2 every ::1 with lines linecolor rgb '" BLUE
               "' title 'surface', \\\n"
               "  '' using 1:5 every ::1 with lines linecolor rgb '" RED "' title '%s'\n",
+              sim->sample[sim->count - 1].t,
               sim->s.base == SITE_RIGID ? "base" : "outcrop of the half space");
-  output_text(
-      &f,
-      "set size 0.5,0.5\nset origin 0,0\nset logscale x\nset xtics (0.05, 0.1, 0.2, 0.5, 1, 2, 5)\n"
-      "set xlabel 'period (s)'\nset ylabel 'spectral acceleration, 5 %% (m/s^2)'\n"
-      "plot 'spectrum.csv' using 1:2 every ::1 with lines linecolor rgb '" BLUE
-      "' title 'surface', \\\n"
-      "  '' using 1:3 every ::1 with lines linecolor rgb '" RED "' title 'input'\n"
-      "set origin 0.5,0\nunset logscale\nset xtics autofreq\n"
-      "set xlabel 'frequency (Hz)'\nset ylabel 'surface over input, Fourier'\n"
-      "set yrange [0:*]\n"
-      "plot 'amplification.csv' using 1:2 every ::1 with lines linecolor rgb '" BLUE
-      "' title 'libmps'%s\nunset multiplot\n",
-      exact ? ", '' using 1:3 every ::1 with lines dashtype 2 linecolor rgb '" RED "' title 'exact'"
-            : "");
+  draw_spectra(&f, sim, exact);
   return plot_close(&f, sim->s.out, "surface");
 }
 

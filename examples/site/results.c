@@ -7,7 +7,10 @@
 #include <stdlib.h>
 
 #define DAMPING 0.05
-#define LEAST_INPUT 0.01 /* of the largest Fourier amplitude: ratios of less are noise */
+/* Of the largest Fourier amplitude of the input: ratios of less are noise; those in which the
+ * largest is sought, where soil that yields makes harmonics. */
+#define LEAST_INPUT 0.01
+#define STRONG_INPUT 0.1
 
 /* What is found from the history. */
 typedef struct findings {
@@ -63,8 +66,8 @@ static double largest_of(const double *x, int64_t count) {
   return most;
 }
 
-static bool counts(const findings *f, int64_t k) {
-  return f->fourier.input[k] > LEAST_INPUT * largest_of(f->fourier.input, f->fourier.count);
+static bool counts(const findings *f, int64_t k, double least) {
+  return f->fourier.input[k] > least * largest_of(f->fourier.input, f->fourier.count);
 }
 
 static void find_amplification(const simulation *sim, findings *f) {
@@ -76,9 +79,9 @@ static void find_amplification(const simulation *sim, findings *f) {
   f->largest = f->frequency = f->exact_at = f->error = NAN;
   for (int64_t k = 0; k < f->fourier.count; k++) {
     const double ratio = f->fourier.surface[k] / f->fourier.input[k];
-    if (!counts(f, k)) continue;
+    if (!counts(f, k, LEAST_INPUT)) continue;
     f->error = fmax(isnan(f->error) ? 0.0 : f->error, fabs(ratio / f->fourier.exact[k] - 1.0));
-    if (ratio <= f->largest) continue;
+    if (ratio <= f->largest || !counts(f, k, STRONG_INPUT)) continue;
     f->largest = ratio, f->frequency = (double)(k + 1) * f->fourier.step;
     f->exact_at = f->fourier.exact[k];
   }
@@ -128,7 +131,7 @@ static bool write_amplification(app *a, const simulation *sim, const findings *f
   for (int64_t k = 0; k < f->fourier.count; k++) {
     const double line[] = {(double)(k + 1) * f->fourier.step,
                            f->fourier.surface[k] / f->fourier.input[k], f->fourier.exact[k]};
-    if (counts(f, k)) csv_row(&file, 3, line);
+    if (counts(f, k, LEAST_INPUT)) csv_row(&file, 3, line);
   }
   return output_close(&file);
 }
