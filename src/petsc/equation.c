@@ -62,13 +62,21 @@ static mps_status agree(mps_petsc_solver *s, const char *what, mps_status status
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
+/* MUMPS estimates the memory of a factor, and fails where several processes need more than that and
+ * 20 % (PETSc's option -mps_mat_mumps_icntl_14): small matrices with full rows do. */
+static bool widen_factor(void) {
+  PetscBool chosen = PETSC_FALSE;
+  return PetscOptionsHasName(NULL, "mps_", "-mat_mumps_icntl_14", &chosen) == 0 &&
+         (chosen || PetscOptionsSetValue(NULL, "-mps_mat_mumps_icntl_14", "100") == 0);
+}
+
 static bool configure(mps_petsc_solver *s) {
   PC pc;
   PetscReal weak = s->modes > 0 ? WEAK_OF_BODIES : WEAK;
   bool good = KSPCreate(s->comm, &s->ksp) == 0 && KSPGetPC(s->ksp, &pc) == 0;
   if (s->method == MPS_PETSC_METHOD_DIRECT)
-    good = good && KSPSetType(s->ksp, KSPPREONLY) == 0 && PCSetType(pc, PCCHOLESKY) == 0 &&
-           PCFactorSetMatSolverType(pc, MATSOLVERMUMPS) == 0;
+    good = good && widen_factor() && KSPSetType(s->ksp, KSPPREONLY) == 0 &&
+           PCSetType(pc, PCCHOLESKY) == 0 && PCFactorSetMatSolverType(pc, MATSOLVERMUMPS) == 0;
   else {
     good = good && KSPSetType(s->ksp, KSPCG) == 0 && PCSetType(pc, PCGAMG) == 0 &&
            KSPSetNormType(s->ksp, KSP_NORM_UNPRECONDITIONED) == 0 &&

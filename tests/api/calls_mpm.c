@@ -6,11 +6,24 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
+/* Water that has drained takes its mass from the particles. */
+static double drained_from(const mps_mpm *mpm) {
+  mps_particles *set = mps_mpm_particles(mpm);
+  mps_pore_budget budget = {.drained = 0.0};
+  mps_particles_field_info info;
+  bool wet = false; /* asked without an error record of a solver that has none */
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++)
+    wet = wet || (mps_particles_get_field_info(set, f, &info) == MPS_OK &&
+                  strcmp(info.name, "pore_pressure_gradient") == 0);
+  return wet && mps_mpm_get_pore_budget(mpm, &budget) == MPS_OK ? budget.drained : 0.0;
+}
+
 /* Damping of nodes takes momentum. Around an axis the sum of m v_r is no momentum, as radial
  * directions differ: hoop stress changes it without any force from outside. */
 static void mpm_gravity(mps_mpm *mpm, api_account *account) {
   mps_mpm_def def;
   if (mps_mpm_get_def(mpm, &def) != MPS_OK) return;
+  account->removed += drained_from(mpm);
   memcpy(account->gravity, def.gravity, sizeof def.gravity);
   account->pushed = account->pushed || def.local_damping != 0.0 || def.viscous_damping != 0.0;
   account->radial = def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;

@@ -5,7 +5,7 @@
  * T are the fluxes per difference of pressure, and G the forces on the nodes per pressure of a
  * cell: a pressure that rises pushes the ground apart, which the last term sees in advance. So
  * neither waves in the water nor its flow limit the step, which is that of the dry ground. The
- * matrix is symmetric and positive definite, and conjugate gradients with its diagonal solve it.
+ * matrix is symmetric and positive definite, and conjugate gradients solve it (solve/gradients.h).
  * The forces of the next step are those of the new pressures; velocities are not corrected.
  *
  * G is that of full supports, mirrored at sides of the domain, with the particles where they are at
