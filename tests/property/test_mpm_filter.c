@@ -471,6 +471,43 @@ static void each_law_has_what_suits_it(void **state) {
   }
 }
 
+/* Stresses (Pa) by id of 100 particles of sand that strike the floor, beside falling water or not.
+ */
+static void strike_beside(bool beside, double (*stress)[4]) {
+  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
+  const double v0[2] = {0.0, -1.0}, still[4] = {0.5, 0.0, 0.0, 0.0};
+  mpm_scene_box(&s, 0.1, 0.0, 0.6, 0.5);
+  if (beside) mpm_scene_box(&s, 2.1, 0.0, 2.6, 0.5);
+  mpm_scene_affine(&s, v0, still);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.1, def.lower[1] = 0.0, def.dt = 2e-4;
+  mps_material_destroy(&s.material);
+  s.material = make_law(SAND);
+  mpm_scene_solve(&s, &def);
+  mps_material *water = make_law(WATER);
+  int64_t ids[100];
+  for (int k = 0; k < 100; k++) ids[k] = 100 + k;
+  if (beside) mps_assert_ok(context, mps_mpm_set_material(s.mpm, water, 100, ids));
+  mps_material_destroy(&water);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+  mps_view all = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
+  assert_int_equal(all.shape[0], beside ? 200 : 100);
+  for (int64_t k = 0; k < all.shape[0]; k++) {
+    const int64_t at = *mps_view_i64(&id, k, 0);
+    for (int c = 0; c < 4 && at < 100; c++) stress[at][c] = *mps_view_f64(&all, k, c);
+  }
+  mpm_scene_end(&s);
+}
+
+static void water_does_not_change_the_filter_of_sand(void **state) {
+  (void)state;
+  double alone[100][4], beside[100][4];
+  strike_beside(false, alone);
+  strike_beside(true, beside);
+  for (int k = 0; k < 100; k++)
+    for (int c = 0; c < 4; c++) mps_assert_near(beside[k][c], alone[k][c], 0.0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(flowed_sand_has_smooth_pressures),
                                      cmocka_unit_test(the_sum_of_volumes_times_pressures_is_kept),
@@ -478,6 +515,7 @@ int main(void) {
                                      cmocka_unit_test(the_budget_of_water_counts_the_filter),
                                      cmocka_unit_test(ground_at_rest_does_not_move),
                                      cmocka_unit_test(loaded_ground_does_not_creep),
-                                     cmocka_unit_test(each_law_has_what_suits_it)};
+                                     cmocka_unit_test(each_law_has_what_suits_it),
+                                     cmocka_unit_test(water_does_not_change_the_filter_of_sand)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
