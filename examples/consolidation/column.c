@@ -82,13 +82,8 @@ double column_settlement(const simulation *sim, int step, double T) {
   return settles(sim, consolidated(sim, step, T, -1.0));
 }
 
-double column_last(const simulation *sim, int step) {
-  return settles(sim, stretched(sim, sim->load[step + 1]));
-}
-
 double column_degree(const simulation *sim, int step, double settlement) {
-  const double before = step > 0 ? column_last(sim, step - 1) : 0.0;
-  return (settlement - before) / (column_last(sim, step) - before);
+  return settlement / settles(sim, stretched(sim, sim->load[step + 1]));
 }
 
 /* ---- options --------------------------------------------------------------------------------- */

@@ -33,7 +33,7 @@ typedef struct settings {
 /* What is measured at one time. */
 typedef struct instant {
   int step;             /* of the loads, from 0 */
-  double T, U, U_exact; /* since that load; degree of consolidation under it, of a column */
+  double T, U, U_exact; /* since that load; degree of consolidation of a column */
   double settlement, settlement_exact, force; /* m, m; over the exact one */
   double degree, degree_equal; /* of consolidation, mean of 1 - u/u0: Barron; for equal strain */
   mps_pore_budget water;       /* kg */
@@ -79,11 +79,10 @@ const stratum *column_layer(const simulation *sim, double depth);
 /* Pa, T after load number `step` began; and the T at which a load that grows is set anew next. */
 double column_load(const simulation *sim, int step, double T);
 double column_next(const simulation *sim, double T);
-/* Exact, T after load `step` began: u (Pa), the settlement over H, that of the end, and the part of
- * the load's own settlement that `settlement` is. */
+/* Exact, T after load `step` began: u (Pa) and the settlement over H; and what part `settlement` is
+ * of that at the end under this load. */
 double column_pressure(const simulation *sim, int step, double T, double depth);
 double column_settlement(const simulation *sim, int step, double T);
-double column_last(const simulation *sim, int step);
 double column_degree(const simulation *sim, int step, double settlement);
 
 /* exact.c: u/u0 at the depth/H (Mandel and Cryer: 1 is the centre; strip: z/B; Barron: 1 - r/a),

@@ -556,7 +556,7 @@ static mps_status advance(simulation *sim) {
   double T = last > 0 ? sim->time[last - 1] : 0.0;
   while (T < end && status == MPS_OK) {
     const double next = is_column(s) ? fmin(end, column_next(sim, T)) : end;
-    if (s->duration * (before + next) <= mps_mpm_time(sim->m.mpm)) { /* a run that goes on */
+    if (s->duration * (before + next) <= mps_mpm_time(sim->m.mpm)) { /* passed before a restart */
       T = next;
       continue;
     }

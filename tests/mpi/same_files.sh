@@ -33,7 +33,7 @@ same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
 same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
 same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
 # A hole, a surcharge and a state of the ground that a rank without particles does not know; implicit pressures.
-same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 6x6x6 --h 0.025 --surcharge 100kPa --rate 16 --ppc 1 \
+same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 6x6x6 --h 0.025 --surcharge 100kPa --rate 8 --ppc 1 \
   --permeability 1e-4
 # Water in the pores: explicit pressures, and implicit ones.
 same layer mps-consolidation --cells 8 --times 0.01
