@@ -124,8 +124,9 @@ static inline mps_pore_face_def mps_pore_face_defaults(void) {
   return def;
 }
 /** Adds faces; `number` (may be NULL) receives theirs, from 0. They cannot be removed: set another
- *  definition. MPS_ERROR_ARGUMENT: a member of `def` out of range, or more than 16;
- *  MPS_ERROR_STATE: no water, or a callback of the solver is running. */
+ *  definition. Drained ones of undrained ground are warned of: nothing passes. MPS_ERROR_ARGUMENT:
+ *  a member of `def` out of range, or more than 16; MPS_ERROR_STATE: no water, or a callback of the
+ *  solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *def,
                                                        int32_t *number);
 /** Gives faces `number` another definition, from the next step on. MPS_ERROR_ARGUMENT: no such

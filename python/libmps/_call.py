@@ -169,6 +169,7 @@ class Call:
 
         stops = kind.cname == "int32_t(*)(void *)"  # the cancel hook
         blocks = [k for k, arg in enumerate(kind.args[1:]) if arg.cname == "mps_material_block *"]
+        moduli = [k for k, arg in enumerate(kind.args[1:]) if blocks and arg.cname == "double *"]
 
         def called(_user, *values):
             # The same error for all: the first exception is the one that is raised.
@@ -178,7 +179,12 @@ class Call:
                 block = _block.Block(values[blocks[0]])
                 try:
                     answer = function(block)
-                    block._write()
+                    if moduli:  # one a particle, which Python returns
+                        if answer is None:
+                            raise TypeError("`moduli` of a law returns K + 4G/3 of each particle of the block, not None")
+                        numpy.frombuffer(ffi.buffer(values[moduli[0]], 8 * block.count))[:] = answer
+                    else:
+                        block._write()
                 finally:
                     block._end()
             else:

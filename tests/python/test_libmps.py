@@ -130,6 +130,30 @@ class Values(unittest.TestCase):
         np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-13)
         self.assertGreater(np.abs(np.diff(places[0][:, 0])).max(), 0.1)
 
+    def test_the_step_follows_the_moduli_of_a_law_in_python(self):
+        """A law that stiffens by 99 times in 20 ms: the limit of the step falls to a tenth."""
+
+        def update(block):
+            g, s, stiffness = block.gradient, block.stress, 1e6 * (1 + 99 * block.history[0]) * block.dt
+            s[:3] += stiffness / 3 * (g[0] + g[4])  # lambda = G = a third of K + 4G/3
+            s[0] += 2 * stiffness / 3 * g[0]
+            s[1] += 2 * stiffness / 3 * g[4]
+            s[3] += stiffness / 3 * (g[1] + g[3])
+            block.history[0] = min(1.0, block.time / 0.02)
+
+        def made(moduli):
+            context = mps.Context()
+            law = context.material_create_user(update=update, history=["stiff"], history_count=1, wave_modulus=1e6,
+                                               bulk_modulus=5e5, shear_modulus=1e6 / 3, moduli=moduli)
+            return context.mpm_create(block(context), law, cell=0.2, gravity=[0, -9.81, 0])
+
+        solver = made(lambda block: 1e6 * (1 + 99 * block.history[0]))
+        first = solver.limit()
+        solver.run(0.03, 1000000, None)
+        self.assertAlmostEqual(first / solver.limit(), 10.0, delta=0.02)
+        with self.assertRaisesRegex(TypeError, "returns K . 4G/3 of each particle"):
+            made(lambda block: None).step(1)
+
     def test_a_struct_is_a_mapping_or_a_result(self):
         context = mps.Context()
         body = context.body_create_disc(0.1, position=[1.0, 2.0])

@@ -281,11 +281,40 @@ static void bodies_are_impervious(void **state) {
   }
 }
 
+/* A drained face of undrained ground is warned of, at once; one of ground that drains is not. */
+static void faces_of_undrained_ground_are_warned_of(void **state) {
+  (void)state;
+  for (int flows = 0; flows < 2; flows++) {
+    journal log = {0};
+    mps_context *own = journal_context(&log, NULL);
+    pore_column c = pore_column_begin(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+    mps_pore_water_def def = mps_pore_water_defaults();
+    mps_pore_face_def face = mps_pore_face_defaults();
+    def.porosity = 0.4;
+    if (flows) def.permeability = 1e-4;
+    mps_assert_ok(own, mps_mpm_add_pore_water(c.s.mpm, &def));
+    mps_assert_ok(own, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
+    assert_int_equal(log.count, 0);
+    face.kind = MPS_PORE_FACE_DRAINED;
+    mps_assert_ok(own, mps_mpm_set_pore_face(c.s.mpm, 0, &face));
+    assert_int_equal(log.count, flows ? 0 : 1);
+    mps_assert_ok(own, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
+    assert_int_equal(log.count, flows ? 0 : 2);
+    if (!flows) assert_non_null(strstr(log.last, "drained face of undrained ground"));
+    mpm_scene_end(&c.s);
+    mps_context_destroy(&own);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(definitions_are_checked),  cmocka_unit_test(fields_are_checked),
-      cmocka_unit_test(faces_are_checked),        cmocka_unit_test(threads_change_no_bit),
-      cmocka_unit_test(restarts_change_no_bit),   cmocka_unit_test(implicit_steps_are_long),
-      cmocka_unit_test(undrained_ground_settles), cmocka_unit_test(bodies_are_impervious)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(definitions_are_checked),
+                                     cmocka_unit_test(fields_are_checked),
+                                     cmocka_unit_test(faces_are_checked),
+                                     cmocka_unit_test(threads_change_no_bit),
+                                     cmocka_unit_test(restarts_change_no_bit),
+                                     cmocka_unit_test(implicit_steps_are_long),
+                                     cmocka_unit_test(undrained_ground_settles),
+                                     cmocka_unit_test(bodies_are_impervious),
+                                     cmocka_unit_test(faces_of_undrained_ground_are_warned_of)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -397,6 +397,15 @@ static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_wa
   return MPS_OK;
 }
 
+/* As where the permeability was forgotten. */
+static void warn_of_face(const mps_mpm *mpm, const mps_pore_face_def *def) {
+  if (def->kind == MPS_PORE_FACE_DRAINED && !mpm->water->flows)
+    mpsi_log(
+        mpm->context, MPS_CONTEXT_LOG_WARNING,
+        "no water passes a drained face of undrained ground: it has neither the member nor the "
+        "field 'permeability'");
+}
+
 mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_face_def def;
@@ -410,6 +419,7 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
   if (status != MPS_OK) return status;
   if (number) *number = (int32_t)mpm->water->faces;
   mpm->water->face[mpm->water->faces++] = def;
+  warn_of_face(mpm, &def);
   return MPS_OK;
 }
 
@@ -424,5 +434,6 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
   status = agree_on_face(mpm, __func__, status, &def, number);
   if (status != MPS_OK) return status;
   mpm->water->face[number] = def;
+  warn_of_face(mpm, &def);
   return MPS_OK;
 }
