@@ -248,7 +248,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   if (!mpsi_room_ensure(mpm->context, &s->force_room, numbers, sizeof *s->force))
     return mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *s->force);
   s->force = s->force_room.item;
-  memset(s->force, 0, (size_t)numbers * sizeof *s->force);
+  if (numbers > 0) memset(s->force, 0, (size_t)numbers * sizeof *s->force);
   return MPS_OK;
 }
 
