@@ -158,11 +158,13 @@ static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
               "set title \"%s pressure on a wall that %s\\n{/*0.85 %s, "
               "friction of the wall %g, h = H/%.3g}\"\n"
               "set xlabel 'path of the wall over its height'\nset ylabel 'K, force across the wall "
-              "over {/Symbol g}H^2/2'\nset yrange [0:*]\nset key right %s opaque\n"
+              "over %s'\nset yrange [0:*]\nset key right %s opaque\n"
               "plot 'pressure.csv' every ::1 using 1:3 with lines linewidth 2 linecolor rgb "
               "'#1f4e8c' title 'WLS-MPM'",
               s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), ground_of(s), s->friction,
-              s->height / s->h, s->pressure == ACTIVE ? "top" : "bottom");
+              s->height / s->h,
+              wall_is_plain(s) ? "{/Symbol g}H^2/2" : "the weight above, summed over H",
+              s->pressure == ACTIVE ? "top" : "bottom");
   if (!isnan(p->theory))
     output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'", p->theory,
                 s->friction == 0.0 ? "Rankine" : "Coulomb");

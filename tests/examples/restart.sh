@@ -8,6 +8,7 @@ programs=$1
 again() { # PROGRAM EVERY OPTION...: EVERY (s) is so long that the last checkpoint is on the way
   program=$1 every=$2
   shift 2
+  rm -rf "$work/$program" "$work/$program"-from-*
   "$programs/$program" "$@" --every-checkpoint "$every" --frames 3 --threads 1 --out "$work/$program" >"$work/log"
   [ -f "$work/$program/checkpoint.h5" ] || return 0 # built without HDF5
   "$programs/$program" "$@" --restart "$work/$program/checkpoint.h5" --frames 3 --threads 2 \
@@ -22,10 +23,10 @@ again mps-rolling-disc 8ms --h 0.025 --duration 20ms
 again mps-column-collapse 12ms --width 0.1 --h 0.025 --falls 0.2 --compare
 again mps-penetrometer 3ms --soil 4x4x2 --h 0.025 --depth 1cm --rate 2 --ppc 1 --axisymmetric
 again mps-consolidation 1 --cells 5 --stiffness 10 --times 0.05,0.1,0.2
-again mps-consolidation 0.7 --cells 5 --stiffness 10 --case mcc --scheme implicit --loads 100kPa,200kPa --ramp 0.02 \
-  --times 0.03,0.1
 again mps-consolidation 0.2 --cells 5 --stiffness 10 --layers "$(dirname "$0")/data/consolidation_layers.csv" --drained both \
   --times 0.01,0.02,0.04
+again mps-consolidation 0.7 --cells 5 --stiffness 10 --case mcc --scheme implicit --loads 100kPa,200kPa --ramp 0.02 \
+  --times 0.03,0.1
 again mps-slope 1.1 --h 2 --falls 3 --tolerance 0.5
 again mps-slope 1.1 --h 2 --falls 3 --tolerance 0.5 --water-table 0 --drawdown 8
 printf 'thickness=4m density=1.9t/m3 vs=100 law=cyclicsand phi=33deg relative-density=0.4\nhalfspace density=2t/m3 vs=300\n' \
