@@ -1,14 +1,14 @@
 /* contacts.c - contacts with bodies in the operator of implicit pressures. Where the ground bears
  * on a body its velocity is that of the surface, whatever the pressures. With the rows C of the
- * contacts (psi n at their nodes, contact/constraints.c) a correction w = m^-1 G d of the velocities
- * becomes
+ * contacts (psi n at their nodes, contact/constraints.c) a correction w = m^-1 G d of the
+ * velocities becomes
  *
  *   w - m^-1 C^T Y C w,   Y nearly (C m^-1 C^T)^-1
  *
- * by symmetric Gauss-Seidel sweeps from zero, so that Y is symmetric and the operator stays positive
- * definite. What bears the correction is added to the impulses of the contacts. Without this the
- * pressure that a body raises comes as many steps late as the water's forces are stiffer than its
- * storage; a motion that Y leaves opens and closes contacts in turn, and grows.
+ * by symmetric Gauss-Seidel sweeps from zero, so that Y is symmetric and the operator stays
+ * positive definite. What bears the correction is added to the impulses of the contacts. Without
+ * this the pressure that a body raises comes as many steps late as the water's forces are stiffer
+ * than its storage; a motion that Y leaves opens and closes contacts in turn, and grows.
  *
  * On several ranks partners have the same contacts (contact/exchange.h) and sweep alike; each
  * iteration takes the velocities of their nodes from the rank that counts these, as a sum of bits
@@ -154,10 +154,11 @@ static mps_status share(mps_mpm *mpm, const char *function, int64_t words, int64
 /* The nodes that all ranks count, each with its slot, in order of places. */
 static void list_known(const int64_t *word, int64_t known, known_node *out) {
   for (int64_t k = 0; k < known; k++, word += WORDS)
-    out[k] = (known_node){.at = {(int32_t)(uint32_t)(word[0] & UINT32_MAX), (int32_t)(word[0] >> 32),
-                                 (int32_t)(uint32_t)(word[1] & UINT32_MAX)},
-                          .held = (int32_t)(word[1] >> 32),
-                          .slot = (int32_t)k};
+    out[k] =
+        (known_node){.at = {(int32_t)(uint32_t)(word[0] & UINT32_MAX), (int32_t)(word[0] >> 32),
+                            (int32_t)(uint32_t)(word[1] & UINT32_MAX)},
+                     .held = (int32_t)(word[1] >> 32),
+                     .slot = (int32_t)k};
   qsort(out, (size_t)known, sizeof *out, by_place);
 }
 
@@ -205,8 +206,7 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
   for (int64_t k = 0; k < out->nodes; k++) {
     known_node like;
     memcpy(like.at, out->node[k].at, sizeof like.at);
-    const known_node *found =
-        bsearch(&like, known, (size_t)out->slots, sizeof *known, by_place);
+    const known_node *found = bsearch(&like, known, (size_t)out->slots, sizeof *known, by_place);
     if (!found) continue; /* without particles: does not move */
     out->node[k].slot = found->slot;
     out->node[k].held = (uint8_t)found->held;
@@ -303,10 +303,4 @@ void mpsi_pore_bear_contacts(mps_mpm *mpm) {
     c->normal_impulse = fmax(0.0, c->normal_impulse + across);
     for (int a = 0; a < 3; a++) c->tangent_impulse[a] += by[a] - across * c->normal[a];
   }
-}
-
-void mpsi_pore_free_contacts(mps_context *context, mpsi_pore_contacts *contacts) {
-  const mpsi_room room[] = {contacts->contact_room, contacts->entry_room, contacts->node_room,
-                            contacts->index_room,   contacts->word_room,  contacts->known_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
 }

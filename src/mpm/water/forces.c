@@ -1,8 +1,8 @@
-/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c, and the masses of
- * these nodes. A cell's forces are the sums of V grad phi over its particles, added in the order of
- * the blocks of cells. On several ranks the particles of border blocks are sent to the ranks that
- * have these as ghosts, which add them at the ghosts' turn: the cells and nodes that a rank counts
- * have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
+/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c, with the masses and
+ * velocities of these nodes. A cell's forces are the sums of V grad phi over its particles, added
+ * in the order of the blocks of cells. On several ranks the particles of border blocks are sent to
+ * the ranks that have these as ghosts, which add them at the ghosts' turn: the cells and nodes that
+ * a rank counts have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
 #include "forces.h"
 
 #include "mpm/base/kernels.h"
@@ -91,8 +91,8 @@ static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *g
     const mpsi_boundary *side = &mpm->boundaries.hold[2 * c + above];
     node[c] = 2 * (above ? grid->high[c] : grid->low[c]) - node[c];
     for (int a = 0; a < grid->dim; a++) {
-      const bool turns = side->kind == MPS_BOUNDARY_HELD ||
-                         (a == c && side->kind != MPS_BOUNDARY_FREE_FIELD);
+      const bool turns =
+          side->kind == MPS_BOUNDARY_HELD || (a == c && side->kind != MPS_BOUNDARY_FREE_FIELD);
       if (!turns) continue;
       *to->carried += 2.0 * gradient[a] * side->v[a];
       gradient[a] = -gradient[a];
@@ -121,8 +121,7 @@ static void add_forces(const mps_mpm *mpm, const mpsi_pore_grain *particle, cons
     for (int c = 0; c < 3; c++) w[c] = fits ? at->value[c][i[c]] : at->along[c][i[c]];
     for (int c = 0; c < grid->dim; c++)
       gradient[c] = particle->V * at->slope[c][i[c]] * w[(c + 1) % 3] * w[(c + 2) % 3];
-    if (ring)
-      gradient[0] += particle->V * at->value[0][i[0]] * at->value[1][i[1]] / particle->x[0];
+    if (ring) gradient[0] += particle->V * at->value[0][i[0]] * at->value[1][i[1]] / particle->x[0];
     add_node(mpm, to, node, gradient);
   }
 }
@@ -242,7 +241,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
     for (int k = 0; k < grid->block_nodes && mpsi_mpm_counts_node_block(grid, g); k++)
       if (mpsi_pore_marked(mpm->water->block[g].filled, k))
         s->carried[mpsi_first_node(grid, g) + k] = 0.0,
-        s->row[mpsi_first_node(grid, g) + k] = rows++;
+                                              s->row[mpsi_first_node(grid, g) + k] = rows++;
   for (int64_t k = 0; s->rim && k < s->rim->cells; k++)
     s->row[grid->node_count * grid->block_nodes + k] = rows++;
   const int64_t numbers = rows * mpsi_pore_row_numbers(grid);

@@ -17,8 +17,8 @@ enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MP
 /* A contact that bears in the step, with entries [first, first + entries) (contacts.c). */
 typedef struct mpsi_pore_contact {
   double normal[3]; /* outward unit vector of the surface */
-  double yield[3];  /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
-  double left[3];   /* N s/kg, what it has taken of a correction */
+  double yield[3]; /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
+  double left[3];  /* N s/kg, what it has taken of a correction */
   int64_t constraint, first;
   int32_t entries;
   bool sticks; /* all components are held, else the normal one */
@@ -50,7 +50,7 @@ typedef struct mpsi_pore_contacts {
 /* What forces need of a particle. */
 typedef struct mpsi_pore_grain {
   double x[3], V;
-  int32_t place;     /* as in mpsi_water */
+  int32_t place;      /* as in mpsi_water */
   bool fitted, light; /* a body or two sides cut its support: by `fit`; see mpsi_cell_block.light */
   mpsi_kept_fit fit;
 } mpsi_pore_grain;
@@ -69,13 +69,13 @@ struct mpsi_pore_system {
   double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
-  double *space;   /* m3, that stores water */
-  double *carried; /* m3/s, by cells: G^T v of the images of moving sides */
-  double *squeeze; /* m3: what the predicted motion takes of a cell; then that over its space */
-  double *part;                                    /* of sums, by blocks */
-  int64_t iterations;                              /* of the last step */
+  double *space;                                   /* m3, that stores water */
+  double *carried;    /* m3/s, by cells: G^T v of the images of moving sides */
+  double *squeeze;    /* m3: what the predicted motion takes of a cell; then that over its space */
+  double *part;       /* of sums, by blocks */
+  int64_t iterations; /* of the last step */
   mpsi_pore_contacts contacts;
-  mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
+  mpsi_pore_rim *rim; /* on several ranks, else NULL */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
 };
@@ -116,10 +116,9 @@ static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int 
 static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                                  int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  mpsi_pore_grain out = {
-      .x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
-      .V = p->V[k],
-      .place = mpm->water->place[k]};
+  mpsi_pore_grain out = {.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
+                         .V = p->V[k],
+                         .place = mpm->water->place[k]};
   for (int q = 0; q < 1 << mpm->grid.dim; q++)
     out.light = out.light || mpm->grid.nodes[cells->to[q]].light;
   const int64_t slot = cells->first_fit < 0 ? -1 : cells->first_fit + (k - cells->begin);

@@ -59,7 +59,7 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
+  bool expecting; /* what particles take of their cells is before the motion (flow.c) */
   bool flows;
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
@@ -72,12 +72,13 @@ struct mpsi_water {
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
-  double *expected; /* m3, volumes after it as the pressures have them; implicit alone */
+  double *expected;        /* m3, volumes after it as the pressures have them; implicit alone */
   uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
   double *seepage[3];      /* of the set, or NULL */
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3]; /* and where they were */
-  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, expected_room, place_room, linked_room;
+  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, expected_room, place_room,
+      linked_room;
   mpsi_pore_layers *layers; /* on several ranks, else NULL */
   mpsi_pore_system *system; /* where pressures are implicit, else NULL */
 };
