@@ -1,7 +1,7 @@
 /* test_mpm_pore_ground.c - water in grounds of other shapes than a layer: radial flow through two
- * rings against its closed form, a layer whose surface lies at any tenth of a cell; a strip on ground
- * that hardly drains, with explicit and implicit pressures.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * rings against its closed form, a layer whose surface lies at any tenth of a cell; a strip on
+ * ground that hardly drains, with explicit and implicit pressures. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
 
@@ -108,11 +108,12 @@ typedef struct strip_result {
   double force, highest;
 } strip_result;
 
-/* Half of a rigid strip of six cells on ground of 12 by 12 cells, which it presses down by 1 mm within
- * 0.05 s and then holds. NaN: undrained. */
+/* Half of a rigid strip of six cells on ground of 12 by 12 cells, which it presses down by 1 mm
+ * within 0.05 s and then holds. NaN: undrained. */
 static strip_result press_strip(int32_t scheme, double permeability, double friction) {
   enum { CELLS = 12 };
-  const double h = 1.0 / CELLS, way = 1e-3, pressing = 0.05, modulus = PORE_YOUNG * 0.7 / (1.3 * 0.4);
+  const double h = 1.0 / CELLS, way = 1e-3, pressing = 0.05,
+               modulus = PORE_YOUNG * 0.7 / (1.3 * 0.4);
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, PORE_YOUNG);
   mps_body *strip = NULL;
   mps_contact *contact = NULL;
@@ -145,11 +146,10 @@ static strip_result press_strip(int32_t scheme, double permeability, double fric
   mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &reaction));
   strip_result out = {.force = reaction.force[1]};
   const mps_view u = mpm_scene_view(&s, "pore_pressure");
-  for (int64_t p = 0; p < u.shape[0]; p++)
-    out.highest = fmax(out.highest, *mps_view_f64(&u, p, 0));
-  print_message("strip, scheme %d, k %g m/s, friction %g: %lld steps, bears %.1f N, highest %.1f Pa\n",
-                scheme, permeability, friction, (long long)mps_mpm_steps(s.mpm), out.force,
-                out.highest);
+  for (int64_t p = 0; p < u.shape[0]; p++) out.highest = fmax(out.highest, *mps_view_f64(&u, p, 0));
+  print_message(
+      "strip, scheme %d, k %g m/s, friction %g: %lld steps, bears %.1f N, highest %.1f Pa\n",
+      scheme, permeability, friction, (long long)mps_mpm_steps(s.mpm), out.force, out.highest);
   mps_contact_destroy(&contact);
   mps_body_destroy(&strip);
   mpm_scene_end(&s);

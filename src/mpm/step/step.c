@@ -6,6 +6,7 @@
  *   update     velocities without and with the forces: node_update.c (26)
  *   contact    impulses between nodes and bodies: contact/constraints.c, impulses.c; or the penalty
  *              forces and friction of penalty_friction.c, src/contact/friction.c (31)-(34)
+ *   predict    pressures of pore water that are implicit correct the velocities: water/flow.c
  *   finish     boundaries: boundary/walls.c
  *   gather     velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and
  *              their histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, laws.c

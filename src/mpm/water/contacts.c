@@ -306,9 +306,3 @@ void mpsi_pore_bear_contacts(mps_mpm *mpm) {
     for (int a = 0; a < 3; a++) c->tangent_impulse[a] += by[a] - across * c->normal[a];
   }
 }
-
-void mpsi_pore_free_contacts(mps_context *context, mpsi_pore_contacts *contacts) {
-  const mpsi_room room[] = {contacts->contact_room, contacts->entry_room, contacts->node_room,
-                            contacts->index_room,   contacts->word_room,  contacts->known_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
-}

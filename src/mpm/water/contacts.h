@@ -12,6 +12,5 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function);
 mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function);
 /* Adds what the last call of that has taken, over the step, to the impulses of the contacts. */
 void mpsi_pore_bear_contacts(mps_mpm *mpm);
-void mpsi_pore_free_contacts(mps_context *context, mpsi_pore_contacts *contacts);
 
 #endif

@@ -1,8 +1,8 @@
-/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c, and the masses of
- * these nodes. A cell's forces are the sums of V grad phi over its particles, added in the order of
- * the blocks of cells. On several ranks the particles of border blocks are sent to the ranks that
- * have these as ghosts, which add them at the ghosts' turn: the cells and nodes that a rank counts
- * have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
+/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c, with the masses and
+ * velocities of these nodes. A cell's forces are the sums of V grad phi over its particles, added
+ * in the order of the blocks of cells. On several ranks the particles of border blocks are sent to
+ * the ranks that have these as ghosts, which add them at the ghosts' turn: the cells and nodes that
+ * a rank counts have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
 #include "forces.h"
 
 #include "mpm/base/kernels.h"

@@ -5,7 +5,8 @@
 
 #include "system.h"
 
-/* Forces of the cells, masses of their nodes and which components are prescribed, also in the rim.
+/* Forces of the cells, masses and velocities of their nodes and which components are prescribed,
+ * also in the rim.
  * Collective. MPS_ERROR_MEMORY. */
 mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function);
 

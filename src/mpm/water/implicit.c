@@ -1,15 +1,15 @@
-/* implicit.c - pressures of cells, implicit in time. With increments d of the pressures
+/* implicit.c - pressures of cells, implicit in time, and the velocities that they correct. With the
+ * velocities v* of the nodes under the forces of the old pressures, contacts made,
  *
- *   [S + dt T + dt^2 G^T m^-1 G] d = dt (fluxes at p) - change of volume,   S = V n/K_w
+ *   [S + dt T + dt^2 G^T m^-1 G] d = dt (fluxes at p) - dt G^T v*,   v = v* + dt m^-1 G d
  *
- * T are the fluxes per difference of pressure, and G the forces on the nodes per pressure of a
- * cell: a pressure that rises pushes the ground apart, which the last term sees in advance. So
- * neither waves in the water nor its flow limit the step, which is that of the dry ground. The
- * matrix is symmetric and positive definite, and conjugate gradients solve it (solve/gradients.h).
- * The forces of the next step are those of the new pressures; velocities are not corrected.
+ * gives the increments d of the pressures p; S = V n/K_w, T are the fluxes per difference of
+ * pressure, and G the forces on the nodes per pressure of a cell, by the supports that the
+ * particles have in the step (forces.c): dt G^T v is what the particles will change their volumes
+ * by. So neither waves in the water nor its flow limit the step, which is that of the dry ground.
+ * The matrix is symmetric and positive definite, also where contacts hold the correction
+ * (contacts.c), and conjugate gradients solve it (solve/gradients.h).
  *
- * G is that of full supports, mirrored at sides of the domain, with the particles where they are at
- * the end of the step: what it lacks beside bodies delays pressures, and changes no steady state.
  * Vectors are by cells, loops by blocks; a block's part of a sum is added in the order of its
  * cells, and the parts exactly, so that no bit depends on the number of threads or ranks. On
  * several ranks each solves for the cells that it counts, with those of its rim (rim.h) beside

@@ -5,8 +5,9 @@
 
 #include "system.h"
 
-/* The pressures `now` at the end of the step, from those at its start, changes of volume and faces.
- * Collective. MPS_ERROR_NUMERIC: no solution to the tolerance; MPS_ERROR_MEMORY. */
+/* The pressures `now` at the end of the step, from those at its start, the velocities of the nodes
+ * and faces; corrects the velocities and the impulses of contacts. Collective. MPS_ERROR_NUMERIC:
+ * no solution to the tolerance; MPS_ERROR_MEMORY. */
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function);
 
 #endif

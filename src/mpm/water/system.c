@@ -1,7 +1,6 @@
 /* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 
-#include "contacts.h"
 #include "rim.h"
 
 #include <string.h>
@@ -109,10 +108,11 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   *pointer = NULL;
   if (!s) return;
   mpsi_pore_free_rim(context, &s->rim);
-  mpsi_pore_free_contacts(context, &s->contacts);
+  const mpsi_pore_contacts *c = &s->contacts;
   const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
                             s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
-                            s->tile_room,   s->part_room};
+                            s->tile_room,   s->part_room,  c->contact_room,  c->entry_room,
+                            c->node_room,   c->index_room, c->word_room,     c->known_room};
   for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
   mpsi_free(context, s);
 }

@@ -60,7 +60,7 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
+  bool expecting; /* what particles take of their cells is before the motion (flow.c) */
   bool flows;
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
