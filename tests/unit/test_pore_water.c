@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 #include <mps/contact.h>
 #include <mps/mpm_settle.h>
