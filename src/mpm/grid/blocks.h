@@ -64,6 +64,7 @@ typedef struct mpsi_cell_block {
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
   bool lost;                  /* that particle is outside the domain; all are finite */
   double speed;               /* largest c + |v|, m/s */
+  double flow;                /* the same of the flow of pore water (laws.h) */
   /* On several ranks (partition.h): */
   bool ghost;      /* block of another rank, without particles here */
   bool late;       /* it is a ghost, or a ghost adds before it */

@@ -27,6 +27,8 @@
  * bodies. SPDX-License-Identifier: BSD-3-Clause */
 #include "means.h"
 
+#include "mpm/water/water.h"
+
 #include <string.h>
 
 #define BETA 0.06
@@ -274,7 +276,7 @@ static double grown(double V, double strain) {
 }
 
 /* e' = e - (r - S r), in p and the gap. */
-static void change_stress(const mpsi_columns *p, int64_t k) {
+static void change_stress(const mpsi_columns *p, mpsi_water *water, int64_t k) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
   double *gap = gap_of(law, k);
   const double bulk = bulk_of(p, k), was = mean_stress(p, k);
@@ -283,7 +285,9 @@ static void change_stress(const mpsi_columns *p, int64_t k) {
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
   *gap = fmax(0.0, (closed - now) / bulk);
   for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
-  p->V[k] = grown(p->V[k], (now - was) / bulk);
+  const double former = p->V[k];
+  p->V[k] = grown(former, (now - was) / bulk);
+  if (mpsi_pore_responds(water)) mpsi_pore_follow(p, water, k, former);
   if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
 }
 
@@ -297,7 +301,7 @@ static void filter_stress(void *data, int64_t b, int32_t number) {
     mpsi_before_law before;
     if (mpm->energy.counts) mpsi_mpm_energy_before_law(&mpm->grid, &mpm->p, begin, end, &before);
     for (int64_t k = begin; k < end; k++)
-      if (is_filtered(&mpm->p, k)) change_stress(&mpm->p, k);
+      if (is_filtered(&mpm->p, k)) change_stress(&mpm->p, mpm->water, k);
     mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
     if (mpm->energy.counts)
       mpsi_mpm_energy_smoothed(&mpm->grid, &mpm->p, &mpm->energy, cells, &before, begin, end);
