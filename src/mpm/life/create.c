@@ -282,7 +282,8 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     if (!memory) return mpsi_fail_memory(context, create, bytes);
     w->tile = (mpsi_node *)memory;
     w->force = w->tile + tile;
-    w->state = (uint8_t *)(w->force + tile); /* with a margin: rows are read as four */
+    w->strain = w->force + tile;
+    w->state = (uint8_t *)(w->strain + tile); /* with a margin: rows are read as four */
   }
   return grid->workers ? MPS_OK : mpsi_fail_memory(context, create, sizeof *grid->workers);
 }

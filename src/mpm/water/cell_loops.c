@@ -135,22 +135,29 @@ void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work) {
 
 /* ---- undrained steps ------------------------------------------------------------------------- */
 
-/* Sums of the particles with one stencil at its lowest node in the worker's second tile: of V
- * before the laws and of dV; then what n u grows by, Pa. */
+/* Sums of the particles with one stencil at its lowest node in a tile: of V before the laws and of
+ * dV; then what n u grows by, Pa. */
 enum { BEFORE, STRAIN, GROWTH };
-typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8)));
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8), may_alias));
+
+/* That of the forces, which the scatter has done with, unless it has the velocities before the
+ * forces (flip_time, g2p.c). */
+MPSI_INLINE mpsi_node *strain_tile(const mpsi_transfer *work) {
+  return work->keep > 0.0 ? work->worker->strain : work->worker->force;
+}
 
 void MPSI_LEVELLED(mpsi_pore_begin_block)(const mpsi_transfer *work) {
   const mpsi_cell_block *cells = work->cells;
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
+  mpsi_node *tile = strain_tile(work);
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++)
-      memset(work->worker->force[mpsi_tile_index(cells->low[0], j, k)], 0, bytes);
+      memset(tile[mpsi_tile_index(cells->low[0], j, k)], 0, bytes);
 }
 
 void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *former, int64_t begin,
                                      int n) {
-  mpsi_node *tile = work->worker->force;
+  mpsi_node *tile = strain_tile(work);
   const uint16_t *place = work->water->place + begin;
   const double *V = work->p->V + begin;
   if (work->water->flows)
@@ -164,7 +171,7 @@ void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *fo
 
 void MPSI_LEVELLED(mpsi_pore_respond)(const mpsi_transfer *work) {
   const mpsi_cell_block *cells = work->cells;
-  mpsi_node *tile = work->worker->force;
+  mpsi_node *tile = strain_tile(work);
   const double bulk = work->water->def.bulk;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++)

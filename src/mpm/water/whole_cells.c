@@ -195,8 +195,8 @@ MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_
       }
     for (uint64_t left = whole[z]; left; left &= left - 1) {
       const int c = mpsi_pore_lowest(left);
-      double *of = first[z * PLANE + c].g;
-      for (int a = 0; a < dim; a++) of[a] += water->share * (slope[a][c] - of[a]);
+      double *to = first[z * PLANE + c].g;
+      for (int a = 0; a < dim; a++) to[a] += water->share * (slope[a][c] - to[a]);
     }
   }
 }
