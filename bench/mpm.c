@@ -293,7 +293,7 @@ static void print_line(anchor *a, double anchor_best, contender *c) {
 
 static void time_size(const options *o, int dim, int spline, int64_t particles) {
   const int rounds = o->rounds;
-  const int64_t steps = particles < 20000 ? 100 : particles < 200000 ? 20 : 5;
+  const int64_t steps = particles < 20000 ? 96 : particles < 200000 ? 24 : 8; /* of 8: filters */
   const int kinds = particles > LARGE ? 2 : KINDS; /* all at once would not fit the memory */
   contender c[KINDS] = {{0}};
   int available = 1;

@@ -10,12 +10,14 @@
  *
  * with porosity n, permeability k (m/s), gravity b and g = 9.80665 m/s2 in the weight of water
  * rho_w g that k refers to, whatever b. The acceleration of the water relative to the grains is
- * left out, which is right for k below 1e-3 m/s and without shocks in the water.
+ * left out, which is right for k below 1e-3 m/s and without shocks in the water. Explicit in time,
+ * pressures, porosities and permeabilities follow the volumes in each step, and cells exchange
+ * water and smooth the pressures after every eighth, or as often as the limit of the flow asks for.
  *
  * Fields: `pore_pressure` (Pa) and `porosity`, which the caller may write between steps,
  * `pore_pressure_gradient` (Pa/m), `permeability` (m/s, the present one) where water flows, and
- * `seepage` (m/s, q), written where the set has it. Water that leaves the ground takes its mass
- * from the particles, at their velocity.
+ * `seepage` (m/s, q), written where the set has it; gradient and seepage are those of the last
+ * exchange. Water that leaves the ground takes its mass from the particles, at their velocity.
  *
  * Implicit pressures are solved for by conjugate gradients, or by a solver of the caller
  * (mps/pore_solver.h).
@@ -129,13 +131,13 @@ static inline mps_pore_face_def mps_pore_face_defaults(void) {
  *  solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *def,
                                                        int32_t *number);
-/** Gives faces `number` another definition, from the next step on. MPS_ERROR_ARGUMENT: no such
+/** Gives faces `number` another definition, from the next exchange on. MPS_ERROR_ARGUMENT: no such
  *  number, or a member of `def` out of range; MPS_ERROR_STATE: as mps_mpm_add_pore_face. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number,
                                                        const mps_pore_face_def *def);
 /** Water that has left through the faces `number` (-1: the free surface, where no face says
- *  otherwise), less what came in: `rate` (kg/s, of the last step) and `mass` (kg), of the measure;
- *  each may be NULL. MPS_ERROR_ARGUMENT: no such number; MPS_ERROR_STATE: no water. */
+ *  otherwise), less what came in: `rate` (kg/s, mean of the last exchange) and `mass` (kg), of the
+ * measure; each may be NULL. MPS_ERROR_ARGUMENT: no such number; MPS_ERROR_STATE: no water. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number,
                                                        double *rate, double *mass);
 

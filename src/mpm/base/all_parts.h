@@ -77,7 +77,7 @@ static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ?
 
 /* Bytes of scratch memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
-  return (size_t)grid->tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
+  return (size_t)grid->tile_nodes * (3 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
 }
 
 static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {

@@ -52,6 +52,10 @@ typedef struct mpsi_kernels {
   mpsi_transfer_fn speed;            /* largest c + |v| of a block */
   mpsi_transfer_fn pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
   mpsi_transfer_fn pore_give; /* are clear; and back from the tiles (water/cell_loops.c) */
+  /* Of particles whose volumes have changed in the step, from before the laws: first for the block,
+   * then for those from `begin` on, at most a chunk, at last for the block: its pressures. */
+  mpsi_transfer_fn pore_begin_block, pore_respond;
+  void (*pore_strain)(const mpsi_transfer *work, const double *former, int64_t begin, int n);
   /* Of cells of a block of nodes that have whole ones on all faces: pressures at the end of the
    * step with flow; slopes of these (water/whole_cells.c). */
   void (*pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);

@@ -298,6 +298,10 @@ void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_mpm_flush)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_begin_block)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_respond)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *former, int64_t begin,
+                                     int n);
 void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
 void MPSI_LEVELLED(mpsi_pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
 

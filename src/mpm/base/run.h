@@ -14,6 +14,7 @@ typedef struct mpsi_run {
   double time;  /* s */
   double dt;    /* s, of the step being made */
   double speed; /* largest c + |v| of the particles, m/s */
+  double flow;  /* m/s, whose Courant limit is that of the flow of pore water; 0: none */
   int64_t steps;
   mpsi_guard guard; /* in a callback of the caller, where only queries are allowed */
   bool stale;       /* particles must be sorted before the next step */

@@ -64,6 +64,7 @@ typedef struct mpsi_cell_block {
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
   bool lost;                  /* that particle is outside the domain; all are finite */
   double speed;               /* largest c + |v|, m/s */
+  double flow;                /* the same of the flow of pore water (laws.h) */
   /* On several ranks (partition.h): */
   bool ghost;      /* block of another rank, without particles here */
   bool late;       /* it is a ghost, or a ghost adds before it */
@@ -104,7 +105,9 @@ enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 /* Scratch memory of a worker for its present block: tiles of MPSI_TILE_SIDE^dim nodes. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force;               /* force and excess mass, in blocks that are `apart` */
+  mpsi_node *tile, *force; /* force and excess mass, in blocks that are `apart` */
+  mpsi_node *strain;       /* sums of pore water while `force` is in use for velocities
+                              before the forces (water/cell_loops.c) */
   mpsi_node *across_tile, *across_force; /* values across thin bodies (thin_bodies.h) */
   struct mpsi_penalty_node *penalty;     /* one tile for each pair of the block: see penalty.c */
   uint8_t *state;                        /* states of the tile's nodes, MPSI_... bits; 0: free */

@@ -282,7 +282,8 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     if (!memory) return mpsi_fail_memory(context, create, bytes);
     w->tile = (mpsi_node *)memory;
     w->force = w->tile + tile;
-    w->state = (uint8_t *)(w->force + tile); /* with a margin: rows are read as four */
+    w->strain = w->force + tile;
+    w->state = (uint8_t *)(w->strain + tile); /* with a margin: rows are read as four */
   }
   return grid->workers ? MPS_OK : mpsi_fail_memory(context, create, sizeof *grid->workers);
 }
@@ -290,10 +291,11 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
 /* Largest speed of the initial state; in the set's own order. */
 static mps_status find_speed(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
-  double moduli[MPSI_CHUNK];
+  double moduli[MPSI_CHUNK], flow; /* no water yet */
   for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
     const int64_t end = begin + MPSI_CHUNK < p->count ? begin + MPSI_CHUNK : p->count;
-    mpsi_mpm_find_moduli(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, begin, end, moduli);
+    mpsi_mpm_find_moduli(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, begin, end, moduli,
+                         &flow);
     for (int64_t k = begin; k < end; k++) {
       double square = 0.0;
       for (int c = 0; c < mpm->grid.dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)

@@ -302,6 +302,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_i64(s, "boundaries_work", mpm->boundaries.work.limb, MPSI_EXACT_LIMBS);
   mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
+  mpsi_state_f64(s, "flow", &mpm->run.flow, 1);
   mpsi_state_bool(s, "stale", &mpm->run.stale);
   mpsi_state_bool(s, "moments", &mpm->run.moments);
   list_settling(s, &mpm->settling);

@@ -67,10 +67,11 @@ void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, 
  * whose stress is filtered, without strain. */
 void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
                             const mpsi_cell_block *cells, int64_t begin, int64_t end);
-/* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
+/* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt; the
+ * largest speed (m/s) whose Courant limit is that of the flow of pore water. */
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
-                          double *moduli);
+                          double *moduli, double *flow);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,

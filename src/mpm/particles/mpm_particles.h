@@ -41,7 +41,7 @@ double mpsi_mpm_lattice_volume(const mpsi_grid *grid, const mpsi_columns *p, int
 /* ready.c: what mpsi_mpm_apply_edits changes, for a call that fails after it: the speed that limits
  * the step, and that edits are waiting. */
 typedef struct mpsi_edit_state {
-  double speed;
+  double speed, flow;
   bool edited;
 } mpsi_edit_state;
 mpsi_edit_state mpsi_mpm_edit_state(const mpsi_run *run);

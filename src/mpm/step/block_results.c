@@ -25,10 +25,10 @@ static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const 
 }
 
 /* Reduces the results over all ranks. An error of one is that of all. */
-static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
-                                int64_t lost) {
+static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, double flow,
+                                int64_t bad, int64_t lost) {
   mpsi_partition *partition = mpm->partition;
-  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FOUND };
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, FOUND };
   double most[MPSI_SWEEP_SUMS];
   mpsi_mpm_sweep_sums(&mpm->contact, most);
   mps_status own = MPS_OK, status = partition->lost;
@@ -47,7 +47,8 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
                          mpm->run.edited,
                          mpsi_cancelled(mpm->context),
                          most[MPSI_SWEEP_CHANGED],
-                         most[MPSI_SWEEP_IMPULSES]};
+                         most[MPSI_SWEEP_IMPULSES],
+                         flow};
   status = mpsi_domain_agree_max(partition->domain, function, status, FOUND, found);
   mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
   if (status != MPS_OK) return status;
@@ -55,7 +56,7 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
   mpm->run.edited = found[EDITED] > 0.0;
   partition->cancel = found[CANCEL] > 0.0;
   mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
-  if (!mpm->run.broken) mpm->run.speed = found[SPEED];
+  if (!mpm->run.broken) mpm->run.speed = found[SPEED], mpm->run.flow = found[FLOW];
   mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
   if (mpm->run.lost) mpm->run.stale = true;
   if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
@@ -64,7 +65,7 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
 }
 
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
-  double speed = 0.0;
+  double speed = 0.0, flow = 0.0;
   int64_t bad = -1, lost = -1;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -72,13 +73,15 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     if (cells->bad >= 0 && *which < 0) *which = cells->bad;
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > speed) speed = cells->speed;
+    if (cells->flow > flow) flow = cells->flow;
   }
-  if (mpm->partition) return collect_ranks(mpm, function, speed, bad, lost);
+  if (mpm->partition) return collect_ranks(mpm, function, speed, flow, bad, lost);
   mpm->run.broken = bad >= 0;
   if (bad >= 0)
     return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
                       "is not finite, is beyond 1e100 m/s or has no volume");
   mpm->run.speed = speed;
+  mpm->run.flow = flow;
   if (lost < 0) return MPS_OK;
   mpm->run.lost = mpm->run.stale = true;
   return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, lost,

@@ -32,6 +32,7 @@
 #include "means.h"
 
 #include "material/state_equation.h"
+#include "mpm/water/water.h"
 
 #include <string.h>
 
@@ -274,7 +275,7 @@ static double grown(double V, double strain) {
 }
 
 /* e' = e - (r - S r), in p and the gap. */
-static void change_stress(const mpsi_columns *p, int64_t k) {
+static void change_stress(const mpsi_columns *p, mpsi_water *water, int64_t k) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
   double *gap = gap_of(law, k);
   const double bulk = bulk_of(p, k), was = mean_stress(p, k);
@@ -283,29 +284,33 @@ static void change_stress(const mpsi_columns *p, int64_t k) {
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
   *gap = fmax(0.0, (closed - now) / bulk);
   for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
-  p->V[k] = grown(p->V[k], (now - was) / bulk);
+  const double former = p->V[k];
+  p->V[k] = grown(former, (now - was) / bulk);
+  if (mpsi_pore_responds(water)) mpsi_pore_follow(p, water, k, former);
   if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
 }
 
 /* The same for a fluid, whose state is its volume. One without tension bears none. */
-static void change_pressure(const mpsi_columns *p, int64_t k) {
+static void change_pressure(const mpsi_columns *p, mpsi_water *water, int64_t k) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
   const double was = mean_stress(p, k);
   const double now = fmin(was - p->rough[k], fmax(was, 0.0));
   const double J = mpsi_material_fluid_volume(law->material, -now);
   if (!(J > 0.0 && isfinite(J))) return; /* tension that no volume has */
   for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
+  const double former = p->V[k];
   p->V[k] *= J / p->J[k];
   p->J[k] = J;
+  if (mpsi_pore_responds(water)) mpsi_pore_follow(p, water, k, former);
 }
 
 static void change(mps_mpm *mpm, const mpsi_cell_block *cells, filtered_kind kind, int64_t begin,
                    int64_t end) {
   for (int64_t k = begin; k < end; k++)
     if (is_filtered(&mpm->p, k, kind) && kind == FLUID)
-      change_pressure(&mpm->p, k);
+      change_pressure(&mpm->p, mpm->water, k);
     else if (is_filtered(&mpm->p, k, kind))
-      change_stress(&mpm->p, k);
+      change_stress(&mpm->p, mpm->water, k);
   if (kind == SAND) mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
 }
 

@@ -54,6 +54,7 @@ static void warn_about_chatter(mps_context *context, const mpsi_grid *grid, cons
 
 void mpsi_step_begin(mps_mpm *mpm, double dt) {
   mpm->run.dt = dt;
+  mpsi_pore_plan(mpm);
   warn_about_courant(mpm, dt);
   warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, dt);
 }

@@ -22,7 +22,7 @@ static void list_columns(const mpsi_grid *grid, const mpsi_columns *p, mpsi_undo
   for (int c = 0; c < 2 * grid->dim; c++) add(u, p->s[c]);
   for (int c = 0; c < 9; c++) add(u, p->L[c]), add(u, p->F[c]);
   add(u, p->V), add(u, p->J);
-  add(u, p->u), add(u, p->n), add(u, p->k), add(u, p->m); /* implicit pressures (water/flow.c) */
+  add(u, p->u), add(u, p->n), add(u, p->k), add(u, p->m); /* pore water */
   for (int c = 0; c < grid->dim; c++) add(u, p->g[c]);
   for (int32_t k = 0; k < p->laws.count; k++)
     for (int32_t h = 0; h < p->laws.law[k].columns; h++) add(u, p->laws.law[k].history[h]);

@@ -27,6 +27,10 @@
  * Its mean stress is filtered instead, by filter.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "means.h"
 
+#include "mpm/water/water.h"
+
+#include <string.h>
+
 #define BETA 0.03 /* larger values spread pressure at free surfaces */
 
 /* Whether the particle's law takes its own tr(d). */
@@ -250,14 +254,19 @@ static void apply_laws(void *data, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = work.cells;
   mps_material_block seen;
   const mpsi_law_block laws = {work.grid, work.p, work.run, work.energy, cells, &seen};
+  const bool responds = mpsi_pore_responds(mpm->water);
   mpsi_mpm_begin_block(&seen);
+  if (responds) mpm->kernels->pore_begin_block(&work);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
-    double *D[9], mean[3][MPSI_CHUNK];
+    double *D[9], mean[3][MPSI_CHUNK], former[MPSI_CHUNK];
     for (int c = 0; c < mpm->grid.dim * mpm->grid.dim; c++) D[c] = mpm->p.D[c] + k;
     mean_diagonals(&work, k, end, mean);
+    if (responds) memcpy(former, mpm->p.V + k, (size_t)(end - k) * sizeof *former);
     mpsi_mpm_apply_law(&laws, k, end, D, mean);
+    if (responds) mpm->kernels->pore_strain(&work, former, k, (int)(end - k));
   }
+  if (responds) mpm->kernels->pore_respond(&work);
   if (!by_nodes(&mpm->def)) mpm->kernels->speed(&work);
 }
 

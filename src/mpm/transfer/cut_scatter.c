@@ -6,6 +6,8 @@
 #include "cut_contact.h"
 #include "spin.h"
 
+#include "mpm/water/water.h"
+
 /* ---- contributions of the particles ---------------------------------------------------------- */
 
 /* Forces of a batch as factors of w_i: internal force - V sigma . grad phi, where grad phi along
@@ -18,7 +20,12 @@ MPSI_INLINE void find_force(const mpsi_transfer *work, int dim, const mpsi_cut *
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
-  const mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
+  const double viscosity = work->water ? work->water->viscosity : 0.0;
+  mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
+  for (int c = 0; from->u && c < dim; c++)
+    u -= viscosity * mpsi_get_some(from->L[(dim + 1) * c] + p, n);
+  if (from->u && work->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+    u -= viscosity * mpsi_get_some(from->L[4] + p, n);
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * work->def->gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
@@ -154,9 +161,11 @@ typedef struct particle_source {
 } particle_source;
 
 static particle_source source_of(const mpsi_grid *grid, const mpsi_columns *c,
-                                 const mps_mpm_def *def, int dim, int64_t p) {
+                                 const mps_mpm_def *def, int dim, double viscosity, int64_t p) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  const double u = c->u ? c->u[p] : 0.0;
+  double u = c->u ? c->u[p] : 0.0;
+  for (int a = 0; c->u && a < dim; a++) u -= viscosity * c->L[(dim + 1) * a][p];
+  if (c->u && grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) u -= viscosity * c->L[4][p];
   particle_source out = {.v = {1.0}};
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
@@ -181,7 +190,9 @@ MPSI_INLINE void scatter_one(const mpsi_transfer *work, int dim, int spline,
   const mpsi_cut *b = one->batch;
   const int lane = one->lane;
   const double m = work->p->m[one->particle];
-  const particle_source s = source_of(work->grid, work->p, work->def, dim, one->particle);
+  const double viscosity = work->water ? work->water->viscosity : 0.0;
+  const particle_source s =
+      source_of(work->grid, work->p, work->def, dim, viscosity, one->particle);
   MPSI_FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;

@@ -5,6 +5,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
+#include "mpm/water/water.h"
+
 MPSI_INLINE mpsi_node *find_node(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
                                  bool before, int i, int j, int k) {
   if (before) return grid->side + mpsi_side_under(grid, cells, across, i, j, k);
@@ -397,9 +399,10 @@ MPSI_INLINE void speed_chunk(const mpsi_transfer *work, int dim, int64_t begin, 
     find_speed(work->p, work->def, work->cells, dim, begin, n, NULL);
     return;
   }
-  double moduli[MPSI_CHUNK];
+  double moduli[MPSI_CHUNK], flow;
   mpsi_mpm_find_moduli(work->grid, work->p, work->water, work->run, work->def, begin, begin + n,
-                       moduli);
+                       moduli, &flow);
+  work->cells->flow = fmax(work->cells->flow, flow);
   find_speed(work->p, work->def, work->cells, dim, begin, n, moduli);
 }
 
@@ -436,6 +439,8 @@ MPSI_INLINE void gather_chunk(const mpsi_transfer *work, int dim, int spline, in
   /* weights of x and z; the sums along y are polynomials */
   mpsi_find_places(work, dim, spline, 5, 5, begin, n, &places);
   mpsi_pad_places(dim, spline, 5, n, &places);
+  for (int k = 0; work->water && k < n; k++)
+    work->water->place[begin + k] = (uint16_t)places.first[k];
   if (stencil) memcpy(stencil + begin, places.first, (size_t)n * sizeof *stencil);
   for (int k = 0, end; k < n; k = end) {
     for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
@@ -499,7 +504,11 @@ MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, 
   if (work->energy->counts)
     mpsi_mpm_energy_after(work->grid, work->p, work->energy, work->cells, begin, begin + n);
   if (!work->p->laws.at_once) return; /* the laws need means of volumetric.c or filter.c first */
+  double former[MPSI_CHUNK];
+  const bool responds = mpsi_pore_responds(work->water);
+  if (responds) memcpy(former, work->p->V + begin, (size_t)n * sizeof *former);
   mpsi_mpm_apply_law(laws, begin, begin + n, D, NULL);
+  if (responds) MPSI_LEVELLED(mpsi_pore_strain)(work, former, begin, n);
   speed_chunk(work, dim, begin, n);
 }
 
@@ -533,16 +542,19 @@ MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
   cells->left = cells->gone = cells->lost = false;
   cells->light = is_light(work->grid, cells);
   cells->bad = -1;
-  cells->speed = 0.0;
+  cells->speed = cells->flow = 0.0;
   gather_tile(work->grid, cells, false, false, worker->tile);
   if (cells->thin) gather_tile(work->grid, cells, true, false, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(work);
   if (work->keep > 0.0) gather_before(work);
   if (cells->cut || cells->light) mpsi_mpm_find_states(work);
+  const bool responds = mpsi_pore_responds(work->water) && work->p->laws.at_once;
+  if (responds) MPSI_LEVELLED(mpsi_pore_begin_block)(work);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(work, geometry, spline, k, n, &laws);
   }
+  if (responds) MPSI_LEVELLED(mpsi_pore_respond)(work);
 }
 
 /* ---- variants -------------------------------------------------------------------------------- */
@@ -557,7 +569,7 @@ const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)
 void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work) {
   mpsi_cell_block *cells = work->cells;
   if (!cells->lost) cells->bad = -1;
-  cells->speed = 0.0;
+  cells->speed = cells->flow = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     speed_chunk(work, work->grid->dim, k, n);

@@ -7,6 +7,8 @@
  * shorter segments. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
+#include "mpm/water/water.h"
+
 /* Contributions of particles to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z), for
  * each of the four values of a node. */
 typedef double columns[4][4][MPSI_CHUNK] MPSI_LINE; /* [part][value][particle] */
@@ -24,17 +26,29 @@ typedef struct quad_parts {
  * of vectors may alias what is behind a pointer. */
 typedef struct sources {
   const mpsi_columns *p;
+  double viscosity;             /* Pa s, of the water */
   double h, stiff, dt, fall[3]; /* m; 1/m, of stresses; s, or 1 if momentum and force are apart; dt
                                    times gravity */
 } sources;
 
 MPSI_INLINE sources find_sources(const mpsi_transfer *work, int dim, int spline, bool split) {
   sources out = {.p = work->p,
+                 .viscosity = work->water ? work->water->viscosity : 0.0,
                  .h = work->grid->cell,
                  .stiff = -mpsi_inverse_moment(spline) * work->grid->inverse,
                  .dt = split ? 1.0 : work->run->dt};
   MPSI_UNROLL for (int c = 0; c < dim; c++) out.fall[c] = out.dt * work->def->gravity[c];
   return out;
+}
+
+/* Pa, of the four particles from index `at` on: with what the water's viscosity adds. */
+MPSI_INLINE mpsi_quad water_pressure(const sources *s, int geometry, int64_t at) {
+  const mpsi_columns *p = s->p;
+  const int dim = mpsi_dim_of(geometry);
+  mpsi_quad rate = mpsi_get(p->L[0] + at);
+  MPSI_UNROLL for (int c = 1; c < dim; c++) rate += mpsi_get(p->L[(dim + 1) * c] + at);
+  if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) rate += mpsi_get(p->L[4] + at);
+  return mpsi_get(p->u + at) - s->viscosity * rate;
 }
 
 /* Contributions of the four particles from index `at` on. `split`: momentum in `sum`, force in
@@ -46,7 +60,8 @@ MPSI_INLINE void find_quad_parts(const sources *s, int geometry, bool split, int
   const mpsi_columns *p = s->p;
   const double dt = s->dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-  const mpsi_quad mh = m * s->h, Vs = V * s->stiff, u = p->u ? mpsi_get(p->u + at) : zero;
+  const mpsi_quad mh = m * s->h, Vs = V * s->stiff;
+  const mpsi_quad u = p->u ? water_pressure(s, geometry, at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {

@@ -5,6 +5,8 @@
 
 #include "mpm/base/loops.h"
 
+#include <string.h>
+
 /* ---- places ---------------------------------------------------------------------------------- */
 
 /* The first node of a tile (cells), and the first and last of its cells, or those of the domain. */
@@ -100,25 +102,27 @@ MPSI_INLINE void add_sums(const places *in, int n, const sums *from, const mpsi_
 MPSI_INLINE void change_porosities(const mpsi_columns *p, const double *former, int64_t begin,
                                    int n) {
   double *porosity = p->n + begin;
-  const double *V = p->V + begin, *past = former + begin;
-  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (past[k] / V[k]);
+  const double *V = p->V + begin;
+  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] =
+      1.0 - (1.0 - porosity[k]) * (former[k] / V[k]);
 }
 
 MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_cell_block *cells, const mpsi_worker *worker, int dim) {
   const region in = region_of(grid, cells);
-  const bool implicit = water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
-  const double *expected = implicit ? water->expected : water->former;
+  const bool done = mpsi_pore_responds(water); /* pressures and porosities have followed volumes */
+  const double *former = done ? p->V : water->former, *expected = done ? p->V : water->expected;
   places at;
   sums part;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     find_cells(grid, p, &in, dim, k, n, &at);
     find_sums(p, expected, &at, dim, k, n, &part);
-    for (int i = 0; implicit && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
+    for (int i = 0; !done && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
     add_sums(&at, n, &part, worker);
-    if (water->flows) mpsi_pore_change_permeability(p, water, k, k + n);
-    change_porosities(p, water->former, k, n);
+    if (done) continue;
+    if (water->flows) mpsi_pore_change_permeability(p, water, former + k, k, k + n);
+    change_porosities(p, former + k, k, n);
   }
 }
 
@@ -127,6 +131,62 @@ void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work) {
     sum_body(work->grid, work->p, work->water, work->cells, work->worker, 2);
   else
     sum_body(work->grid, work->p, work->water, work->cells, work->worker, 3);
+}
+
+/* ---- undrained steps ------------------------------------------------------------------------- */
+
+/* Sums of the particles with one stencil at its lowest node in a tile: of V before the laws and of
+ * dV; then what n u grows by, Pa. */
+enum { BEFORE, STRAIN, GROWTH };
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8), may_alias));
+
+/* That of the forces, which the scatter has done with, unless it has the velocities before the
+ * forces (flip_time, g2p.c). */
+MPSI_INLINE mpsi_node *strain_tile(const mpsi_transfer *work) {
+  return work->keep > 0.0 ? work->worker->strain : work->worker->force;
+}
+
+void MPSI_LEVELLED(mpsi_pore_begin_block)(const mpsi_transfer *work) {
+  const mpsi_cell_block *cells = work->cells;
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
+  mpsi_node *tile = strain_tile(work);
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      memset(tile[mpsi_tile_index(cells->low[0], j, k)], 0, bytes);
+}
+
+void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *former, int64_t begin,
+                                     int n) {
+  mpsi_node *tile = strain_tile(work);
+  const uint16_t *place = work->water->place + begin;
+  const double *V = work->p->V + begin;
+  if (work->water->flows)
+    mpsi_pore_change_permeability(work->p, work->water, former, begin, begin + n);
+  change_porosities(work->p, former, begin, n);
+  for (int k = 0; k < n; k++) {
+    pair *to = (pair *)tile[place[k]];
+    *to += (pair){former[k], V[k] - former[k]};
+  }
+}
+
+void MPSI_LEVELLED(mpsi_pore_respond)(const mpsi_transfer *work) {
+  const mpsi_cell_block *cells = work->cells;
+  mpsi_node *tile = strain_tile(work);
+  const double bulk = work->water->def.bulk;
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++) {
+        double *at = tile[mpsi_tile_index(i, j, k)];
+        at[GROWTH] = at[BEFORE] > 0.0 ? -bulk * (at[STRAIN] / at[BEFORE]) : 0.0;
+      }
+  for (int64_t begin = cells->begin; begin < cells->end; begin += MPSI_CHUNK) {
+    const int n = cells->end - begin < MPSI_CHUNK ? (int)(cells->end - begin) : MPSI_CHUNK;
+    const uint16_t *place = work->water->place + begin;
+    double *u = work->p->u + begin, growth[MPSI_CHUNK];
+    const double *porosity = work->p->n + begin;
+    for (int k = 0; k < n; k++) growth[k] = tile[place[k]][GROWTH];
+    MPSI_SIMD for (int k = 0; k < n; k++) u[k] += growth[k] / porosity[k];
+  }
 }
 
 /* ---- to the particles ------------------------------------------------------------------------ */

@@ -11,8 +11,8 @@ enum { MPSI_PORE_VOLUME, MPSI_PORE_CHANGE, MPSI_PORE_PRESSURE, MPSI_PORE_POROSIT
 enum { MPSI_PORE_PERMEABILITY, MPSI_PORE_SLOPE };
 
 /* flow.c, of particles [begin, end): permeabilities, before their porosities change; seepage. */
-void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water, int64_t begin,
-                                   int64_t end);
+void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water,
+                                   const double *former, int64_t begin, int64_t end);
 void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end);
 
 #endif

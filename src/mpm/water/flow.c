@@ -213,7 +213,7 @@ static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   double space = mpm->grid.dim == 3 ? h * h * h : h * h;
   cell->gain = flux_into(mpm, g, k, false, cell);
   if (!cell->inside) space = space_of(mpsi_pore_edge_of(water, cell));
-  cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
+  cell->now = cell->p + water->def.bulk / cell->n * (water->elapsed * cell->gain / space) +
               mpsi_pore_squeeze(mpm->water, cell);
 }
 
@@ -228,10 +228,7 @@ static void find_pressures(void *data, int64_t g, int32_t worker) {
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = mpm->water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
-      if (cell[k].thin)
-        squeeze(&mpm->grid, mpm->water, mpm->run.dt, g, &cell[k]);
-      else
-        advance(mpm, g, k, &cell[k]);
+      if (!cell[k].thin) advance(mpm, g, k, &cell[k]); /* else find_slopes finds its gain */
     }
 }
 
@@ -252,7 +249,7 @@ static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cel
   for (int c = 0; c < mpm->grid.dim; c++) {
     const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
     const face_flow above = at_face(mpm, g, k, 2 * c + 1, true, cell, x, X, &behind);
-    cell->g[c] = between(&below, &above);
+    cell->g[c] += mpm->water->share * (between(&below, &above) - cell->g[c]);
   }
 }
 
@@ -284,6 +281,21 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
   cell->now = lines > 0 ? sum / lines : 0.0;
 }
 
+static int drained_face(mpsi_water *water, const mpsi_pore_cell *cell) {
+  int d = 0;
+  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
+    d++;
+  return mpsi_pore_edge_of(water, cell)->face[d];
+}
+
+/* What the particles of a thin cell lose as their pressures go back to the line leaves through one
+ * of its drained faces. */
+static void expel(const mpsi_grid *grid, mpsi_water *water, int64_t g, mpsi_pore_cell *cell) {
+  const double storage = cell->n * cell->volume / (water->def.bulk * grid->measure);
+  cell->gain = storage * (cell->now - cell->p) / water->elapsed;
+  let_out(water, g, drained_face(water, cell), -cell->gain);
+}
+
 static void find_slopes(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
@@ -295,9 +307,10 @@ static void find_slopes(void *data, int64_t g, int32_t worker) {
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
-      if (cell[k].thin)
-        interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
-      else
+      if (cell[k].thin) interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
+      if (cell[k].thin && mpsi_pore_responds(water))
+        expel(&mpm->grid, water, g, &cell[k]);
+      else if (!cell[k].thin)
         find_slope(mpm, g, k, &cell[k]);
     }
 }
@@ -312,12 +325,19 @@ static double permeability_after(const mps_pore_water_def *def, double k, double
   return k;
 }
 
-void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water, int64_t begin,
-                                   int64_t end) {
+void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water,
+                                   const double *former, int64_t begin, int64_t end) {
   const mps_pore_water_def *def = &water->def;
   if (def->exponent == 0.0 && !(def->ratio_slope < INFINITY)) return;
   for (int64_t k = begin; k < end; k++)
-    p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / water->former[k]);
+    p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / former[k - begin]);
+}
+
+void mpsi_pore_follow(const mpsi_columns *p, const mpsi_water *water, int64_t k, double former) {
+  const double V = p->V[k];
+  if (water->flows) mpsi_pore_change_permeability(p, water, &former, k, k + 1);
+  p->n[k] = 1.0 - (1.0 - p->n[k]) * (former / V);
+  p->u[k] -= water->def.bulk / p->n[k] * ((V - former) / former);
 }
 
 void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) {
@@ -339,7 +359,7 @@ static double expected_of(const mpsi_water *water, const mpsi_pore_cell *cell) {
 static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, const uint64_t *filled,
                      int local, int cells, mpsi_node *tile, mpsi_node *gain) {
   mpsi_water *water = work->water;
-  const double amount = water->def.density * work->run->dt * work->grid->measure;
+  const double amount = water->def.density * water->elapsed * work->grid->measure;
   for (int i = 0; i < cells; i++) {
     if (!mpsi_pore_marked(filled, local + i)) continue;
     double centre = cell[i].now; /* of the filled part; then of the box */
@@ -468,7 +488,10 @@ mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
   const mps_status status = find_implicit(mpm, function);
   if (status != MPS_OK) return status;
   water->expecting = true;
+  water->share = 1.0;
+  water->elapsed = mpm->run.dt;
   give(mpm);
+  water->elapsed = 0.0;
   water->expecting = false;
   return MPS_OK;
 }

@@ -65,6 +65,8 @@ void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
   mpsi_state_agree_integer(state, "flows", water->flows);
   mpsi_state_agree_integer(state, "faces", water->faces);
   mpsi_state_agree_integer(state, "scheme", water->def.scheme);
+  mpsi_state_i64(state, "steps", &water->steps, 1);
+  mpsi_state_f64(state, "elapsed", &water->elapsed, 1);
   mpsi_state_i64(state, "start", water->start.limb, MPSI_EXACT_LIMBS);
   mpsi_state_i64(state, "drained", water->drained[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
   mpsi_state_i64(state, "entered", water->entered.limb, MPSI_EXACT_LIMBS);

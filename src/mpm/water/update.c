@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+enum { EVERY = 8, SLOPES = 32 }; /* steps: at most between two exchanges; in which slopes follow */
+#define VISCOSITY 0.008          /* of the water, over that of a wave that crosses a cell */
+
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Of blocks of cells that have been laid out; those of other ranks come last. */
@@ -83,7 +86,7 @@ static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status st
 
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (!mpm->water) return;
+  if (!mpm->water || mpsi_pore_responds(mpm->water)) return;
   memcpy(mpm->water->former + cells->begin, mpm->p.V + cells->begin,
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
@@ -95,6 +98,9 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
     status = mpsi_pore_make_system(mpm, function, status);
   if (status != MPS_OK) return status;
+  const double impedance = sqrt(mpm->water->def.density * mpm->water->def.bulk); /* Pa s/m */
+  mpm->water->viscosity =
+      mpsi_pore_responds(mpm->water) ? VISCOSITY * impedance * mpm->grid.cell : 0.0;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
         c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
@@ -104,6 +110,15 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   }
   link_blocks(&mpm->grid, mpm->water);
   return MPS_OK;
+}
+
+void mpsi_pore_plan(mps_mpm *mpm) {
+  mpsi_water *water = mpm->water;
+  if (!water) return;
+  const double after = water->elapsed + 2.0 * mpm->run.dt; /* that of an exchange one step later */
+  const bool short_flow = after * mpm->run.flow > mpm->def.courant * mpm->grid.cell;
+  const bool first = mpm->run.steps == 0; /* pressures as the caller wrote them, without slopes */
+  water->due = !mpsi_pore_responds(water) || first || water->steps + 1 >= EVERY || short_flow;
 }
 
 static void find_speed(void *data, int64_t b, int32_t worker) {
@@ -137,9 +152,17 @@ static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
 }
 
 void mpsi_pore_update(mps_mpm *mpm) {
-  if (!mpm->water) return;
+  mpsi_water *water = mpm->water;
+  if (!water) return;
+  water->elapsed += mpm->run.dt;
+  water->steps++;
+  if (!water->due) return;
+  const bool lags = mpsi_pore_responds(water) && mpm->run.steps > 1;
+  water->share = lags ? fmin(1.0, (double)water->steps / SLOPES) : 1.0;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
   mpsi_pore_flow(mpm);
-  if (mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
+  if (water->flows) sum_outflow(&mpm->grid, water, water->elapsed);
+  water->elapsed = 0.0;
+  water->steps = 0;
 }

@@ -62,6 +62,8 @@ struct mpsi_water {
   mps_pore_water_def def;
   bool expecting; /* what particles take of their cells is before the motion (flow.c) */
   bool flows;
+  double viscosity; /* Pa s, of the change of volume, in the forces (README.md) */
+  double share;     /* of the slopes between cells, which particles take in this exchange */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
@@ -72,9 +74,13 @@ struct mpsi_water {
   mpsi_pore_edge *edge;   /* the same: few are in use */
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
-  double *former;                     /* m3, volumes at the beginning of the step */
-  double *expected;        /* m3, volumes after it as the pressures have them; implicit alone */
-  uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
+  double *former;   /* m3, volumes at the beginning of the step; where pressures are implicit */
+  double *expected; /* m3, volumes after it as the pressures have them; the same */
+  uint16_t *place;  /* of each particle, in the tile of its block: the lowest node of its stencil in
+                       the step; then, for implicit.c, its cell */
+  int64_t steps;    /* since the last exchange between cells */
+  double elapsed;   /* s, the same; in an exchange the time that it is for */
+  bool due;         /* this step has one */
   double *seepage[3];      /* of the set, or NULL */
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3]; /* and where they were */
@@ -156,8 +162,17 @@ void mpsi_pore_surrounded(const mpsi_grid *grid, const mpsi_water *water, int64_
 static inline double mpsi_pore_squeeze(mpsi_water *water, const mpsi_pore_cell *cell) {
   return -(water->def.bulk * cell->change) / (cell->n * (cell->volume - cell->change));
 }
-/* update.c: before the G2P of block of cells b: keeps the volumes of its particles, which are in
- * the cache then. */
+/* Whether the pressures of particles follow their volumes in each step, and cells exchange water
+ * and smooth pressures every few steps. */
+static inline bool mpsi_pore_responds(const mpsi_water *water) {
+  return water && water->def.scheme == MPS_PORE_SCHEME_EXPLICIT;
+}
+/* flow.c: porosity, permeability and pressure of a particle, after a volume of `former` (m3). */
+void mpsi_pore_follow(const mpsi_columns *p, const mpsi_water *water, int64_t k, double former);
+/* update.c: at the beginning of a step of run.dt: whether cells exchange after it. */
+void mpsi_pore_plan(mps_mpm *mpm);
+/* update.c: before the G2P of block of cells b, where pressures are implicit: keeps the volumes of
+ * its particles, which are in the cache then. */
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b);
 /* cells.c: sums of the particles and their means: which cells are filled, and with what. */
 void mpsi_pore_find_cells(mps_mpm *mpm);

@@ -138,7 +138,7 @@ MPSI_INLINE void advance_block(const mpsi_transfer *work, int64_t g, const uint6
   mpsi_water *water = work->water;
   const reading of = reading_of(work, g, offsetof(mpsi_pore_cell, p));
   mpsi_pore_cell *first = water->cell + mpsi_first_node(work->grid, g);
-  const double h = work->grid->cell, dt = work->run->dt, bulk = water->def.bulk;
+  const double h = work->grid->cell, dt = water->elapsed, bulk = water->def.bulk;
   const double to_flux = (dim == 3 ? h * h : h) / (water->def.density * MPS_PORE_GRAVITY);
   const double to_change = dt / (dim == 3 ? h * h * h : h * h);
   plane k;
@@ -195,7 +195,8 @@ MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_
       }
     for (uint64_t left = whole[z]; left; left &= left - 1) {
       const int c = mpsi_pore_lowest(left);
-      for (int a = 0; a < dim; a++) first[z * PLANE + c].g[a] = slope[a][c];
+      double *to = first[z * PLANE + c].g;
+      for (int a = 0; a < dim; a++) to[a] += water->share * (slope[a][c] - to[a]);
     }
   }
 }
