@@ -296,8 +296,11 @@ static void faces_of_undrained_ground_are_warned_of(void **state) {
     mps_assert_ok(own, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
     assert_int_equal(log.count, 0);
     face.kind = MPS_PORE_FACE_DRAINED;
-    mps_assert_ok(own, mps_mpm_set_pore_face(c.s.mpm, 0, &face));
-    assert_int_equal(log.count, flows ? 0 : 1);
+    for (int k = 0; k < 3; k++) {
+      face.pressure = 10.0 * k;
+      mps_assert_ok(own, mps_mpm_set_pore_face(c.s.mpm, 0, &face));
+      assert_int_equal(log.count, flows ? 0 : 1); /* not again with each pressure */
+    }
     mps_assert_ok(own, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
     assert_int_equal(log.count, flows ? 0 : 2);
     if (!flows) assert_non_null(strstr(log.last, "drained face of undrained ground"));
