@@ -498,8 +498,8 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   return status;
 }
 
-/* Before a former state returns. `status`: of this rank; ranks have a solver of the caller alike, and
- * agree on what its forget says, as those that are well wait for the others afterwards. */
+/* Before a former state returns. `status`: of this rank. All ranks have a solver of the caller or
+ * none has, and agree on what its forget says: later those that are well wait for the others. */
 static mps_status forget_solver(mps_mpm *mpm, const char *function, mps_status status) {
   if (status != MPS_OK || !mpm->water || !mpm->water->outside) return status;
   return mpsi_mpm_agree(mpm->partition, function, mpsi_pore_forget(mpm, function));
