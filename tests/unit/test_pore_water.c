@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 #include <mps/contact.h>
 #include <mps/mpm_settle.h>
@@ -220,7 +221,7 @@ static touchy touchy_begin(int32_t scheme, const bool *refuses) {
   law.update = refusing, law.user = (void *)refuses, law.wave_modulus = 1e5;
   mps_assert_ok(context, mps_material_create_user(context, &law, &t.law));
   mps_assert_ok(context, mps_mpm_set_material(t.s.mpm, t.law, 3, ids));
-  def.position[0] = 0.5, def.position[1] = 0.025 - 0.05;
+  def.position[0] = 0.5, def.position[1] = 0.03 - 0.05;
   mps_assert_ok(context, mps_body_create_box(context, &def, 0.4, 0.1, &t.body));
   mps_assert_ok(context, mps_mpm_add_contact(t.s.mpm, t.body, NULL, &t.contact));
   return t;
@@ -234,7 +235,7 @@ static void touchy_end(touchy *t) {
 }
 
 /* A step that a law refuses, after the pressures have been found and water has flowed, has not
- * happened: the run goes on with the bits of one without. */
+ * happened: the run continues with the bits of one without. */
 static void refused_steps_change_no_bit(void **state) {
   (void)state;
   for (int32_t scheme = MPS_PORE_SCHEME_EXPLICIT; scheme <= MPS_PORE_SCHEME_IMPLICIT; scheme++) {
@@ -250,7 +251,7 @@ static void refused_steps_change_no_bit(void **state) {
       assert_int_equal(mps_mpm_steps(b.s.mpm), 10 * (part + 1));
       assert_same(&a.s, &b.s);
       mps_assert_ok(context, mps_contact_get_reaction(a.contact, -1, &reaction));
-      assert_true(part == 0 || reaction.force[1] != 0.0); /* the contact bears */
+      assert_true(reaction.force[1] != 0.0); /* the contact bears */
     }
     touchy_end(&a);
     touchy_end(&b);
