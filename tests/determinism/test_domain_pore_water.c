@@ -238,6 +238,7 @@ enum {
   OTHER_NUMBER,
   OTHER_SCHEME,
   NO_SOLUTION,
+  NO_FORGETTING,
   TROUBLES
 };
 
@@ -248,8 +249,41 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_LEVEL] = {MPS_ERROR_ARGUMENT, "point is "},
     [OTHER_SCHEME] = {MPS_ERROR_ARGUMENT, "scheme is "},
     [NO_SOLUTION] = {MPS_ERROR_NUMERIC, "pressures of the pore water have a residual of "},
+    [NO_FORGETTING] = {MPS_ERROR_CANCELLED, "rank 1: "},
     [OTHER_NUMBER] = {MPS_ERROR_ARGUMENT, "number is "},
 };
+
+/* ---- a solver of the caller that cannot forget, on one rank ---------------------------------- */
+
+static mps_status take_nothing(void *user, int64_t all, int64_t first, int64_t rows,
+                               const int64_t *start, const int32_t *column, const double *value) {
+  (void)user, (void)all, (void)first, (void)rows, (void)start, (void)column, (void)value;
+  return MPS_OK;
+}
+
+static mps_status solve_nothing(void *user, const double *b, double tolerance, double *x,
+                                int64_t *iterations) {
+  (void)user, (void)b, (void)tolerance, (void)x, (void)iterations;
+  return MPS_OK;
+}
+
+static mps_status forget(void *user) {
+  const int32_t *rank = user;
+  return *rank == 1 ? MPS_ERROR_CANCELLED : MPS_OK;
+}
+
+/* A rollback that one rank refuses is refused on all. */
+static mps_status go_back(mps_mpm *mpm, int32_t *rank) {
+  mps_pore_solver_def def = mps_pore_solver_defaults();
+  mps_snapshot *then = NULL;
+  def.user = rank;
+  def.rows = take_nothing, def.solve = solve_nothing, def.forget = forget;
+  mps_status status = mps_mpm_snapshot(mpm, &then);
+  TRY(mps_mpm_set_pore_solver(mpm, &def));
+  TRY(mps_mpm_rollback(mpm, then));
+  mps_snapshot_destroy(&then);
+  return status;
+}
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   scene s = {.set = NULL};
@@ -274,6 +308,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
   TRY(mps_mpm_set_pore_level(s.mpm, level));
   if (what == NO_SOLUTION) TRY(mps_mpm_step(s.mpm, 2));
+  if (what == NO_FORGETTING) TRY(go_back(s.mpm, &rank));
   TRY(mps_mpm_get_pore_flow(s.mpm, what == OTHER_NUMBER && rank == 2 ? 0 : -1, NULL, &mass));
   end_scene(&s);
   return status;

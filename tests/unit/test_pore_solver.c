@@ -56,6 +56,18 @@ static void sum_tiles(mps_mpm *mpm, const double *vector, double *sum) {
     }
 }
 
+/* Cells with a pressure of their own by the particles after the step's motion; the equation is of
+ * those before it. */
+static int64_t count_unknowns(mps_mpm *mpm) {
+  int64_t count = 0;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    const mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
+    for (int k = 0; k < mpm->grid.block_nodes; k++)
+      count += mpsi_pore_is_unknown(mpm->water, g, k, cell);
+  }
+  return count;
+}
+
 /* The pressure 1 in one tile. */
 static void set_direction(mps_mpm *mpm, int64_t b, int t) {
   mpsi_pore_system *s = mpm->water->system;
@@ -76,6 +88,7 @@ static void compare_coarse(int32_t geometry, int cells, double high) {
   mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
   const mpsi_pore_coarse *c = s.mpm->water->system->coarse;
   assert_true(c->used && c->blocks * c->tiles <= MOST);
+  assert_int_equal(count_unknowns(s.mpm), s.mpm->water->system->unknowns); /* still the same */
   double worst = 0.0;
   int64_t rows = 0;
   for (int64_t b = 0; b < c->blocks; b++)
@@ -100,9 +113,9 @@ static void compare_coarse(int32_t geometry, int cells, double high) {
 
 static void coarse_equation_is_of_matrix(void **state) {
   (void)state;
-  compare_coarse(MPS_MPM_GEOMETRY_PLANE_STRAIN, 21, 15.3);
-  compare_coarse(MPS_MPM_GEOMETRY_AXISYMMETRIC, 21, 15.3);
-  compare_coarse(MPS_MPM_GEOMETRY_SPACE, 11, 11.3);
+  compare_coarse(MPS_MPM_GEOMETRY_PLANE_STRAIN, 21, 15.0);
+  compare_coarse(MPS_MPM_GEOMETRY_AXISYMMETRIC, 21, 15.0);
+  compare_coarse(MPS_MPM_GEOMETRY_SPACE, 11, 11.0);
 }
 
 /* ---- iterations ------------------------------------------------------------------------------ */

@@ -19,7 +19,7 @@ typedef struct mpsi_columns {
   double *s[6];  /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *u, *g[3]; /* Pa, Pa/m: pressure of pore water, which adds to the forces of s, and its
                        gradient; NULL without water */
-  double *n, *k;    /* porosity; permeability, m/s: NULL where water does not flow */
+  double *n, *k;    /* porosity; permeability, m/s: NULL without water that flows */
   double K_w;       /* Pa, bulk modulus of the water; 0 without water */
   double *V, *m;    /* m3, kg */
   double *J;        /* V/V0 where some law reads it, else NULL */

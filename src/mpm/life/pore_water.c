@@ -433,7 +433,8 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
                        "number is %d, must be 0 to %lld", number, (long long)mpm->water->faces - 1);
   status = agree_on_face(mpm, __func__, status, &def, number);
   if (status != MPS_OK) return status;
+  const bool drained = mpm->water->face[number].kind == MPS_PORE_FACE_DRAINED;
   mpm->water->face[number] = def;
-  warn_of_face(mpm, &def);
+  if (!drained) warn_of_face(mpm, &def); /* once, whatever its pressure does from step to step */
   return MPS_OK;
 }

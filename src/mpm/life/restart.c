@@ -499,11 +499,18 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   return status;
 }
 
+/* Before a former state returns. `status`: of this rank. All ranks have a solver of the caller or
+ * none has, and agree on what its forget says: later those that are well wait for the others. */
+static mps_status forget_solver(mps_mpm *mpm, const char *function, mps_status status) {
+  if (status != MPS_OK || !mpm->water || !mpm->water->outside) return status;
+  return mpsi_mpm_agree(mpm->partition, function, mpsi_pore_forget(mpm, function));
+}
+
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
-  if (status == MPS_OK) status = mpsi_pore_forget(mpm, __func__);
+  status = forget_solver(mpm, __func__, status);
   if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
   return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }
@@ -526,7 +533,7 @@ mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info)
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
-  if (status == MPS_OK) status = mpsi_pore_forget(mpm, __func__);
+  status = forget_solver(mpm, __func__, status);
   if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
   return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }

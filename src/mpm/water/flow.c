@@ -481,8 +481,10 @@ mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
   mpsi_water *water = mpm->water;
   if (!water || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return MPS_OK;
   const size_t bytes = (size_t)mpm->p.count * sizeof *mpm->p.V;
-  memcpy(water->former, mpm->p.V, bytes);
-  memcpy(water->expected, mpm->p.V, bytes);
+  if (bytes > 0) { /* else, on a rank without particles, there is no memory */
+    memcpy(water->former, mpm->p.V, bytes);
+    memcpy(water->expected, mpm->p.V, bytes);
+  }
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
   const mps_status status = find_implicit(mpm, function);

@@ -10,7 +10,7 @@
 #include <mps/pore_water.h>
 
 typedef struct mpsi_pore_layers mpsi_pore_layers;   /* layers.h */
-typedef struct mpsi_pore_system mpsi_pore_system;   /* implicit.h */
+typedef struct mpsi_pore_system mpsi_pore_system;   /* system.h */
 typedef struct mpsi_pore_outside mpsi_pore_outside; /* solve/outside.h */
 
 #define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
