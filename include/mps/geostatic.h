@@ -1,9 +1,11 @@
-/* mps/geostatic.h - geostatic stress: ground at rest under its own weight.
+/* mps/geostatic.h - the initial state: ground at rest under its own weight, a stress by a function,
+ * fields from another code's table.
  *
- * Writes the field `stress` of a particle set: the initial stress of WLS-MPM with laws in rate form
- * (linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb). Laws that take the stress from the
- * deformation gradient or the volume (neo-Hookean, Newtonian) do not read it. Tension is positive,
- * so that these stresses are negative.
+ * mps_particles_set_geostatic and _set_stress write the field `stress` of a particle set: the
+ * initial stress of WLS-MPM with laws in rate form (linear elastic, von Mises, Drucker-Prager,
+ * Mohr-Coulomb). Laws that take the stress from the deformation gradient or the volume
+ * (neo-Hookean, Newtonian) do not read it. Tension is positive, so that these stresses are
+ * negative.
  *
  * Thread rule: one thread at a time per set and context; callbacks run on the calling thread.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -83,6 +85,59 @@ typedef mps_status (*mps_geostatic_stress_fn)(void *user, const double *x, doubl
 MPS_API MPS_NODISCARD mps_status mps_particles_set_stress(mps_particles *particles,
                                                           mps_geostatic_stress_fn stress,
                                                           void *user);
+
+/* ---- from another code's table --------------------------------------------------------------- */
+
+/** How a particle gets its value from the points of a table. */
+typedef enum mps_table_interpolation {
+  MPS_TABLE_NEAREST = 0, /* that of the nearest point, of equally near ones the first */
+  MPS_TABLE_LINEAR = 1 /* a linear function, fitted by weighted least squares to the nearest points
+                          (12 in 2D, 20 in 3D; more where these lie on one line or plane, or on one
+                          side of the particle): exact for linear fields, and at a point that
+                          point's value. Points at one place count with their mean; a direction in
+                          which the whole table has no extent, as across a column of points, has no
+                          gradient */
+} mps_table_interpolation;
+
+typedef struct mps_table_def {
+  uint32_t struct_size;
+  int32_t interpolation; /* an mps_table_interpolation; MPS_TABLE_NEAREST (0) by default */
+  int32_t extrapolate; /* LINEAR, of particles outside: 0 (default): the value of the nearest point;
+                          1: the linear function goes on. `reach` then is needed */
+  int32_t reserved;    /* 0 */
+  double reach; /* m, > 0: a particle farther from its nearest point is an error; NaN (default):
+                   any distance */
+} mps_table_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
+MPS_API mps_status mps_table_def_init(mps_table_def *def, size_t size);
+static inline mps_table_def mps_table_defaults(void) {
+  mps_table_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_table_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Gives every particle the value of the float64 field `field` at its position from a table of
+ *  `count` points (1 to 2^31), such as the Gauss points of a finite-element analysis: positions[i *
+ *  dim + c] in m, within 1e15 m, in any order; values[i * components + c] in the field's unit, all
+ *  components of the field in its order (stress: xx, yy, zz, xy in 2D, and zx, yz in 3D; Pa,
+ * tension positive; docs/fields.md). Adds a field of the table of fields that the set lacks. The
+ * arrays are read during the call only. `def` NULL: the defaults. `outside` (may be NULL) receives,
+ * for MPS_TABLE_LINEAR, the number of particles that lie outside the points, beyond the convex hull
+ * of the nearest ones, which a log message of the level INFO states too; 0 for MPS_TABLE_NEAREST.
+ * The search takes time in proportion to log(count) a particle, on the context's threads; results
+ * are the same for every number of them. Of a set on several ranks each rank sets its own
+ * particles, from a table of its own choice: not collective. On an error nothing is changed.
+ *  MPS_ERROR_ARGUMENT: a NULL array, `count` out of range, a position or value that is not finite,
+ *  a particle farther than `reach` from the table, a value outside the field's range, points too
+ *  near a line or plane for a linear function; MPS_ERROR_FIELD: no such field, one of int64 or that
+ *  only the library writes, or of other `components`; MPS_ERROR_STATE: a field is being edited, or
+ * a solver's callback is running; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_table(
+    mps_particles *particles, const char *field, int64_t count, const double *positions,
+    int32_t components, const double *values, const mps_table_def *def, int64_t *outside);
 
 MPS_EXTERN_C_END
 #endif

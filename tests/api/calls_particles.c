@@ -414,6 +414,27 @@ static void particles_set_stress(api *a) {
   (void)api_end(a, mps_particles_set_stress(set, api_null(a, "stress") ? NULL : some_stress, a));
 }
 
+API_INIT(table_def)
+
+static void particles_set_table(api *a) {
+  api_begin(a, "mps_particles_set_table");
+  mps_particles *set = api_any(a, API_SET)->handle;
+  double positions[12], values[4];
+  for (int k = 0; k < 12; k++) positions[k] = 0.4 * (k % 3) + 0.3 * (k % 2) + 0.01 * k;
+  for (int k = 0; k < 4; k++) values[k] = 100.0 * k;
+  positions[3] = api_near(a, "positions", 0.5, 0.5);
+  values[2] = api_near(a, "values", 100.0, 50.0);
+  mps_table_def def = mps_table_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.interpolation = (int32_t)api_whole(a, "interpolation", 0, 1);
+  if (api_chance(a, 30)) def.reach = 1e6;
+  int64_t outside = 0;
+  const double *places = api_null(a, "positions") ? NULL : positions;
+  api_loosen(a);
+  (void)api_end(a, mps_particles_set_table(set, "pore_pressure", 4, places, 1, values, &def,
+                                           api_chance(a, 20) ? NULL : &outside));
+}
+
 static void particles_set_material(api *a) {
   api_begin(a, "mps_particles_set_material");
   int64_t ids[8] = {0};
@@ -451,6 +472,8 @@ static const api_call calls[] = {
     {"mps_particles_nearest", 2, API_SET, particles_nearest},
     {"mps_geostatic_def_init", 1, API_NOTHING, init_geostatic_def},
     {"mps_consolidation_def_init", 1, API_NOTHING, init_consolidation_def},
+    {"mps_table_def_init", 1, API_NOTHING, init_table_def},
+    {"mps_particles_set_table", 3, API_SET, particles_set_table},
     {"mps_particles_set_profile", 1, API_SET, particles_set_profile},
     {"mps_particles_set_consolidation", 1, API_SET, particles_set_consolidation},
     {"mps_particles_set_geostatic", 4, API_SET, particles_set_geostatic},

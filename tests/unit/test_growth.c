@@ -594,6 +594,15 @@ static mps_status use_geostatic(const void *def) {
   return status;
 }
 
+static mps_status use_table(const void *def) {
+  static const double position[2] = {0.0, 0.0}, value = 1.0;
+  mps_particles *set = square();
+  const mps_status status =
+      mps_particles_set_table(set, "pore_pressure", 1, position, 1, &value, def, NULL);
+  mps_particles_destroy(&set);
+  return status;
+}
+
 static mps_status use_record(const void *def) {
   mps_signal *made = NULL;
   const mps_status status = mps_signal_create_record(context, TEST_DATA "/sample.AT2", def, &made);
@@ -717,6 +726,7 @@ static const user users[] = {
     {"mps_material_user_def", need_user_law, use_user_law},
     {"mps_body_def", need_nothing, use_body},
     {"mps_consolidation_def", need_nothing, use_consolidation},
+    {"mps_table_def", need_nothing, use_table},
     {"mps_context_def", need_nothing, use_context},
     {"mps_coupling_def", need_coupling, use_coupling},
     {"mps_waves_def", need_waves, use_waves},

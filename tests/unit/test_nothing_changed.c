@@ -209,6 +209,13 @@ static mps_status no_stress(void *user, const double *x, double *stress) {
   return MPS_OK;
 }
 static mps_status set_stress(scene *s) { return mps_particles_set_stress(s->set, no_stress, NULL); }
+static mps_status set_table(scene *s) {
+  static const double x[6] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0}, values[3] = {1.0, 2.0, 3.0};
+  mps_table_def def;
+  assert_int_equal(mps_table_def_init(&def, sizeof def), MPS_OK);
+  def.interpolation = MPS_TABLE_LINEAR;
+  return mps_particles_set_table(s->set, "pore_pressure", 3, x, 1, values, &def, NULL);
+}
 static mps_status create_mpm(scene *s) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.2;
@@ -540,6 +547,7 @@ static const row rows[] = {
     {make_bare, edit_field, "mps_particles_edit", false},
     {make_bare, set_geostatic, "mps_particles_set_geostatic", false},
     {make_bare, set_stress, "mps_particles_set_stress", false},
+    {make_bare, set_table, "mps_particles_set_table", false},
     {make_ground, add_free_field, "mps_dynamics_add_free_field", false},
     {make_bare, create_mpm, "mps_mpm_create", false},
     {make_bare, create_dynamics, "mps_dynamics_create", false},

@@ -66,6 +66,7 @@ static const number unset[] = {
     NUMBER(mps_fluid_load_def, upper),
     NUMBER(mps_geostatic_def, surface),
     NUMBER(mps_consolidation_def, k0),
+    NUMBER(mps_table_def, reach),
     NUMBER(mps_consolidation_def, critical_volume),
     NUMBER(mps_material_cam_clay_def, critical_slope),
     NUMBER(mps_material_cam_clay_def, compression),

@@ -60,6 +60,7 @@
   X(mps_sainflou_def, mps_sainflou_def_init, "0.3", 48) \
   X(mps_separation_def, mps_separation_def_init, "0.3", 88) \
   X(mps_signal_record_def, mps_signal_record_def_init, "0.3", 32) \
+  X(mps_table_def, mps_table_def_init, "0.3", 24) \
   X(mps_waves_def, mps_waves_def_init, "0.3", 184)
 /* clang-format on */
 
