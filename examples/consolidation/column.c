@@ -100,7 +100,7 @@ static const char *read_layers(simulation *sim) {
                                 STRATA_MOST, fault};
   static char why[600];
   double rows[3 * STRATA_MOST];
-  int64_t count;
+  int64_t count = 0;
   strata *g = &sim->ground;
   if (!table_read(sim->s.layers, &def, rows, &count, why, sizeof why)) return why;
   g->count = (int)count;

@@ -64,7 +64,7 @@ static const char *read_layers(settings *s) {
                                 5, WALL_LAYERS, fault};
   static char why[600];
   double rows[5 * WALL_LAYERS];
-  int64_t count;
+  int64_t count = 0;
   if (!table_read(s->layers_file, &def, rows, &count, why, sizeof why)) return why;
   s->layers = (int)count;
   for (int k = 0; k < s->layers; k++) {
