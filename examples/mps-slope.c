@@ -103,10 +103,12 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("density", &s->density, NULL),
       COMMON_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
       OPTION_HEADING("Water"),
-      OPTION_TEXT("water-table", "m|FILE", &s->table_text,
-                  "level above the toe, of a pool where it is above the ground; or a line, each of "
-                  "its points x_m from the crest's edge (to the toe) and level_m above the toe; "
-                  "below it phi and cohesion are effective, --density is saturated"),
+      OPTION_TEXT(
+          "water-table", "m|FILE", &s->table_text,
+          "level above the toe, of a pool where it is above the ground; or a line, each of "
+          "its points x_m from the crest's edge (to the toe) and level_m above the toe, level "
+          "beyond its ends; "
+          "below it phi and cohesion are effective, --density is saturated"),
       OPTION_CHOICE("seepage", "rest|along", &s->flow,
                     "pressures below a line: of water at rest, or of water that flows along it, "
                     "cos^2 of its inclination times that"),

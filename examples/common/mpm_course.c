@@ -5,6 +5,7 @@
 #include "frame.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static resume parts(const mpm_course *c) {
@@ -33,6 +34,13 @@ mps_status mpm_course_peek(mpm_course *c, mps_context *context) {
 mps_status mpm_course_load(mpm_course *c, mps_context *context) {
   const resume r = parts(c);
   return c->options->restart ? resume_load(context, &r, c->options->restart) : MPS_OK;
+}
+
+bool mpm_course_same(mpm_course *c, resume_bytes *b, bool same, const char *what) {
+  if (!same)
+    snprintf(c->m->why, sizeof c->m->why, "%s changed since the checkpoint %.300s was written",
+             what, c->options->restart);
+  return !resume_wrong(b, !same);
 }
 
 mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) {

@@ -54,6 +54,9 @@ mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples);
 /* Closes the series, of a run that ended with `status`, and writes a checkpoint of one that Ctrl-C
  * has ended. Returns `status`, or that of an error here. */
 mps_status mpm_course_end(mpm_course *c, mps_status status);
+/* In `pass`, of what stands in files (resume_same): where it is not the `same` as at the start, the
+ * reason is that `what`, "the layers have", changed. False then, and after any error. */
+bool mpm_course_same(mpm_course *c, resume_bytes *b, bool same, const char *what);
 
 /* A snapshot in the data of a checkpoint. */
 void resume_pass_snapshot(resume_bytes *b, mpm_snapshot *shot);

@@ -28,6 +28,16 @@ bool resume_wrong(resume_bytes *b, bool wrong) {
   return b->status != MPS_OK;
 }
 
+bool resume_same(resume_bytes *b, const void *value, size_t size) {
+  char *at = b->at;
+  b->bytes += (int64_t)size;
+  if (!at || b->status != MPS_OK || resume_wrong(b, b->bytes > b->size)) return true;
+  b->at += size;
+  if (b->reads) return memcmp(at, value, size) == 0;
+  memcpy(at, value, size);
+  return true;
+}
+
 /* The warnings so far; those of the file replace the present ones of this process. Of several ranks
  * only the first has them, and all must write the same: none. */
 static void pass_warnings(const resume *r, resume_bytes *b) {

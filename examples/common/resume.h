@@ -33,6 +33,9 @@ typedef struct resume_bytes {
 void resume_pass(resume_bytes *b, void *value, size_t size);
 /* While reading, records that the data are invalid (`wrong`). True after any error. */
 bool resume_wrong(resume_bytes *b, bool wrong);
+/* Passes values that a run must be continued with, as those of a file that may have changed. False
+ * while reading where they differ. */
+bool resume_same(resume_bytes *b, const void *value, size_t size);
 
 typedef struct resume {
   const char *key; /* names the program and the layout of the bytes */

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-#define LIQUEFIED 0.95 /* u over the first effective stress */
-#define FARTHEST 0.05  /* axial strain of a step in search of a deviator stress */
+#define FARTHEST 0.05 /* axial strain of a step in search of a deviator stress */
 
 bool element_is_cyclic(const settings *s) {
   return !s->path_file && (s->path == CYCLIC || s->path == CYCLIC_TRIAXIAL);
@@ -109,7 +108,7 @@ double element_reference(const element *x) {
 double element_liquefied(const element *x) {
   if (!element_is_cyclic(&x->s) || x->s.drained || !(x->s.p0 > 0.0)) return NAN;
   for (int64_t k = 0; k < x->rows; k++)
-    if (x->table[k].u >= LIQUEFIED * element_reference(x)) return x->table[k].cycles;
+    if (x->table[k].u >= ELEMENT_LIQUEFIED * element_reference(x)) return x->table[k].cycles;
   return x->stopped ? x->table[x->rows - 1].cycles : NAN;
 }
 

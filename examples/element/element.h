@@ -62,6 +62,7 @@ typedef struct stage {
   int64_t steps;
 } stage;
 
+#define ELEMENT_LIQUEFIED 0.95 /* u over element_reference */
 enum { STAGES = 1000 };
 
 /* A row of path.csv. */

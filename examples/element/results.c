@@ -261,7 +261,11 @@ bool element_results(element *x, bool done) {
     printf("; last loop: G %.6g MPa, damping ratio %.4f", 1e-6 * modulus, damping);
   const double liquefied = element_liquefied(x);
   if (last->contraction > 0.0) printf("; contraction %.4g %%", 100.0 * last->contraction);
-  if (!isnan(liquefied)) printf("; liquefied after %.2f cycles", liquefied);
+  if (!isnan(liquefied) && last->u < ELEMENT_LIQUEFIED * element_reference(x))
+    printf("; from %.2f cycles on the stress is no longer borne, r_u %.2f", liquefied,
+           last->u / element_reference(x));
+  else if (!isnan(liquefied))
+    printf("; liquefied after %.2f cycles", liquefied);
   if (!isnan(element_limit(x))) printf("; limit of q by theory %.6g kPa", 1e-3 * element_limit(x));
   printf("\n");
   return true;

@@ -124,11 +124,14 @@ static bool read_word(reading *r, char *word) {
 
 /* The word law=..., which says what the others may be; elastic where there is none. */
 static bool find_law(reading *r, char *const *word, int count) {
+  bool given = false;
   r->layer->law = SITE_ELASTIC;
   for (int k = 0; k < count; k++) {
     if (strncmp(word[k], "law=", 4) != 0) continue;
     if (r->half_space) return REFUSE(r, "the half space is elastic, and has no law");
+    if (given) return REFUSE(r, "law is given twice");
     if (!read_law(r, word[k] + 4)) return false;
+    given = true;
   }
   return true;
 }
@@ -217,6 +220,10 @@ static bool read_line(mpm_model *m, const char *path, int64_t number, char *line
 static bool complete_water(mpm_model *m, const settings *s, site_ground *g) {
   bool some = !isnan(s->permeability);
   for (int64_t i = 0; i < g->count; i++) some = some || !isnan(g->layer[i].permeability);
+  if (!some && !s->undrained &&
+      (options_given(options_read(), "porosity") || options_given(options_read(), "water-bulk")))
+    return site_refuse(m, "--porosity and --water-bulk are for ground with water: give "
+                          "--permeability or --undrained");
   for (int64_t i = 0; i < g->count; i++) {
     site_layer *l = &g->layer[i];
     if (isnan(l->porosity)) l->porosity = s->porosity;

@@ -243,6 +243,9 @@ static bool complete(simulation *sim) {
   sim->start = sim->flows ? rest_time(sim) : 0.0;
   sim->duration =
       isnan(s->duration) ? sim->record_end + 20.0 * site_travel_time(&sim->ground) : s->duration;
+  if (sim->duration < sim->record_end * (1.0 - 1e-9))
+    app_warn(sim->m.a, "--duration is %g s, the record lasts %g s: the spectra are of a part of it",
+             sim->duration, sim->record_end);
   sim->samples = (int64_t)ceil(sim->duration / s->sample - 1e-9);
   if (sim->samples > SITE_SAMPLES)
     return site_refuse(&sim->m, "%lld samples, must be at most %d: give a larger --sample",

@@ -19,6 +19,8 @@ static const char *check_motion(const settings *s, const option *table) {
       return "--frequency and --amplitude are for --record ricker and sine";
   if (!sine && options_given(table, "cycles")) return "--cycles is for --record sine";
   if (s->amplitude == 0.0) return "--amplitude must not be 0 m/s2";
+  if (!file && s->frequency > s->highest)
+    return "--frequency must be at most --max-frequency, which the cells are made for";
   if (s->scale == 0.0) return "--record-scale must not be 0";
   if (s->cycles != floor(s->cycles)) return "--cycles must be a whole number";
   return NULL;

@@ -1,6 +1,6 @@
 /* site.h - the parts of mps-site-response: options (options.c), the file of layers (ground.c), laws
  * of the layers (laws.c), the motion (motion.c), model and run (model.c), what is recorded
- * (record.c), a restart (restart.c), spectra (spectra.c), waves in elastic layers (exact.c),
+ * and passed to a restart (record.c), spectra (spectra.c), waves in elastic layers (exact.c),
  * results (results.c, pictures.c). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_SITE_H
 #define EXAMPLES_SITE_H

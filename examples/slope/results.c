@@ -86,6 +86,7 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number_if(&f, stands > 0.0, "stands", stands);
   json_number(&f, "fails", fails);
   json_number(&f, "stability_number", stability_number(s, factor));
+  json_number_if(&f, slope_pool(s) > 0.0, "pool", slope_pool(s));
   slope_circle circle;
   const double circles = circles_factor(s, &circle);
   json_number(&f, "slip_circles", circles);
@@ -199,6 +200,7 @@ static void print(const simulation *sim) {
   else
     printf("factor of safety %.3f: stands with the strength divided by %.4g, fails with %.4g\n",
            found_factor(sim), stands, fails);
+  if (slope_pool(s) > 0.0) printf("a pool stands %.4g m above the toe\n", slope_pool(s));
   slope_circle circle;
   const double circles = circles_factor(s, &circle);
   if (!isnan(circles)) printf("slip circles (Bishop's simplified method): %.3f\n", circles);

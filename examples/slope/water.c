@@ -130,6 +130,16 @@ mps_status slope_wet(settings *s, mps_particles *set) {
 
 /* ---- options --------------------------------------------------------------------------------- */
 
+/* From a to b, not level, is above the ground somewhere: at an end, or above the toe, where alone
+ * the surface is concave. */
+static bool hangs(const settings *s, const double *a, const double *b) {
+  const double run = s->slope * s->height, least = 1e-9 * s->height;
+  if (a[1] == b[1]) return false;
+  if (a[0] <= run && run < b[0] && a[1] + (b[1] - a[1]) * (run - a[0]) / (b[0] - a[0]) > least)
+    return true;
+  return a[1] > slope_surface(s, a[0]) + least || b[1] > slope_surface(s, b[0]) + least;
+}
+
 /* The line of a file: x ascending, and where it is above the ground it is level, as a pool is. */
 static const char *read_line(settings *s) {
   static const table_def def = {"point", "x_m, level_m", 2, SLOPE_POINTS, NULL};
@@ -139,8 +149,7 @@ static const char *read_line(settings *s) {
   for (int64_t k = 1; k < s->points; k++) {
     const double *a = s->line + 2 * (k - 1), *b = a + 2;
     if (!(b[0] > a[0])) return "--water-table: the x of its points must ascend";
-    if (a[1] != b[1] && (a[1] > slope_surface(s, a[0]) + 1e-9 * s->height ||
-                         b[1] > slope_surface(s, b[0]) + 1e-9 * s->height))
+    if (hangs(s, a, b))
       return "--water-table: above the ground it must be level, the water of a pool";
   }
   return NULL;

@@ -124,6 +124,17 @@ static mps_status make_wall(mps_context *context, simulation *sim) {
 
 /* ---- the model ------------------------------------------------------------------------------- */
 
+/* The layers stand in a file, and must be those of the start. */
+static bool pass_layers(simulation *sim, resume_bytes *b) {
+  const settings *s = &sim->s;
+  if (!s->layers_file) return true;
+  const bool same = resume_same(b, &s->layers, sizeof s->layers) &&
+                    resume_same(b, s->layer, (size_t)s->layers * sizeof *s->layer);
+  if (mpm_course_same(&sim->course, b, same, "the layers have")) return true;
+  sim->rows = 0;
+  return false;
+}
+
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);
@@ -131,6 +142,7 @@ static void pass(void *user, resume_bytes *b) {
     sim->rows = 0;
     return;
   }
+  if (!pass_layers(sim, b)) return;
   const size_t bytes = (size_t)sim->rows * sizeof *sim->path;
   resume_pass(b, &sim->last_time, sizeof sim->last_time);
   resume_pass(b, sim->last, sizeof sim->last);

@@ -84,6 +84,12 @@ if [ -f "$work/si/checkpoint.h5" ]; then
   has "$work/log" "the layers or the record have changed"
 fi
 
+# Numbers of water in dry ground, and a run that ends before its record.
+! "$program" --layers "$work/soft" --water-bulk 1GPa --threads 1 --out "$work/no" >"$work/log" 2>&1 || fail "water in dry ground"
+has "$work/log" "--porosity and --water-bulk are for ground with water"
+"$program" --layers "$work/soft" --max-frequency 5 --duration 0.3 --threads 1 --out "$work/part" >"$work/log" 2>&1 || exit 1
+has "$work/log" "--duration is 0.3 s, the record lasts 1.75658 s"
+
 # What is wrong with a file of layers, and where.
 wrong() { # TEXT LINE...
   text=$1
@@ -101,6 +107,7 @@ wrong "density=18kN/m3 has another unit" "thickness=5m density=18kN/m3 vs=100"
 wrong "elastic lacks density" "thickness=5m vs=100"
 wrong "law=sand is not one of" "$good law=sand"
 wrong "thickness is given twice" "$good thickness=5m"
+wrong "law is given twice" "$good law=elastic law=mohrcoulomb phi=30"
 wrong "is no name=value" "5 1800 100"
 wrong "must be 0.7041 to 1.42: give k0" "$good law=mohrcoulomb phi=10"
 wrong "needs one of relative-density and blow-count" "$good law=cyclicsand phi=30"
