@@ -103,7 +103,7 @@ typedef struct mps_table_def {
   uint32_t struct_size;
   int32_t interpolation; /* an mps_table_interpolation; MPS_TABLE_NEAREST (0) by default */
   int32_t extrapolate; /* LINEAR, of particles outside: 0 (default): the value of the nearest point;
-                          1: the linear function goes on. `reach` then is needed */
+                          1: the linear function continues. `reach` then is needed */
   int32_t reserved;    /* 0 */
   double reach; /* m, > 0: a particle farther from its nearest point is an error; NaN (default):
                    any distance */

@@ -69,27 +69,27 @@ static void enter(search *s, int64_t point) {
   s->out[k] = now;
 }
 
-static void visit(search *s, int32_t axis, int64_t begin, int64_t end) {
+static void search_part(search *s, int32_t axis, int64_t begin, int64_t end) {
   if (begin == end) return;
   const int64_t middle = begin + (end - begin) / 2, root = s->tree->order[middle];
   const double d = s->at[axis] - s->tree->x[root * s->tree->dim + axis];
   const int32_t next = axis + 1 < s->tree->dim ? axis + 1 : 0;
   if (d < 0.0)
-    visit(s, next, begin, middle);
+    search_part(s, next, begin, middle);
   else
-    visit(s, next, middle + 1, end);
+    search_part(s, next, middle + 1, end);
   enter(s, root);
   /* the other side also where it is as far as the last one found: its numbers may be lower */
   if (s->found == s->wanted && d * d > s->out[s->found - 1].square) return;
   if (d < 0.0)
-    visit(s, next, middle + 1, end);
+    search_part(s, next, middle + 1, end);
   else
-    visit(s, next, begin, middle);
+    search_part(s, next, begin, middle);
 }
 
 int32_t mpsi_nearest_find(const mpsi_nearest *tree, const double *at, int32_t wanted,
                           mpsi_near *out) {
   search s = {.tree = tree, .at = at, .wanted = wanted, .out = out};
-  visit(&s, 0, 0, tree->count);
+  search_part(&s, 0, 0, tree->count);
   return s.found;
 }

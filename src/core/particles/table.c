@@ -156,7 +156,7 @@ static bool is_outside(const fit *f) {
   return false;
 }
 
-/* The value of the linear function at the place; within those of the points unless it may go on
+/* The value of the linear function at the place; within those of the points unless it may continue
  * beyond them. */
 static void evaluate(const fit *f, bool within, double *out) {
   const table *t = f->t;
