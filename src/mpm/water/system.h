@@ -19,7 +19,8 @@ enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MP
 typedef struct mpsi_pore_contact {
   double normal[3]; /* outward unit vector of the surface */
   double yield[3]; /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
-  double left[3];  /* N s/kg, what it has taken of a correction */
+  double left[3];  /* N s/kg, what it has taken of a correction, */
+  double now[3], past[3]; /* in the last iterates */
   int64_t constraint, first;
   int32_t entries;
   bool sticks; /* all components are held, else the normal one */
@@ -31,12 +32,13 @@ typedef struct mpsi_pore_contact_entry {
 } mpsi_pore_contact_entry;
 
 typedef struct mpsi_pore_contact_node {
-  double mass, v[3]; /* kg; correction, m/s per s */
-  int64_t number;    /* in the system, -1: not of this rank */
-  int32_t at[3];     /* on several ranks: in the whole grid, in cells */
-  int32_t slot;      /* and its place in their sums, -1: none */
-  uint8_t held;      /* bit c: component c is prescribed */
-  bool counted;      /* by this rank */
+  double mass, v[3];      /* kg; correction, m/s per s, */
+  double now[3], past[3]; /* in the last iterates */
+  int64_t number;         /* in the system, -1: not of this rank */
+  int32_t at[3];          /* on several ranks: in the whole grid, in cells */
+  int32_t slot;           /* and its place in their sums, -1: none */
+  uint8_t held;           /* bit c: component c is prescribed */
+  bool counted;           /* by this rank */
 } mpsi_pore_contact_node;
 
 typedef struct mpsi_pore_contacts {
