@@ -172,13 +172,12 @@ static int64_t pack(int64_t low, int64_t high) {
   return (int64_t)((uint64_t)high << 32 | ((uint64_t)low & UINT32_MAX));
 }
 
-/* Gives the nodes of all ranks their slots: those that rank 0 counts first. Collective. */
-static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out) {
+/* How many nodes all ranks count; *first: those of the ranks before. Collective. */
+static mps_status count_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out,
+                              int64_t *first) {
   mps_domain *domain = mpm->partition->domain;
-  const mpsi_pore_system *s = mpm->water->system;
   const int32_t ranks = mps_domain_size(domain), own = mps_domain_rank(domain);
-  int64_t first = 0;
-  bool good = mpsi_room_ensure(mpm->context, &out->word_room, ranks, sizeof(int64_t));
+  const bool good = mpsi_room_ensure(mpm->context, &out->word_room, ranks, sizeof(int64_t));
   mps_status status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, 8);
   status = mpsi_domain_agree(domain, function, status);
   if (status != MPS_OK) return status;
@@ -187,17 +186,28 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
   for (int64_t k = 0; k < out->nodes; k++) word[own] += out->node[k].counted;
   status = share(mpm, function, ranks, word);
   if (status != MPS_OK) return status;
-  out->slots = 0;
+  out->slots = *first = 0;
   for (int32_t r = 0; r < ranks; r++) {
-    if (r < own) first += word[r];
+    if (r < own) *first += word[r];
     out->slots += word[r];
   }
-  good = mpsi_room_ensure(mpm->context, &out->word_room, 3 * out->slots, sizeof(int64_t)) &&
-         mpsi_room_ensure(mpm->context, &out->known_room, out->slots, sizeof(known_node));
+  return MPS_OK;
+}
+
+/* Gives the nodes of all ranks their slots: those that rank 0 counts first. Collective. */
+static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out) {
+  mps_domain *domain = mpm->partition->domain;
+  const mpsi_pore_system *s = mpm->water->system;
+  int64_t first = 0;
+  mps_status status = count_slots(mpm, function, out, &first);
+  if (status != MPS_OK || out->slots == 0) return status;
+  const bool good =
+      mpsi_room_ensure(mpm->context, &out->word_room, 3 * out->slots, sizeof(int64_t)) &&
+      mpsi_room_ensure(mpm->context, &out->known_room, out->slots, sizeof(known_node));
   status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)out->slots * 24);
   status = mpsi_domain_agree(domain, function, status);
   if (status != MPS_OK) return status;
-  word = out->word_room.item;
+  int64_t *word = out->word_room.item;
   memset(word, 0, (size_t)(WORDS * out->slots) * sizeof *word);
   for (int64_t k = 0; k < out->nodes; k++) {
     const mpsi_pore_contact_node *node = &out->node[k];
@@ -235,7 +245,7 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
                               (size_t)all->constraint_count * sizeof *out->contact);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
-  memset(out->index, -1, (size_t)out->indices * sizeof *out->index);
+  if (out->indices > 0) memset(out->index, -1, (size_t)out->indices * sizeof *out->index);
   for (int64_t n = 0; n < all->constraint_count; n++)
     if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, out);
   if (mpm->partition) status = find_slots(mpm, function, out);

@@ -82,8 +82,8 @@ static void correct(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 /* Velocities and volumes by the changes of the pressures that have been found. */
 static mps_status move_nodes(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
-  memcpy(s->direction, s->change,
-         (size_t)(mpm->grid.node_count * mpm->grid.block_nodes) * sizeof *s->change);
+  const int64_t cells = mpm->grid.node_count * mpm->grid.block_nodes; /* a rank may have none */
+  if (cells > 0) memcpy(s->direction, s->change, (size_t)cells * sizeof *s->change);
   const mps_status status = mpsi_pore_find_motion(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_pore_bear_contacts(mpm);
