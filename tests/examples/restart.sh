@@ -49,7 +49,7 @@ changed() { # PROGRAM EVERY FILE EDIT OPTION...: FILE is changed by sed EDIT
 cp "$(dirname "$0")/data/wall_layers.csv" "$work/wall.csv"
 changed mps-wall 0.05 "$work/wall.csv" s/1900/1901/ --h 0.125 --path 2mm --layers "$work/wall.csv"
 cp "$(dirname "$0")/data/consolidation_layers.csv" "$work/column.csv"
-changed mps-consolidation 0.2 "$work/column.csv" s/1e-8/2e-8/ --cells 5 --stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
+changed mps-consolidation 0.2 "$work/column.csv" s/1e-/2e-/ --cells 5 --stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
 printf '0,8\n15,0\n' >"$work/line.csv"
 changed mps-slope 1.1 "$work/line.csv" s/15,0/15,1/ --h 2 --falls 3 --tolerance 0.5 --water-table "$work/line.csv"
 again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s
