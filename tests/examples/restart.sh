@@ -35,21 +35,21 @@ again mps-site-response 0.7 --layers "$work/layers" --permeability 1e-4 --freque
 again mps-wall 0.05 --h 0.2 --base 0.4 --path 2mm --friction 0.3
 again mps-wall 0.05 --h 0.125 --path 2mm --layers "$(dirname "$0")/data/wall_layers.csv" --water-table 0.4
 # Files that have changed since the checkpoint.
-changed() { # PROGRAM EVERY FILE OPTION...: the first number of FILE's last line becomes another
-  program=$1 every=$2 file=$3
-  shift 3
+changed() { # PROGRAM EVERY FILE EDIT OPTION...: FILE is changed by sed EDIT
+  program=$1 every=$2 file=$3 edit=$4
+  shift 4
   rm -rf "$work/$program" "$work/$program"-from-*
   "$programs/$program" "$@" --every-checkpoint "$every" --threads 1 --out "$work/$program" >"$work/log"
   [ -f "$work/$program/checkpoint.h5" ] || return 0
-  sed -i '$s/^[0-9]*/7/' "$file"
+  sed -i "$edit" "$file"
   ! "$programs/$program" "$@" --restart "$work/$program/checkpoint.h5" --threads 1 --out "$work/other" >"$work/log" 2>&1 ||
     fail "$program goes on with another file"
   grep -q "changed since the checkpoint" "$work/log" || fail "no word of the file: $(cat "$work/log")"
 }
 cp "$(dirname "$0")/data/wall_layers.csv" "$work/wall.csv"
-changed mps-wall 0.05 "$work/wall.csv" --h 0.125 --path 2mm --layers "$work/wall.csv"
+changed mps-wall 0.05 "$work/wall.csv" s/1900/1901/ --h 0.125 --path 2mm --layers "$work/wall.csv"
 cp "$(dirname "$0")/data/consolidation_layers.csv" "$work/column.csv"
-changed mps-consolidation 0.2 "$work/column.csv" --cells 5 --stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
+changed mps-consolidation 0.2 "$work/column.csv" s/1e-/2e-/ --cells 5 --stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
 printf '0,8\n15,0\n' >"$work/line.csv"
-changed mps-slope 1.1 "$work/line.csv" --h 2 --falls 3 --tolerance 0.5 --water-table "$work/line.csv"
+changed mps-slope 1.1 "$work/line.csv" s/15,0/15,1/ --h 2 --falls 3 --tolerance 0.5 --water-table "$work/line.csv"
 again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s
