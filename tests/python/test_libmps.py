@@ -664,7 +664,7 @@ class Whole(unittest.TestCase):
 
     def test_every_array_has_a_length(self):
         """Pointers to numbers in the headers: one result, or an array whose length is known."""
-        single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "part",
+        single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "outside", "part",
                   "strain", "stabilising", "start", "index", "indices", "offsets", "progressive",
                   "evanescent", "reflection"}
         of_one = {"mps_absorber_advance: displacement", "mps_absorber_advance: velocity",
