@@ -70,10 +70,11 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("psi", &s->psi, "of sand"),
       COMMON_NUMBER("young", &s->young, NULL),
       COMMON_NUMBER("poisson", &s->poisson, "of mcc, default 0.25; with --ir else 0.49"),
-      OPTION_NUMBER("ir", "1", OPTION_FROM_TO(1.0, 1e5), &s->ir,
-                    "rigidity index G/su instead of --young; clay, tresca, mcc; su, which N_kt refers to "
-                    "too, is that of triaxial compression, half the largest q: of clay 0.866 of "
-                    "the cohesion, of tresca the cohesion"),
+      OPTION_NUMBER(
+          "ir", "1", OPTION_FROM_TO(1.0, 1e5), &s->ir,
+          "rigidity index G/su instead of --young; clay, tresca, mcc; su, which N_kt refers to "
+          "too, is that of triaxial compression, half the largest q: of clay 0.866 of "
+          "the cohesion, of tresca the cohesion"),
       OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M, "mcc: critical q/p in compression"),
       OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-4, 5.0), &s->lambda,
                     "mcc: slope of virgin compression in e - ln p"),
@@ -86,9 +87,10 @@ int main(int argc, char **argv) {
                     "mcc: drained by the surface; undrained if not given"),
       COMMON_NUMBER("density", &s->density, NULL),
       COMMON_NUMBER("gravity", &s->gravity, "default 9.81 m/s2 with --law sand, else 0"),
-      OPTION_NUMBER("surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
-                    "vertical stress at the surface, with --start: the tip waits for the ground to come to "
-                    "rest; mcc: effective, of all ground"),
+      OPTION_NUMBER(
+          "surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
+          "vertical stress at the surface, with --start: the tip waits for the ground to come to "
+          "rest; mcc: effective, of all ground"),
       OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.0, 10.0), &s->k0,
                     "horizontal over vertical stress, default nu/(1 - nu); mcc: by the law"),
       OPTION_CHOICE("sides", "rollers|free", &s->sides,

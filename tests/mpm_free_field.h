@@ -174,8 +174,8 @@ static inline field_response field_shake_layer(mps_context *context, double spac
   const double faster = shear ? 1.0 : sqrt(2.0 * (1.0 - FIELD_NU) / (1.0 - 2.0 * FIELD_NU));
   const double f = share * faster * vs / (4.0 * H);
   const double end = 6.0 / f + 12.0 * 2.0 * H / (vs * faster);
-  field_response out = {shear, flip_time, share, 0.0, field_amplification(0.5 * PI * share, vs / rock),
-                        0.0,   0.0};
+  field_response out = {
+      shear, flip_time, share, 0.0, field_amplification(0.5 * PI * share, vs / rock), 0.0, 0.0};
   field_ground of = {.width = 4.0,
                      .height = below + H,
                      .spacing = spacing,

@@ -1,4 +1,5 @@
-/* state_equation.h - the volume of a fluid by its pressure. SPDX-License-Identifier: BSD-3-Clause */
+/* state_equation.h - the volume of a fluid by its pressure. SPDX-License-Identifier: BSD-3-Clause
+ */
 #ifndef MPSI_STATE_EQUATION_H
 #define MPSI_STATE_EQUATION_H
 

@@ -173,8 +173,8 @@ static mps_status find_traction(const mpsi_boundary_setup *setup, const char *fu
 /* ---- particles to nodes ---------------------------------------------------------------------- */
 
 /* Velocity (m/s) of the dashpots across the side. The pressure of the water in column and ground is
- * the same, that of a wave which leaves included, so that only the effective stress of the wave acts
- * on the dashpots: rho c_p times the skeleton's part of the modulus. */
+ * the same, that of a wave which leaves included, so that only the effective stress of the wave
+ * acts on the dashpots: rho c_p times the skeleton's part of the modulus. */
 static double across_side(const mpsi_columns *p, const mpsi_free_field *f, int64_t k,
                           int64_t from) {
   double wave, shear;
