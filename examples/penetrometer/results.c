@@ -9,7 +9,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#define LAST 0.2 /* of the path: means for the summary */
+#define LAST 0.2         /* of the path: means for the summary */
+#define MOST_SPEED 100.0 /* v D/c_v up to which implicit pressures give N_kt within 2 % */
 
 double pen_hertz(const penetrometer *p, double depth) {
   const double stiffness = p->s.young / (1.0 - p->s.poisson * p->s.poisson);
@@ -99,6 +100,14 @@ static void write_settings(output *f, const penetrometer *p) {
   json_number(f, "dt", p->run[0].dt);
 }
 
+/* V = v D/c_v, c_v of virgin compression at the stress before; NAN where no water flows. */
+static double speed_of(const pen_settings *s) {
+  if (s->law != PEN_CAM_CLAY || isnan(s->permeability)) return NAN;
+  const double c_v =
+      s->permeability * (1.0 + s->e0) * s->surcharge / (s->lambda * MPS_PORE_GRAVITY * PEN_WATER);
+  return s->rate * s->diameter / c_v;
+}
+
 /* Undrained ground: the net cone factor and what it refers to. */
 static void write_factor(output *f, const penetrometer *p, const mean *m) {
   const pen_settings *s = &p->s;
@@ -114,17 +123,19 @@ static void write_factor(output *f, const penetrometer *p, const mean *m) {
   json_number(f, "n_kt", n.n_kt);
   if (isfinite(n.teh_houlsby)) json_number(f, "n_kt_teh_houlsby", n.teh_houlsby);
   if (isfinite(n.lu)) json_number(f, "n_kt_lu", n.lu);
-  if (s->law != PEN_CAM_CLAY || isnan(s->permeability)) return;
-  /* V = v D/c_v, c_v of virgin compression at the stress before */
-  const double c_v =
-      s->permeability * (1.0 + s->e0) * s->surcharge / (s->lambda * MPS_PORE_GRAVITY * PEN_WATER);
-  json_number(f, "v_d_over_cv", s->rate * s->diameter / c_v);
+  if (!isnan(speed_of(s))) json_number(f, "v_d_over_cv", speed_of(s));
 }
 
 /* Of the first run; of both for conditions that must never occur. */
 static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   const pen_run *r = &p->run[0], *other = &p->run[p->runs - 1];
   output f;
+  if (speed_of(&p->s) > MOST_SPEED)
+    app_warn(a,
+             "V = v D/c_v is %.3g: hardly any water flows, and the implicit pressures of "
+             "--permeability lag: N_kt is some 10 %% too low; undrained ground (without "
+             "--permeability) is nearer",
+             speed_of(&p->s));
   if (!mpm_model_summary(a, &r->m, p->s.out, &f)) return false;
   write_settings(&f, p);
   json_number(&f, "depth", pen_reached(r));

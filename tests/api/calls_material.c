@@ -105,9 +105,11 @@ static void material_cam_clay(api *a) {
   mps_material_cam_clay_def def = mps_material_cam_clay_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.critical_slope = api_real(a, "critical_slope", 0.05, 2.9, 1.0);
+  const int wrong = a->wrong;
   def.compression = api_real(a, "compression", 0.1, 5.0, 0.2);
   def.swelling = api_real(a, "swelling", 1e-5, 0.09, 0.04);
-  if (def.swelling < def.compression && def.swelling > 0.09 && def.swelling <= 0.1) a->wrong = 0;
+  if (def.swelling >= 1e-5 && def.swelling < def.compression && def.compression <= 5.0)
+    a->wrong = wrong; /* the bounds above only keep the two apart */
   def.poisson = api_real(a, "poisson", 0.0, 0.49, 0.3);
   def.void_ratio = api_real(a, "void_ratio", 0.01, 20.0, 1.0);
   def.preconsolidation = api_real(a, "preconsolidation", 1e-3, 1e12, 1e5);

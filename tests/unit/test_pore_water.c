@@ -370,6 +370,36 @@ static void faces_of_undrained_ground_are_warned_of(void **state) {
   }
 }
 
+/* Implicit pressures of undrained ground below a body that moves are warned of, once. */
+static void bodies_in_undrained_ground_are_warned_of(void **state) {
+  (void)state;
+  for (int which = 0; which < 3; which++) { /* moves; stands still; the water flows */
+    journal log = {0};
+    mps_context *own = journal_context(&log, NULL);
+    pore_column c = pore_column_begin(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+    mps_pore_water_def water = mps_pore_water_defaults();
+    mps_body_def def = mps_body_defaults();
+    mps_body_motion motion = mps_body_motion_defaults();
+    mps_body *body = NULL;
+    mps_contact *contact = NULL;
+    water.porosity = 0.4, water.scheme = MPS_PORE_SCHEME_IMPLICIT;
+    if (which == 2) water.permeability = 1e-4;
+    def.position[1] = 1.25;
+    motion.velocity[1] = which == 1 ? 0.0 : -1e-3;
+    mps_assert_ok(own, mps_mpm_add_pore_water(c.s.mpm, &water));
+    mps_assert_ok(own, mps_body_create_box(own, &def, 1.0, 0.5, &body));
+    mps_assert_ok(own, mps_body_set_motion(body, &motion));
+    mps_assert_ok(own, mps_mpm_add_contact(c.s.mpm, body, NULL, &contact));
+    mps_assert_ok(own, mps_mpm_step(c.s.mpm, 3));
+    assert_int_equal(log.count, which == 0 ? 1 : 0);
+    if (which == 0) assert_non_null(strstr(log.last, "lag beside a body that moves"));
+    mps_contact_destroy(&contact);
+    mps_body_destroy(&body);
+    mpm_scene_end(&c.s);
+    mps_context_destroy(&own);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(definitions_are_checked),
                                      cmocka_unit_test(fields_are_checked),
@@ -380,6 +410,7 @@ int main(void) {
                                      cmocka_unit_test(implicit_steps_are_long),
                                      cmocka_unit_test(undrained_ground_settles),
                                      cmocka_unit_test(bodies_are_impervious),
-                                     cmocka_unit_test(faces_of_undrained_ground_are_warned_of)};
+                                     cmocka_unit_test(faces_of_undrained_ground_are_warned_of),
+                                     cmocka_unit_test(bodies_in_undrained_ground_are_warned_of)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -60,10 +60,10 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool expecting; /* what particles take of their cells is before the motion (flow.c) */
-  bool flows;
-  double viscosity; /* Pa s, of the change of volume, in the forces (README.md) */
-  double share;     /* of the slopes between cells, which particles take in this exchange */
+  bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
+  bool flows, warned; /* warned: of bodies that move through undrained ground (update.c) */
+  double viscosity;   /* Pa s, of the change of volume, in the forces (README.md) */
+  double share;       /* of the slopes between cells, which particles take in this exchange */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
