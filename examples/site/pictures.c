@@ -19,6 +19,10 @@ static void draw_spectra(output *f, const simulation *sim, bool exact) {
               "' title 'surface', \\\n"
               "  '' using 1:3 every ::1 with lines linecolor rgb '" RED "' title 'input'\n",
               0.5 / sim->s.highest);
+  if (sim->duration * sim->s.highest < 2.0) { /* amplification.csv may have no row */
+    output_text(f, "unset multiplot\n");
+    return;
+  }
   output_text(f,
               "set origin 0.5,0\nunset logscale\nset xrange [0:*]\nset xtics autofreq\n"
               "set xlabel 'frequency (Hz)'\nset ylabel 'surface over input, Fourier'\n"
