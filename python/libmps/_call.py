@@ -540,7 +540,7 @@ class _Words:
             status = library.mps_particles_view(self._set(), os.fspath(name).encode(), view)
             return 0 if status else view.shape[1]  # the call itself says that there is none
 
-        return components
+        return self.numbers.get("components", components)  # a number where the call has one of that name
 
     def _nodes(self):
         return lambda number: self.owner.lengths.get(number, 1)

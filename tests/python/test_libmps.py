@@ -662,6 +662,17 @@ class Whole(unittest.TestCase):
         self.assertEqual(signature("particles_set_geostatic", "set_geostatic"), "set_geostatic(**definition)")
         self.assertEqual(signature("mpm_step", "step"), "step(count: int)")
 
+    def test_a_table_of_points_sets_a_field(self):
+        particles = mps.Context().particles_create(spacing=0.1)
+        particles.fill_box([0.0, 0.0], [1.0, 1.0])
+        points = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.4, 0.6]])
+        values = 3.0 * points[:, 0]
+        self.assertEqual(particles.set_table("pore_pressure", 5, points, 1, values, interpolation=1), 0)
+        np.testing.assert_allclose(particles["pore_pressure"], 3.0 * particles["position"][:, 0],
+                                      atol=1e-12)
+        with self.assertRaises(ValueError):
+            particles.set_table("pore_pressure", 5, points[:4], 1, values)
+
     def test_every_array_has_a_length(self):
         """Pointers to numbers in the headers: one result, or an array whose length is known."""
         single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "outside", "part",
