@@ -171,9 +171,9 @@ static strip_result press_strip(int32_t scheme, double permeability, double fric
   mps_body_def body = mps_body_defaults();
   body.position[1] = 1.25;
   mps_assert_ok(context, mps_body_create_box(context, &body, 0.5, 0.5, &strip));
-  mps_contact_def touch = mps_contact_defaults();
-  touch.friction = friction;
-  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, strip, &touch, &contact));
+  mps_contact_def surface = mps_contact_defaults();
+  surface.friction = friction;
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, strip, &surface, &contact));
   mps_body_motion motion = mps_body_motion_defaults();
   motion.velocity[1] = -way / pressing;
   mps_assert_ok(context, mps_body_set_motion(strip, &motion));

@@ -91,8 +91,8 @@ void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
-/* Forces on a body that moves are then some 10 % too low, beside a cone volumes to 13 % off
- * (docs/pore-water.md). */
+/* A cone that moved so had a force 8 % too low, and ground beside it had lost up to 13 % of its
+ * volume (docs/pore-water.md). */
 static void warn_of_bodies(mps_mpm *mpm) {
   mpsi_water *water = mpm->water;
   if (water->warned || water->flows || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
