@@ -8,6 +8,7 @@
 #include "peak_allocator.h"
 
 #include <mps/mpm.h>
+#include <mps/experimental/domain.h>
 
 #include <math.h>
 #include <sys/resource.h>

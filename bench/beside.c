@@ -42,8 +42,7 @@ static void make_ground(int32_t executor, int32_t threads, int64_t particles, gr
   def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c == 0 ? side : 2.0 * side;
   check(g->context, mps_mpm_create(g->context, block, soil, &def, &g->mpm), "solver");
-  check(g->context, mps_mpm_set_side(g->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0),
-        "floor");
+  check(g->context, mps_mpm_set_side(g->mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0), "floor");
   mps_body_def place = mps_body_defaults();
   mps_contact_def rough = mps_contact_defaults();
   place.position[0] = 0.5 * side, place.position[1] = side + 2.0;

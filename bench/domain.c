@@ -11,7 +11,7 @@
 
 #include <mps/dynamics.h>
 #include <mps/mpm.h>
-#include <mps/petsc.h>
+#include <mps/experimental/petsc.h>
 
 #include <math.h>
 #include <stdbool.h>

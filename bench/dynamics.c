@@ -7,7 +7,7 @@
 #include "plain_dynamics.h"
 
 #include <mps/dynamics.h>
-#include <mps/neighbours.h>
+#include <mps/experimental/neighbours.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,7 +115,7 @@ static void time_size(int64_t columns, int64_t rows, double damping, int isa) {
       if (round > 0 && time < both[c]->best) both[c]->best = time;
     }
   }
-  const double ns = 1e9 / (double)n, pairs = (double)mps_dynamics_pairs(one.dynamics);
+  const double ns = 1e9 / (double)n, pairs = 0.5 * (double)plain.first[n];
   printf("%9lld %7.3g %9.1f %9.1f %9.1f %10.2f %10.2f %8.2f %8.2f\n", (long long)n, damping,
          plain_best * ns, one.best * ns, two.best * ns, 1e9 * one.best / pairs,
          1e9 * two.best / pairs, plain_best / one.best, plain_best / two.best);

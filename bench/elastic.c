@@ -3,7 +3,7 @@
  *
  * bench-elastic [UNKNOWNS_2D [UNKNOWNS_3D [THREADS [SMALLEST [SOLVER]]]]]: the largest sizes,
  * default 1e6 and 1e5 (0 leaves the dimension out), threads (0: all), the smallest size, default
- * 1e3, and mps_elastic_solver, default 0. SPDX-License-Identifier: BSD-3-Clause */
+ * 1e3, and mps_elastic_solver_kind, default 0. SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
 #include <mps/elastic.h>
@@ -71,7 +71,8 @@ static result measure(int32_t dim, int64_t cells, int threads, int solver) {
   clamp.ids = ids;
   clamp.id_count = count;
   check(context, mps_elastic_add_boundary(elastic, &clamp, NULL), "boundary");
-  check(context, mps_elastic_select_facets(elastic, dim - 1, 1, NULL, NULL, n, &count, ids),
+  check(context,
+        mps_elastic_select_facets(elastic, mps_side_of(dim - 1, 1), NULL, NULL, n, &count, ids),
         "facets");
   mps_elastic_load_def pull = mps_elastic_load_defaults();
   pull.kind = MPS_ELASTIC_LOAD_TRACTION;

@@ -2,8 +2,8 @@
  * growing size. Time of a particle-step and its shares: preparation (neighbours, moments, the
  * matrix and its preconditioner), solution of the pressure, and motion (gradient, guards,
  * positions, wall pressures); iterations; memory besides the fields; the gain of a second thread;
- * and the classical scheme (mps/experimental.h, gamma .2) with the same particles and steps. Times
- * of one thread are the processor's.
+ * and the classical scheme (mps/experimental/papers.h, gamma .2) with the same particles and steps.
+ * Times of one thread are the processor's.
  *
  * bench-fluid [PARTICLES [STEPS [SMALLEST [THREADS [MULTIGRID]]]]]: the largest and the smallest
  * size, default 1e5 and 1e3, the steps timed at each, default 40, the threads compared with one,
@@ -12,10 +12,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 #include <mps/fluid.h>
 #ifdef BENCH_PETSC
-#include <mps/petsc.h>
+#include <mps/experimental/petsc.h>
+#include <mps/experimental/fluid_parts.h>
 #endif
 
 #include <math.h>
@@ -60,7 +61,12 @@ static void solve_by_multigrid(mps_context *context, mps_fluid *fluid, int64_t l
   mps_petsc_solver *solver = NULL; /* to the end of the program */
   check(context, mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver),
         "multigrid");
-  check(context, mps_petsc_solve_fluid(solver, fluid, least), "multigrid");
+  mps_linear_solver_def def;
+  check(context, mps_petsc_linear_solver(solver, &def), "multigrid");
+  def.least = least;
+  check(context,
+        mps_solver_set_linear_solver(mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE, &def),
+        "multigrid");
 #else
   (void)context, (void)fluid;
   fprintf(stderr, "built without PETSc: no multigrid\n");
@@ -89,7 +95,9 @@ static result measure(int64_t rows, int64_t steps, int32_t threads, bool classic
   def.dt = 0.04 * sqrt(set.spacing / 9.81);
   def.level = 0.3;
   check(context, mps_fluid_create(context, water, &def, &fluid), "fluid");
-  check(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston), "signal");
+  check(context,
+        mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston),
+        "signal");
   add_wall(context, fluid, 0.0, 1, 1.0, NULL);
   add_wall(context, fluid, 0.0, 0, 1.0, piston);
   add_wall(context, fluid, length, 0, -1.0, NULL);

@@ -3,6 +3,7 @@
  * in turn, in rounds, in one process; minima are compared, so that the differences from linear
  * elastic hold when the machine's speed drifts. SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/soil.h>
+#include <mps/experimental/material_point.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -7,8 +7,9 @@
 #include "mpm_anchor.h"
 
 #include <mps/mpm.h>
-#include <mps/pore_water.h>
+#include <mps/experimental/pore_water.h>
 #include <mps/soil.h>
+#include <mps/experimental/soil.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -277,10 +278,10 @@ static double time_steps(contender *c, int64_t steps, double (*clock_of)(void)) 
 }
 
 static void print_line(anchor *a, double anchor_best, contender *c) {
-  mps_mpm_usage grid;
+  mps_mpm_report grid;
   contender *one = c;
   while (!one->mpm) one++;
-  check(one->context, mps_mpm_get_usage(one->mpm, &grid), "usage");
+  check(one->context, mps_mpm_get_report(one->mpm, &grid), "usage");
   printf("%3d %6d %9lld %8.1f", a->dim, a->degree, (long long)a->count, 1e9 * anchor_best);
   for (int k = 0; k < KINDS; k++)
     isfinite(c[k].best) ? printf(" %7.1f", 1e9 * c[k].best) : printf(" %7s", "-");

@@ -8,7 +8,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
-#include <mps/fluid_rock.h>
+#include <mps/experimental/fluid_rock.h>
 
 #include <math.h>
 #include <stdbool.h>
@@ -79,7 +79,10 @@ static tank make(int64_t rows, double radius, double height, bool far) {
   def.dt = 0.04 * sqrt(set.spacing / 9.81);
   def.level = DEPTH, def.radius_ratio = radius;
   check(t.context, mps_fluid_create(t.context, t.water, &def, &t.fluid), "fluid");
-  check(t.context, mps_signal_create_sine(t.context, 1.0, 0.02, 0.0, &t.piston), "signal");
+  check(t.context,
+        mps_signal_create_sine(t.context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0,
+                               &t.piston),
+        "signal");
   add_wall(&t, 0.0, 1, 1.0, NULL);
   add_wall(&t, 0.0, 0, 1.0, t.piston);
   add_wall(&t, length, 0, -1.0, NULL);

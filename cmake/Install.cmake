@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Debian has another libmps (MPSolve: <mps/mps.h>, libmps.so, libmps.a), so the
-# headers live under include/libmps-0.3/mps/, link name and archive under lib/libmps-0.3/; the CMake package is `mps`,
-# the pkg-config module `libmps-0.3`, and `libmps` that of the version installed last. Two minor versions may share
+# headers live under include/libmps-1/mps/, link name and archive under lib/libmps-1/; the CMake package is `mps`,
+# the pkg-config module `libmps-1`, and `libmps` that of the version installed last. Two major versions may share
 # a prefix: programs, manual pages, documents and the Python package are then those of the version installed last.
 include(CMakePackageConfigHelpers)
 set(series libmps-${MPS_SERIES})
@@ -10,7 +10,8 @@ set(link_dir ${CMAKE_INSTALL_LIBDIR}/${series})
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
-install(DIRECTORY share/models DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
+install(DIRECTORY share/models share/umat DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
+install(FILES share/umat/ABA_PARAM.INC DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps/umat RENAME aba_param.inc)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE)
 install(FILES docs/site/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/site) # README.md links to it
 
@@ -85,13 +86,7 @@ foreach(package ${packages})
 endforeach()
 configure_package_config_file(cmake/mpsConfig.cmake.in ${PROJECT_BINARY_DIR}/mpsConfig.cmake
                               INSTALL_DESTINATION ${cmake_dir})
-# Until 1.0 every minor version may break the ABI.
-set(compatibility SameMajorVersion)
-if(PROJECT_VERSION_MAJOR EQUAL 0)
-  set(compatibility SameMinorVersion)
-endif()
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake
-                                 COMPATIBILITY ${compatibility})
+configure_file(cmake/mpsConfigVersion.cmake.in ${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake @ONLY)
 file(GLOB find_modules ${PROJECT_SOURCE_DIR}/cmake/Find*.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/mpsConfig.cmake ${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake
               ${find_modules} DESTINATION ${cmake_dir})

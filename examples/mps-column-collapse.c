@@ -4,10 +4,12 @@
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
  * and is released at once. Drucker-Prager in plane strain; or a cylinder of radius L0.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
+#include "common/sand.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +22,7 @@ enum { CASES_MAX = 6, SAMPLES = 400, FRAMES = 4 };
 typedef struct settings {
   double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, falls;
   double flip_time; /* s */
+  sand_voids voids;
   int64_t ppc, threads;
   int cone;
   int spline; /* degree of the weights less 2 */
@@ -136,6 +139,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   law.friction = c->phi * PI / 180.0;
   law.dilation = fmin(s->psi, c->phi) * PI / 180.0;
   law.cohesion = c->cohesion;
+  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   mps_mpm_def def = mps_mpm_defaults();
   if (s->axisymmetric) def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.cell = s->h;
@@ -153,7 +157,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   status = mpm_model_create(m, sim->context, status, &def);
   if (status != MPS_OK) return status;
   if (isnan(s->bed_friction))
-    return mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    return mps_mpm_set_side(m->mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_contact_def bed = mps_contact_defaults();
   bed.friction = s->bed_friction;
   return mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL);
@@ -306,21 +310,54 @@ static mps_status march(void *user) {
 
 /* ---- results --------------------------------------------------------------------------------- */
 
+#define COHESIVE 0.01                             /* of rho g H0: above, the ground is no sand */
+enum { LOOSEST = 25, DENSEST = 42, DILATES = 5 }; /* degrees: friction of the sands, dilation */
+
+/* The law is of dry sands at rest, on beds to which they stick. */
+static comparison compare_law(const settings *s, const column_case *c, double value, double law) {
+  const double slide = tan(c->phi * PI / 180.0), weight = s->density * G * c->aspect * s->width;
+  comparison out = compare_with("Lube's law", value, law);
+  compare_require(&out, c->cohesion <= COHESIVE * weight,
+                  "it is of sand, and this ground has a cohesion of %.2g times its weight",
+                  c->cohesion / weight);
+  compare_require(&out, c->phi >= LOOSEST && c->phi <= DENSEST,
+                  "it is of sands, of some %d to %d degrees, and --phi is %g", LOOSEST, DENSEST,
+                  c->phi);
+  compare_require(&out, fmin(s->psi, c->phi) <= DILATES,
+                  "--psi is %g degrees: ground that dilates without end is no sand that flows",
+                  s->psi);
+  compare_require(&out, isnan(s->bed_friction) || s->bed_friction >= slide * (1.0 - 1e-9),
+                  "sand slides on the bed, whose friction is less than its own");
+  compare_require(&out, has_ended(c), "the run has not come to its end");
+  compare_require(&out, !isnan(c->time_at_rest),
+                  "it is of sand at rest, and this still moves at the end: take a larger --falls");
+  return out;
+}
+
+static comparison compare_runout(const settings *s, const column_case *c) {
+  return compare_law(s, c, runout(s, c), law_runout(s, c->aspect));
+}
+
+static comparison compare_height(const settings *s, const column_case *c) {
+  return compare_law(s, c, final_height(s, c), law_height(s, c->aspect));
+}
+
 static bool write_cases(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
   if (!output_open(&f, a, s->out, "cases.csv")) return false;
-  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law,height?,height_law,"
+  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law?,height?,height_law?,"
                  "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?");
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
+    const comparison far = compare_runout(s, c), high = compare_height(s, c);
     const double row[] = {c->aspect,
                           c->phi,
                           c->cohesion,
                           runout(s, c),
-                          law_runout(s, c->aspect),
+                          compare_reference(&far),
                           final_height(s, c),
-                          law_height(s, c->aspect),
+                          compare_reference(&high),
                           c->time_at_rest,
                           c->volume_ratio,
                           runout_98(s, c),
@@ -448,23 +485,26 @@ static void summarise(output *f, const simulation *sim) {
   const column_case *c = &sim->column[sim->count - 1];
   double worst = NAN;
   for (int k = 0; k < sim->count; k++) {
-    const double d = runout(s, &sim->column[k]) / law_runout(s, sim->column[k].aspect) - 1.0;
+    const comparison each = compare_runout(s, &sim->column[k]);
+    const double d = compare_error(&each);
     if (isnan(worst) || fabs(d) > fabs(worst)) worst = d;
   }
+  const comparison far = compare_runout(s, c), high = compare_height(s, c);
   json_integer(f, "columns", sim->count);
   json_number(f, "h", s->h);
   json_number(f, "aspect", c->aspect);
   json_number(f, "phi", c->phi);
   json_number(f, "cohesion", c->cohesion);
   json_number(f, "runout", runout(s, c));
-  json_number(f, "runout_law", law_runout(s, c->aspect));
-  json_number(f, "runout_error", runout(s, c) / law_runout(s, c->aspect) - 1.0);
+  json_comparison(f, "runout_law", &far);
+  json_number(f, "runout_error", compare_error(&far));
   json_number(f, "runout_error_worst", worst);
   json_number(f, "runout_98", runout_98(s, c));
   json_number(f, "runout_thick", runout_thick(s, c));
   json_number(f, "flip_time", s->flip_time);
+  sand_write(f, &s->voids, s->psi);
   json_number(f, "height", final_height(s, c));
-  json_number(f, "height_law", law_height(s, c->aspect));
+  json_comparison(f, "height_law", &high);
   json_number(f, "time_at_rest", c->time_at_rest);
   json_number(f, "volume_ratio_max", c->volume_ratio);
   json_number(f, "detached", c->detached);
@@ -492,11 +532,16 @@ static bool finish(app *a, void *user) {
              c->t[c->rows - 1]);
       continue;
     }
-    printf("%-12s a = %-4g run-out %.3f (law %.3f)  height %.3f (law %.3f)  %s %.3g s\n", c->name,
-           c->aspect, runout(s, c), law_runout(s, c->aspect), final_height(s, c),
-           law_height(s, c->aspect), isnan(c->time_at_rest) ? "still moves at" : "at rest after",
+    const comparison far = compare_runout(s, c), high = compare_height(s, c);
+    printf("%-12s a = %-4g run-out %.3f", c->name, c->aspect, runout(s, c));
+    if (compare_holds(&far)) printf(" (law %.3f)", far.reference);
+    printf("  height %.3f", final_height(s, c));
+    if (compare_holds(&high)) printf(" (law %.3f)", high.reference);
+    printf("  %s %.3g s\n", isnan(c->time_at_rest) ? "still moves at" : "at rest after",
            c->t[c->rows - 1]);
+    compare_tell(&far);
   }
+  sand_print(&s->voids, s->psi);
   return true;
 }
 
@@ -544,6 +589,7 @@ int main(int argc, char **argv) {
                                  .width = 0.1,
                                  .h = NAN,
                                  .phi = 35.0,
+                                 .voids = SAND_VOIDS,
                                  .bed_friction = NAN,
                                  .young = 1e6,
                                  .poisson = 0.3,
@@ -565,6 +611,8 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Soil (Drucker-Prager)"),
       COMMON_NUMBER("phi", &s->phi, NULL),
       COMMON_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
+      SAND_E0_OPTION(&s->voids),
+      SAND_E_MAX_OPTION(&s->voids),
       COMMON_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
                     "how it meets Mohr-Coulomb"),

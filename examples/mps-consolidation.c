@@ -52,8 +52,9 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("drained", "top|bottom|both", &s->drained,
                     "sides of a layer that drain; T counts its whole height in any case"),
       OPTION_TEXT("layers", "FILE", &s->layers,
-                  "terzaghi: layers from the top, each thickness_m, permeability_m_s, modulus_Pa "
-                  "(M'); the model is 1 m high, times and settlements are printed of the layers as "
+                  "terzaghi: layers from the top; a header names, in any order and unit, "
+                  "thickness_m, permeability_m_s, modulus_Pa (M'); the model is 1 m high, times "
+                  "and settlements are printed of the layers as "
                   "they are"),
       OPTION_NUMBER("ramp", "T", OPTION_FROM_TO(0.0, 10.0), &s->ramp,
                     "in which the load on a layer grows evenly; 0: at once"),

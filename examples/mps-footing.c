@@ -8,6 +8,7 @@
 #include "footing/footing.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.h = 0.1,
@@ -17,6 +18,7 @@ int main(int argc, char **argv) {
                                  .domain = "5x5",
                                  .phi = 30.0,
                                  .psi = NAN,
+                                 .voids = SAND_VOIDS,
                                  .cohesion = 10e3,
                                  .young = 1e9,
                                  .poisson = 0.3,
@@ -24,6 +26,7 @@ int main(int argc, char **argv) {
                                  .gravity = NAN,
                                  .k = 2e9,
                                  .settlement = NAN,
+                                 .section = NAN,
                                  .tolerance = 2e-3,
                                  .spline = 1,
                                  .ppc = 4,
@@ -42,6 +45,8 @@ int main(int argc, char **argv) {
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &s->phi, "Drucker-Prager"),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi,
                        "at most phi; default phi; Drucker-Prager"),
+      SAND_E0_OPTION(&s->voids),
+      SAND_E_MAX_OPTION(&s->voids),
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
                     "where the cone agrees with Mohr and Coulomb; Drucker-Prager"),
       OPTION_NUMBER("top", "m", OPTION_FROM_TO(0.0, 1e6), &s->top,
@@ -82,6 +87,9 @@ int main(int argc, char **argv) {
           "tolerance", "1", OPTION_FROM_TO(1e-5, 1e-2), &s->tolerance,
           "quasi-static: unbalanced over applied forces at rest, in the second half of the "
           "path; before it 0.002"),
+      OPTION_NUMBER(
+          "section", "m", OPTION_FROM_TO(-1e6, 1e6), &s->section,
+          "x of a vertical line on which the stresses are given over the depth at the end"),
       MPM_COURSE_OPTIONS(&s->course, FOOTING_SAMPLES),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
@@ -100,5 +108,7 @@ int main(int argc, char **argv) {
   if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {footing_build, footing_march, footing_finish};
   const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
-  return mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
+  const int ended = mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
+  free(sim.profile);
+  return ended;
 }

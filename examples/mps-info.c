@@ -46,7 +46,8 @@ static bool readable(const char *path, char *why) {
 static void refuse(const char *path, char *why) {
   const char *ending = strrchr(path, '.');
   if (ending && strcmp(ending, ".xdmf") == 0)
-    snprintf(why, INFO_WHY, "names frames for ParaView 5.11, which are in the .vtkhdf file beside it");
+    snprintf(why, INFO_WHY,
+             "names frames for ParaView 5.11, which are in the .vtkhdf file beside it");
   else
     snprintf(why, INFO_WHY, "not an HDF5 file, or a damaged one");
 }

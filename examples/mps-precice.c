@@ -7,6 +7,7 @@
 #include "precice/participant.h"
 
 #include <mps/io.h>
+#include <mps/elastic.h>
 
 #include <math.h>
 #include <stdio.h>

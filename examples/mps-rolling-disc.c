@@ -3,6 +3,7 @@
  * --body slope: the disc is elastic and the slope a rigid body. --body disc: the disc is a free
  * rigid body on an elastic slope, drawn level with tilted gravity; both act on each other.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
@@ -17,6 +18,11 @@
 #define DENSITY 1e3 /* kg/m3 */
 #define LENGTH 0.8  /* m, of the elastic slope */
 #define DEPTH 0.1   /* m */
+
+#define STIFF                                                                                      \
+  2e-3            /* of E: the weight of a disc over its width, rho g R, beside which it is rigid */
+#define FIRST 0.2 /* of the run: from then on the path is long enough to be compared */
+#define REGULAR 0.1 /* of the path: differences on the way, above which the end's says little */
 
 enum { BODY_SLOPE, BODY_DISC, FILL_LATTICE = 0, FILL_RINGS, SAMPLES = 100 };
 
@@ -39,10 +45,13 @@ typedef struct simulation {
   mpm_model m;
   double along[2]; /* unit vector down the slope */
   double start[2]; /* m, of the disc's centre */
-  motion row[SAMPLES + 1];
-  int rows;
   mpm_course course;
 } simulation;
+
+static int rows_of(const simulation *sim) { return (int)sim->course.rows.count; }
+static const motion *row_of(const simulation *sim, int k) {
+  return (const motion *)sim->course.rows.row + k;
+}
 
 /* (51): position along the slope, from its start. */
 static double theory(const settings *s, double t) {
@@ -118,28 +127,18 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
-/* History of the run for a restart. */
-static void pass(void *user, resume_bytes *b) {
-  simulation *sim = user;
-  resume_pass(b, &sim->rows, sizeof sim->rows);
-  if (resume_wrong(b, sim->rows < 0 || sim->rows > SAMPLES + 1))
-    sim->rows = 0;
-  else
-    resume_pass(b, sim->row, (size_t)sim->rows * sizeof *sim->row);
-}
-
 static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  static const rows_column columns[] = {{"x", "m", 0}, {"v", "m/s", 0}, {"omega", "rad/s", 0}, {0}};
   sim->course = (mpm_course){.options = &s->course,
                              .m = &sim->m,
                              .directory = s->out,
                              .what = s->body == BODY_SLOPE ? "disc" : "slope",
                              .duration = s->duration,
-                             .key = "mps-rolling-disc 1",
+                             .key = "mps-rolling-disc 2",
                              .table = options_read(),
-                             .pass = pass,
-                             .user = sim};
+                             .columns = columns};
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -162,7 +161,7 @@ static mps_status build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_rigid(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->body != BODY_SLOPE)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
   return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }
@@ -225,23 +224,20 @@ static mps_status sample(const settings *s, simulation *sim) {
   const mps_status status = s->body == BODY_SLOPE ? look_at_particles(sim, x, v, &omega)
                                                   : look_at_body(sim, x, v, &omega);
   if (status != MPS_OK) return status;
-  motion *row = &sim->row[sim->rows++];
-  sim->m.samples = sim->rows;
-  *row = (motion){.t = mps_mpm_time(sim->m.mpm), .omega = omega};
+  motion row = {.t = mps_mpm_time(sim->m.mpm), .omega = omega};
   for (int c = 0; c < 2; c++) {
-    row->x += x[c] * sim->along[c];
-    row->v += v[c] * sim->along[c];
+    row.x += x[c] * sim->along[c];
+    row.v += v[c] * sim->along[c];
   }
-  return MPS_OK;
+  return mpm_course_add(&sim->course, &row);
 }
 
 static mps_status march(void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   mps_status status = MPS_OK;
-  sim->m.samples = sim->rows;
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, s->duration);
-  for (int k = sim->rows; k <= SAMPLES && status == MPS_OK; k++) {
+  for (int k = rows_of(sim); k <= SAMPLES && status == MPS_OK; k++) {
     if (k > 0)
       status = mpm_model_advance(&sim->m, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(s, sim);
@@ -256,9 +252,9 @@ static bool write_motion(app *a, const settings *s, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "motion.csv")) return false;
   csv_header(&f, "t_s,x_m,x_theory_m,v_m_s,omega_rad_s");
-  for (int k = 0; k < sim->rows; k++) {
-    const motion *m = &sim->row[k];
-    const double row[] = {m->t, m->x - sim->row[0].x, theory(s, m->t), m->v, m->omega};
+  for (int k = 0; k < rows_of(sim); k++) {
+    const motion *m = row_of(sim, k);
+    const double row[] = {m->t, m->x - row_of(sim, 0)->x, theory(s, m->t), m->v, m->omega};
     csv_row(&f, 5, row);
   }
   return output_close(&f);
@@ -282,27 +278,64 @@ static bool draw(app *a, const settings *s) {
   return plot_close(&f, s->out, "motion");
 }
 
+/* The largest relative difference from the path (51) on the way, and when, s. */
+static double worst_on_the_way(const simulation *sim, double *at) {
+  double worst = 0.0;
+  *at = NAN;
+  for (int k = 1; k < rows_of(sim); k++) {
+    const motion *m = row_of(sim, k);
+    if (m->t < FIRST * sim->s.duration * (1.0 - 1e-9)) continue;
+    const double off = (m->x - row_of(sim, 0)->x) / theory(&sim->s, m->t) - 1.0;
+    if (fabs(off) > fabs(worst)) worst = off, *at = m->t;
+  }
+  return worst;
+}
+
+/* (51) is the path of a rigid disc that stays on the slope. */
+static comparison compare_path(const simulation *sim, double x) {
+  const settings *s = &sim->s;
+  const motion *end = row_of(sim, rows_of(sim) - 1);
+  double at;
+  const double worst = worst_on_the_way(sim, &at), soft = DENSITY * G * RADIUS / s->young;
+  comparison c = compare_with("Nakamura's path of a rigid disc", x, theory(s, end->t));
+  compare_require(&c, end->t > (1.0 - 1e-6) * s->duration, "the run has not come to its end");
+  compare_require(&c, soft <= STIFF,
+                  "the material is soft: rho g R is %.2g times its Young's modulus", soft);
+  compare_require(
+      &c, fabs(worst) <= REGULAR || fabs(compare_error(&c)) >= 0.5 * fabs(worst),
+      "on the way the path differs by up to %+.0f %%, at %.2g s: the disc hops, and the "
+      "end agrees by chance",
+      100.0 * worst, at);
+  return c;
+}
+
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  const motion *end = &sim->row[sim->rows - 1];
-  const double x = end->x - sim->row[0].x, exact = theory(s, end->t);
-  const double error = x / exact - 1.0, ratio = end->omega * RADIUS / end->v;
+  const motion *end = row_of(sim, rows_of(sim) - 1);
+  const double x = end->x - row_of(sim, 0)->x, ratio = end->omega * RADIUS / end->v;
+  const comparison path = compare_path(sim, x);
+  double worst_at;
+  const double worst = worst_on_the_way(sim, &worst_at);
   output f;
   if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
   json_number(&f, "h", s->h);
   json_number(&f, "mu", s->mu);
   json_number(&f, "x", x);
-  json_number(&f, "x_theory", exact);
-  /* that at the end: a run that Ctrl-C has stopped has none */
-  json_number_if(&f, end->t > (1.0 - 1e-6) * s->duration, "x_error_05", error);
+  json_comparison(&f, "x_theory", &path);
+  json_number(&f, "x_error_05", compare_error(&path)); /* at the end */
+  json_number_if(&f, !isnan(worst_at), "x_error_worst", worst);
   json_number(&f, "omega_ratio", ratio);
   json_end(&f);
   if (!output_close(&f) || !draw(a, s)) return false;
   app_tell_results(a, s->out);
-  printf("path %.5f m after %g s (theory %.5f, %+.2f %%), omega R/v %.3f\n", x, end->t, exact,
-         100.0 * error, ratio);
+  printf("path %.5f m after %g s", x, end->t);
+  if (compare_holds(&path))
+    printf(" (theory %.5f, %+.2f %%; on the way up to %+.2f %%, at %.2g s)", path.reference,
+           100.0 * compare_error(&path), 100.0 * worst, worst_at);
+  printf(", omega R/v %.3f\n", ratio);
+  compare_tell(&path);
   return true;
 }
 

@@ -52,7 +52,9 @@ static int run(app *a, seawall *w) {
   w->a = a;
   w->saves = (resume_schedule){
       .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
-  waves_warn(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing);
+  if (!app_agree(
+          a, waves_check(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing, w->s.length)))
+    return APP_FAILED;
   if (!app_agree(a, a->rank > 0 || summary_reserve(a, w->s.out))) return APP_FAILED;
   app_leave_at_once(a, !a->domain); /* no hook reaches into building */
   mps_status status = prepare(a, w);

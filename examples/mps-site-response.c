@@ -4,11 +4,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "site/site.h"
 
+#include "common/record.h"
+
 #include <math.h>
 
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.record = "ricker",
                                  .scale = 1.0,
+                                 .step = NAN,
                                  .frequency = 2.0,
                                  .amplitude = 1.0,
                                  .cycles = 10.0,
@@ -48,10 +51,12 @@ int main(int argc, char **argv) {
                     "K_w, bulk modulus of the water"),
       OPTION_HEADING("Motion"),
       OPTION_TEXT("record", "ricker|sine|FILE", &s->record,
-                  "a wavelet, cycles of a sine, or a recorded acceleration: .AT2, K-NET, or CSV of "
-                  "time (s) and value"),
-      OPTION_CHOICE("record-unit", "file|m/s2|g|gal", &s->unit,
-                    "unit of a CSV record; file: m/s2 of a CSV, what they say of the others"),
+                  "a wavelet, cycles of a sine, or a recorded acceleration: " RECORD_FILES),
+      OPTION_CHOICE("record-unit", RECORD_UNITS, &s->unit,
+                    "unit of a record; file: what it says, m/s2 where it names none"),
+      OPTION_NUMBER("record-step", "s", OPTION_DURATION, &s->step,
+                    "between the values of a record without times; default by its header"),
+      OPTION_TEXT("record-column", "NAME", &s->column, "of a record with several in its header"),
       OPTION_NUMBER("record-scale", "1", OPTION_FROM_TO(-1e6, 1e6), &s->scale,
                     "factor on a record"),
       OPTION_CHOICE("baseline", "linear|none|mean|quadratic|cubic", &s->baseline,

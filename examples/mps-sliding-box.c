@@ -6,6 +6,7 @@
  * modulus M, and without friction F_y = M |ln(1 - d/H)| L, d = 0.45 mm. Friction
  * adds to it where the block lifts off (docs/verification/wls-mpm/sliding-box.md).
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
@@ -31,15 +32,20 @@ typedef struct settings {
   const char *out;
 } settings;
 
+typedef struct sample_row {
+  double t, fx, fy, impulse[2]; /* s; N/m on the lower plate; N s/m, so far, in the grid's axes */
+} sample_row;
+
 typedef struct simulation {
   settings s;
   mpm_model m;
-  double t[SAMPLES + 2], fx[SAMPLES + 2], fy[SAMPLES + 2]; /* s, N/m on the lower plate */
-  int rows;
-  mps_reaction last; /* at the last sample, with its time (s) */
-  double last_time;
   mpm_course course;
 } simulation;
+
+static int rows_of(const simulation *sim) { return (int)sim->course.rows.count; }
+static const sample_row *row_of(const simulation *sim, int k) {
+  return (const sample_row *)sim->course.rows.row + k;
+}
 
 /* M = E (1 - nu)/((1 + nu)(1 - 2 nu)), Pa. */
 static double confined_modulus(const settings *s) {
@@ -122,33 +128,19 @@ static mps_status fill(mps_context *context, const settings *s, mps_particles **
   return status;
 }
 
-/* History of the run for a restart. */
-static void pass(void *user, resume_bytes *b) {
-  simulation *sim = user;
-  resume_pass(b, &sim->rows, sizeof sim->rows);
-  if (resume_wrong(b, sim->rows < 0 || sim->rows > SAMPLES)) {
-    sim->rows = 0;
-    return;
-  }
-  resume_pass(b, &sim->last, sizeof sim->last);
-  resume_pass(b, &sim->last_time, sizeof sim->last_time);
-  resume_pass(b, sim->t, (size_t)sim->rows * sizeof *sim->t);
-  resume_pass(b, sim->fx, (size_t)sim->rows * sizeof *sim->fx);
-  resume_pass(b, sim->fy, (size_t)sim->rows * sizeof *sim->fy);
-}
-
 static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  static const rows_column columns[] = {
+      {"Fx", "N/m", 0}, {"Fy", "N/m", 0}, {"impulse", "N s/m", 2}, {0}};
   sim->course = (mpm_course){.options = &s->course,
                              .m = &sim->m,
                              .directory = s->out,
                              .what = "block",
                              .duration = T_END,
-                             .key = "mps-sliding-box 1",
+                             .key = "mps-sliding-box 2",
                              .table = options_read(),
-                             .pass = pass,
-                             .user = sim};
+                             .columns = columns};
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = fill(context, s, &sim->m.particles);
   if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
@@ -169,30 +161,27 @@ static mps_status build(mps_context *context, void *user) {
 /* Mean force on the block (x) and on the lower plate (y) since the last sample, from the impulse:
  * the noise of single steps is no part of it. */
 static mps_status sample(simulation *sim) {
-  mps_reaction now, *last = &sim->last;
+  mps_reaction now;
   const mps_status status = mps_body_get_reaction(sim->m.body[BOTTOM], -1, &now);
   if (status != MPS_OK) return status;
-  const double t = mps_mpm_time(sim->m.mpm), span = t - sim->last_time;
-  sim->t[sim->rows] = t;
-  const double force[2] = {-(now.impulse[0] - last->impulse[0]) / span,
-                           -(now.impulse[1] - last->impulse[1]) / span};
+  const int rows = rows_of(sim);
+  const sample_row last = rows > 0 ? *row_of(sim, rows - 1) : (sample_row){0};
+  sample_row row = {.t = mps_mpm_time(sim->m.mpm), .impulse = {now.impulse[0], now.impulse[1]}};
+  const double span = row.t - last.t;
+  const double force[2] = {-(row.impulse[0] - last.impulse[0]) / span,
+                           -(row.impulse[1] - last.impulse[1]) / span};
   const double a = sim->s.turn * PI / 180.0;
-  sim->fx[sim->rows] = cos(a) * force[0] + sin(a) * force[1];
-  sim->fy[sim->rows] = cos(a) * force[1] - sin(a) * force[0];
-  sim->rows++;
-  sim->m.samples = sim->rows;
-  *last = now;
-  sim->last_time = t;
-  return MPS_OK;
+  row.fx = cos(a) * force[0] + sin(a) * force[1];
+  row.fy = cos(a) * force[1] - sin(a) * force[0];
+  return mpm_course_add(&sim->course, &row);
 }
 
 static mps_status march(void *user) {
   simulation *sim = user;
   mps_status status = MPS_OK;
-  sim->m.samples = sim->rows;
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, T_END);
-  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, SAMPLES);
-  for (int k = sim->rows + 1; k <= SAMPLES && status == MPS_OK; k++) {
+  if (rows_of(sim) == 0) status = mpm_course_sample(&sim->course, 0, SAMPLES);
+  for (int k = rows_of(sim) + 1; k <= SAMPLES && status == MPS_OK; k++) {
     status = mpm_model_advance(&sim->m, T_END * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim);
     if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
@@ -201,17 +190,6 @@ static mps_status march(void *user) {
 }
 
 /* ---- results --------------------------------------------------------------------------------- */
-
-static bool write_forces(app *a, const settings *s, const simulation *sim) {
-  output f;
-  if (!output_open(&f, a, s->out, "forces.csv")) return false;
-  csv_header(&f, "t_s,Fx_N_m,Fy_N_m");
-  for (int k = 0; k < sim->rows; k++) {
-    const double row[] = {sim->t[k], sim->fx[k], sim->fy[k]};
-    csv_row(&f, 3, row);
-  }
-  return output_close(&f);
-}
 
 static bool draw(app *a, const settings *s, double fy_exact) {
   output f;
@@ -236,6 +214,25 @@ static bool draw(app *a, const settings *s, double fy_exact) {
   return plot_close(&f, s->out, "forces");
 }
 
+/* The confined block without friction. */
+static comparison compare_force(const settings *s, double fy, double smooth) {
+  comparison c = compare_with("the confined block without friction", fy, smooth);
+  compare_require(&c, s->mu == 0.0, "friction of %g adds to the force where the block lifts off",
+                  s->mu);
+  return c;
+}
+
+static bool write_forces(app *a, const simulation *sim) {
+  output f;
+  if (!output_open(&f, a, sim->s.out, "forces.csv")) return false;
+  csv_header(&f, "t_s,Fx_N_m,Fy_N_m");
+  for (int k = 0; k < rows_of(sim); k++) {
+    const double row[] = {row_of(sim, k)->t, row_of(sim, k)->fx, row_of(sim, k)->fy};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
 /* Means while the lower plate slides at its full speed. */
 static bool finish(app *a, void *user) {
   simulation *sim = user;
@@ -243,25 +240,29 @@ static bool finish(app *a, void *user) {
   const double smooth = -confined_modulus(s) * SIDE * log1p(-SPEED * (STROKE - RAMP) / SIDE);
   double fx = 0.0, fy = 0.0;
   int count = 0;
-  for (int k = 0; k < sim->rows; k++) {
-    if (sim->t[k] < STROKE + 4.0 * RAMP || sim->t[k] > 2.0 * STROKE - RAMP) continue;
-    fx += sim->fx[k], fy += sim->fy[k], count++;
+  for (int k = 0; k < rows_of(sim); k++) {
+    if (row_of(sim, k)->t < STROKE + 4.0 * RAMP || row_of(sim, k)->t > 2.0 * STROKE - RAMP)
+      continue;
+    fx += row_of(sim, k)->fx, fy += row_of(sim, k)->fy, count++;
   }
   if (count > 0) fx /= count, fy /= count; /* none: the run ended before */
   output f;
-  if (!write_forces(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  if (!write_forces(a, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
-  json_number(&f, "Fy_smooth", smooth);
+  const comparison force = compare_force(s, count > 0 ? fy : NAN, smooth);
+  json_comparison(&f, "Fy_smooth", &force);
   json_number(&f, "Fy", count > 0 ? fy : NAN);
   json_number(&f, "Fy_over_smooth", count > 0 ? fy / smooth : NAN);
   json_number(&f, "Fx_over_Fy", count > 0 ? fx / fy : NAN);
   json_end(&f);
   if (!output_close(&f) || !draw(a, s, smooth)) return false;
   app_tell_results(a, s->out);
-  if (count > 0)
-    printf("F_y %.2f N/m (exact without friction %.2f, %+.2f %%), F_x/F_y %.5f (friction %g)\n", fy,
-           smooth, 100.0 * (fy / smooth - 1.0), fx / fy, s->mu);
+  if (count > 0) printf("F_y %.2f N/m", fy);
+  if (count > 0 && compare_holds(&force))
+    printf(" (exact without friction %.2f, %+.2f %%)", smooth, 100.0 * compare_error(&force));
+  if (count > 0) printf(", F_x/F_y %.5f (friction %g)\n", fx / fy, s->mu);
+  if (count > 0) compare_tell(&force);
   return true;
 }
 

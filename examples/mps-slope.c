@@ -35,6 +35,7 @@ static const char *settle(settings *s, const option *table) {
   if (s->phi == 0.0 && s->cohesion == 0.0 && s->gradient == 0.0)
     return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (sand_check(&s->voids)) return sand_check(&s->voids);
   if (s->residual_phi > s->phi || s->residual_cohesion > s->cohesion)
     return "--residual-phi and --residual-cohesion must be at most --phi and --cohesion";
   if (s->runout && s->residual_phi == 0.0 && s->residual_cohesion == 0.0)
@@ -59,6 +60,7 @@ int main(int argc, char **argv) {
                                  .crest = NAN,
                                  .toe = NAN,
                                  .phi = 20.0,
+                                 .voids = SAND_VOIDS,
                                  .cohesion = 9810.0,
                                  .residual_phi = NAN,
                                  .residual_cohesion = NAN,
@@ -95,6 +97,8 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
+      SAND_E0_OPTION(&s->voids),
+      SAND_E_MAX_OPTION(&s->voids),
       COMMON_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
       OPTION_NUMBER("strength-gradient", "Pa/m", OPTION_FROM_TO(0.0, 1e9), &s->gradient,
                     "growth of the cohesion with the depth below the crest's level"),

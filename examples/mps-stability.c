@@ -1,7 +1,7 @@
 /* mps-stability - the critical time step of a soil column, Yoshida: one case, or the whole study.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/options.h"
-#include "common/output.h"
 #include "stability/study.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ static int parse(settings *s, int argc, char **argv) {
                   .m = {.kind = METHOD_BOTH,
                         .f1 = 1.0,
                         .f2 = NAN,
-                        .criterion = 2.2,
+                        .criterion = NAN,
                         .accuracy = 1.01,
                         .duration = NAN},
                   .out = "out/stability"};
@@ -67,9 +67,10 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Method"),
       OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
                     "linear theory (fast), bisection by time stepping, or both"),
-      OPTION_NUMBER("criterion", "m/s2", OPTION_FROM_TO(1e-6, 1e30), &m->criterion,
-                    "a run is unstable when any acceleration exceeds it; the paper uses 2.2 and "
-                    "1e15"),
+      OPTION_NUMBER(
+          "criterion", "m/s2", OPTION_FROM_TO(1e-6, 1e30), &m->criterion,
+          "a run is unstable when any acceleration exceeds it; default 2.2, Euler 1e15, as "
+          "in the paper"),
       OPTION_NUMBER("accuracy", "1", OPTION_ABOVE_TO(1.0, 100.0), &m->accuracy,
                     "ratio of the bounds at which the bisection ends; the paper uses 1.01 with 2.2 "
                     "and 1.2 with 1e15"),
@@ -105,11 +106,42 @@ static int parse(settings *s, int argc, char **argv) {
              sqrt(2.0) * slow);
     return options_refuse(&program, text);
   }
+  if (isnan(m->criterion))
+    m->criterion =
+        s->integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? STUDY_INTEGRATOR_CRITERION : 2.2;
   if (isnan(m->f2)) m->f2 = s->study ? 15.0 : 14.0;
   return -1;
 }
 
 /* ---- one case -------------------------------------------------------------------------------- */
+
+#define EULERS 1e12 /* m/s2: criteria above are those of growth alone */
+
+/* Linear theory beside time stepping. Without damping Euler's motion grows at any step: its limit
+ * is that at which it grows by 1e15 in a run. */
+static comparison compare_linear(const settings *s, const stability_case *x) {
+  comparison c = compare_with("linear theory", x->stepping, x->linear);
+  compare_require(&c, s->m.kind != METHOD_STEPPING, "it was not asked for by --method");
+  compare_require(&c,
+                  x->integrator != MPS_DYNAMICS_INTEGRATOR_EULER || s->m.criterion >= EULERS ||
+                      s->m.kind == METHOD_LINEAR,
+                  "its limit of Euler is growth by 1e15 in a run, and --criterion %g m/s2 is near "
+                  "the response itself",
+                  s->m.criterion);
+  return c;
+}
+
+static comparison compare_table2(const settings *s, const stability_case *x) {
+  comparison c =
+      compare_with("the paper's Table 2", isnan(x->stepping) ? x->linear : x->stepping, x->table2);
+  compare_require(&c, x->integrator != MPS_DYNAMICS_INTEGRATOR_EULER, "it is not of Euler");
+  compare_require(&c, !isnan(x->table2), "it is of damping above 0, up to 0.22");
+  compare_require(&c, fabs(case_vp(x) - 2.0 * case_vs(x)) <= 1e-6 * case_vp(x),
+                  "it is of Vp = 2 Vs");
+  compare_require(&c, fabs(s->m.f1 + s->m.f2 - 16.0) <= 1.0,
+                  "it is of --f1 + --f2 = 16 Hz, here they are %g Hz", s->m.f1 + s->m.f2);
+  return c;
+}
 
 /* `known`: otherwise the result is null. */
 static bool open_case(output *out, app *a, const settings *s, const stability_case *x, bool known) {
@@ -129,10 +161,17 @@ static bool open_case(output *out, app *a, const settings *s, const stability_ca
   json_number(&f, "criterion", s->m.criterion);
   json_number(&f, "accuracy", s->m.accuracy);
   json_number(&f, "duration", method_duration(&s->m, x->velocity));
-  json_number_if(&f, known, "dt_linear", x->linear);
+  const comparison linear = compare_linear(s, x), table2 = compare_table2(s, x);
+  if (known)
+    json_comparison(&f, "dt_linear", &linear);
+  else
+    json_number(&f, "dt_linear", NAN);
   json_number_if(&f, known, "dt_stepping", x->stepping);
   json_number_if(&f, known, "dt_stepping_unstable", x->unstable);
-  json_number_if(&f, known, "dt_table2", x->table2);
+  if (known)
+    json_comparison(&f, "dt_table2", &table2);
+  else
+    json_number(&f, "dt_table2", NAN);
   json_integer_if(&f, known, "steps", x->steps);
   json_end(&f);
   *out = f;
@@ -194,13 +233,23 @@ static int run_case(app *a, const settings *s) {
   app_tell_results(a, s->out);
   printf("%c wave, R = %g m, Vs = %g m/s, Vp = %g m/s, h = %g, %lld particles\n", x.wave, x.radius,
          case_vs(&x), case_vp(&x), x.damping, (long long)x.particles);
+  const comparison linear = compare_linear(s, &x), table2 = compare_table2(s, &x);
+  const char *comma = "";
   printf("critical dt:");
-  if (!isnan(x.linear)) printf(" %.4g s by linear theory", x.linear);
-  if (!isnan(x.stepping))
-    printf("%s %.4g s by time stepping (%.4g s exceeds %g m/s2)", isnan(x.linear) ? "" : ",",
-           x.stepping, x.unstable, s->m.criterion);
-  if (!isnan(x.table2)) printf(", %.4g s by the paper's Table 2", x.table2);
+  if (compare_holds(&linear)) {
+    printf(" %.4g s by linear theory%s", x.linear,
+           x.integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? " (growth by 1e15 in the run)" : "");
+    comma = ",";
+  }
+  if (!isnan(x.stepping)) {
+    printf("%s %.4g s by time stepping (%.4g s exceeds %g m/s2)", comma, x.stepping, x.unstable,
+           s->m.criterion);
+    comma = ",";
+  }
+  if (compare_holds(&table2)) printf("%s %.4g s by the paper's Table 2", comma, x.table2);
   printf("\n");
+  if (s->m.kind == METHOD_BOTH) compare_tell(&linear);
+  if (s->damping > 0.0) compare_tell(&table2);
   return APP_OK;
 }
 

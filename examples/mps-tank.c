@@ -82,6 +82,11 @@ static int complete(const options_program *program, tank_settings *s) {
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
     return options_refuse(program,
                           "--sample must be between a millionth of --duration and all of it");
+  const double reach = tank_density_reach(s);
+  if (!isnan(s->density_at) && kind == TANK_DROP)
+    return options_refuse(program, "--density-at is for water in a tank");
+  if (s->density_at < reach || s->density_at > s->length - reach)
+    return options_refuse(program, "--density-at must be at least 4 spacings from both walls");
   if (!(s->window[0] < s->window[1]))
     return options_refuse(program, "--window must be two times, the first before the second");
   return -1;
@@ -115,8 +120,10 @@ static int run(app *a, tank_model *m) {
   m->a = a;
   m->saves = (resume_schedule){
       .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
-  if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
-    waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
+  if ((m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE) &&
+      !app_agree(
+          a, waves_check(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing, m->s.length)))
+    return APP_FAILED;
   if (!app_agree(a, a->rank > 0 || summary_reserve(a, m->s.out))) return APP_FAILED;
   app_leave_at_once(a, !a->domain); /* no hook reaches into building */
   mps_status status = prepare(a, m);
@@ -165,6 +172,7 @@ int main(int argc, char **argv) {
                                .dt = NAN,
                                .gauge = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN},
                                .window = {NAN, NAN},
+                               .density_at = NAN,
                                .every_checkpoint = 1.0,
                                .frames = 60,
                                .out = "out/tank"}};
@@ -230,6 +238,9 @@ int main(int argc, char **argv) {
        .help = "two times T1,T2: window of the means and harmonics (default: the last 4 periods of "
                "a piston, half the run "
                "at rest, else all)"},
+      OPTION_NUMBER("density-at", "m", OPTION_FROM_TO(0.0, 1e6), &s->density_at,
+                    "x of a vertical line on which the density of the particles is given over the "
+                    "height at the end"),
       COMMON_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
       OPTION_OUT(&s->out),

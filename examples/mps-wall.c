@@ -22,6 +22,7 @@ static const char *settle(settings *s, const option *table) {
   s->front = s->h * ceil(s->height / s->h - 1e-9);
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (sand_check(&s->voids)) return sand_check(&s->voids);
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
   if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
     return "--base must be 0 or at least 2 cells of --h";
@@ -43,6 +44,7 @@ int main(int argc, char **argv) {
   static simulation sim = {.s = {.height = 1.0,
                                  .length = NAN,
                                  .phi = 30.0,
+                                 .voids = SAND_VOIDS,
                                  .k0 = NAN,
                                  .young = 5e7,
                                  .poisson = 0.3,
@@ -85,15 +87,18 @@ int main(int argc, char **argv) {
                     "depth below the surface; below it phi and cohesion are effective, densities "
                     "saturated; the water is at rest on both sides of the wall, in front up to the "
                     "ground"),
-      OPTION_TEXT("layers", "FILE", &s->layers_file,
-                  "of the ground from the surface behind the wall, in place of the following: each "
-                  "thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3; the last one "
-                  "continues downwards"),
+      OPTION_TEXT(
+          "layers", "FILE", &s->layers_file,
+          "of the ground from the surface behind the wall, in place of the following: a header "
+          "names, in any order and unit, thickness_m, phi_degrees, psi_degrees, cohesion_Pa, "
+          "density_kg_m3; the last one continues downwards"),
       OPTION_NUMBER(
           "length", "m", OPTION_LENGTH, &s->length,
           "of the ground behind the wall, up to whole cells; default 2.5 heights, passive 5"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
+      SAND_E0_OPTION(&s->voids),
+      SAND_E_MAX_OPTION(&s->voids),
       COMMON_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.0, 10.0), &s->k0,
                     "horizontal over vertical stress at rest; default 1 - sin(phi)"),

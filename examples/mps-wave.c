@@ -9,7 +9,7 @@
 #include "wave/results.h"
 #include "wave/settings.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -57,8 +57,8 @@ static bool build_ground(app *a, const settings *s, simulation *sim) {
   if (!receivers_create(a, &sim->ground, settings_wave(s), s->receivers, &sim->record))
     return false;
   mps_particles *particles = sim->ground.particles;
-  for (int32_t side = MPS_DYNAMICS_SIDE_LEFT;
-       side <= MPS_DYNAMICS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
+  for (int32_t side = MPS_SIDE_X_LOWER; side <= MPS_SIDE_X_UPPER && s->sides == SIDES_FREEFIELD;
+       side++)
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
   sim->particles = mps_particles_count(particles);
   if (!app_check(a, parts_sum(def.domain, &sim->particles))) return false;
@@ -102,14 +102,21 @@ static void watch_energy(const settings *s, simulation *sim) {
   bool damped = s->base == BASE_VISCOUS || s->sides == SIDES_FREEFIELD;
   for (int64_t i = 0; i < s->ground.count; i++) damped = damped || s->ground.layer[i].damping > 0.0;
   sim->record.energy = !damped;
+  /* the energy of these may grow below the limit too; free-field columns have their own */
+  sim->record.watch = s->sides != SIDES_FREEFIELD &&
+                      (s->torque != 0 || s->integrator == MPS_DYNAMICS_INTEGRATOR_EULER);
   mps_signal_span(sim->signal, NULL, &sim->record.energy_from);
+  for (int k = 0; k <= 1000; k++)
+    sim->record.speed =
+        fmax(sim->record.speed,
+             fabs(mps_signal_velocity(sim->signal, 1e-3 * k * sim->record.energy_from)));
 }
 
 /* The library reports where and why it diverged; this adds the remedy. */
 static void explain_divergence(app *a, const results *x) {
   const char *why = mps_context_error(a->context)->message;
-  if (x->dt > x->dt_limit)
-    app_error(a, "%s: try --dt %.2g or --courant 0.9", why, 0.9 * x->dt_limit);
+  if (x->dt_limit == 0.0)
+    app_error(a, "%s: Euler without damping has no stable step, try --integrator verlet", why);
   else
     app_error(
         a,
@@ -137,14 +144,34 @@ static bool align_rows(app *a, simulation *sim) {
   return app_check(a, mps_dynamics_step(sim->dynamics, every - past));
 }
 
+static bool check_dt(app *a, const settings *s, double limit) {
+  if (isnan(s->dt) || s->dt <= limit || limit == 0.0) return true;
+  return app_error(
+      a,
+      "--dt is %g s, must be at most the linear stability limit, %.4g s: try --dt %.2g "
+      "or --courant 0.9",
+      s->dt, limit, 0.9 * limit);
+}
+
+/* Energy that nothing has put in: what was recorded is no motion of the ground. */
+static int report_growth(app *a, const simulation *sim, results *x) {
+  x->end = OUTCOME_DIVERGED;
+  a->outcome = "diverged";
+  app_error(a,
+            "unstable: at t = %.4g s the energy is %.3g J, the most that was put in %.3g J: take "
+            "--integrator verlet and --torque conserving, or a smaller --dt",
+            mps_dynamics_time(sim->dynamics), sim->record.grown, sim->record.given);
+  return APP_FAILED;
+}
+
 /* Exit code; the results are filled as far as the run came. */
 static int march(app *a, const settings *s, simulation *sim, results *x) {
   mps_dynamics_linear_limit limit;
   x->particles = sim->particles;
   x->dt_limit = NAN;
-  if (!app_check(a, mps_dynamics_find_limit(sim->dynamics, sim->duration, &limit)))
-    return APP_FAILED;
+  if (!app_check(a, mps_dynamics_find_limit(sim->dynamics, 0.0, &limit))) return APP_FAILED;
   x->dt_limit = limit.dt;
+  if (!check_dt(a, s, limit.dt)) return APP_FAILED;
   x->dt = mps_dynamics_dt(sim->dynamics);
   if (!(x->dt > 0.0)) {
     app_check(a, mps_context_error(a->context)->status);
@@ -164,6 +191,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
       sim->dynamics, fmax(end, mps_dynamics_time(sim->dynamics)), *every, record, sim);
   x->steps = mps_dynamics_steps(sim->dynamics);
   x->end = OUTCOME_COMPLETE;
+  if (sim->record.grown > 0.0) return report_growth(a, sim, x);
   if (status == MPS_ERROR_DIVERGED) {
     x->end = OUTCOME_DIVERGED;
     a->outcome = "diverged";
@@ -181,7 +209,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
 static bool write_results(app *a, const settings *s, simulation *sim, results *x,
                           mps_particles *whole) {
   if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
-      !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
+      !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x, sim->signal))
     return false;
   if (x->end != OUTCOME_DIVERGED && (!results_draw(a, s, &sim->ground, &sim->record, x) ||
                                      !field_write(a, s, &sim->peaks, whole)))

@@ -28,10 +28,19 @@ class Entry:
     names: list = field(default_factory=list)
 
 
-FUNCTION = re.compile(r"^MPS_API\s+(?:MPS_NODISCARD\s+)?([\w\s*]+?)\b(mps_\w+)\s*\(([^;]*?)\);", re.M)
+FUNCTION = re.compile(r"^MPS_API\s+(?:MPS_DEPRECATED\(\d+, \d+,\s*\"[^\"]*\"\)\s+)?(?:MPS_NODISCARD\s+)?([\w\s*]+?)\b(mps_\w+)\s*\(([^;]*?)\);", re.M)
+#: Functions that all solvers share, under the name of one: inline over those of mps_solver.
+INLINE = r"^(?:MPS_NODISCARD\s+)?static\s+inline\s+([\w\s*]+?)\b(mps_(\w+?)_(\w+))\s*\(([^;{]*?)\)\s*\{"
+SHARED = re.compile(INLINE + r"(?:[^}]|\};)*?\bmps_solver_(?!get_def\b)\4\(", re.M)
+#: The same of functions that take the kind of a definition, which the name of one says.
+OF_KIND = re.compile(INLINE + r"\s*return (mps_solver_(?:add|set|remove|get|get_def))\(\s*(?:mps_\w+_solver\(\w+\)|\w+),"
+                     r"\s*(MPS_DEF_\w+),", re.M)
 CALLBACK = re.compile(r"^typedef\s+([\w\s*]+?)\s*\(\*(mps_\w+)\)\s*\(([^;]*?)\);", re.M)
 BODY = re.compile(r"^typedef (struct|enum) mps_\w+ \{(.*?)^\} (mps_\w+);", re.M | re.S)
 COMMENT = re.compile(r"/\*.*?\*/", re.S)
+MACRO = re.compile(r"^#define (MPS_[A-Z0-9_]+) +(?:0x[0-9a-fA-F]+|[0-9]+)u? *(/\*.*?\*/)?$", re.M | re.S)
+TABLE = re.compile(r"^#define MPS_\w+_TABLE\(X\)(.*?)^#define MPS_\w+_ENTRY\(name, value, text\) (MPS_\w*?)##name", re.M | re.S)
+ROW = re.compile(r'X\((\w+), \d+, "(.*?)"\)')
 
 
 def plain(comment):
@@ -98,19 +107,41 @@ def constants(body):
             for name, comment in re.findall(r"\b(MPS_\w+)\s*=[^,/}]*,?\s*(/\*.*?\*/)?", body, re.S)]
 
 
+def macros(text):
+    """Constants that are macros, and those of a table of names, numbers and texts."""
+    found = [Name(name, "int", plain(comment) if comment else "") for name, comment in MACRO.findall(text)]
+    return found + [Name(prefix + name, "int", words) for rows, prefix in TABLE.findall(text)
+                    for name, words in ROW.findall(rows)]
+
+
+def shared(text):
+    """Those functions: (match, result, name, parameters, function of mps_solver, kind or ""). Results are sized, as
+    exported."""
+    for match in [*SHARED.finditer(text), *OF_KIND.finditer(text)]:
+        of_kind = match.re is OF_KIND
+        size = "_sized" if match[4].startswith("get_") else ""
+        yield (match, match[1].strip(), match[2] + size, match[5] + (", size_t size" if size else ""),
+               match[6] if of_kind else f"mps_solver_{match[4]}{size}", match[7] if of_kind else "")
+
+
 def read(directory):
-    """(functions, callbacks, structs, enumerations) by name, of all headers that mps.h includes."""
-    functions, callbacks, structs, enums = {}, {}, {}, {}
-    included = re.findall(r'#include "(\w+\.h)"', (directory / "mps.h").read_text())
+    """(functions, callbacks, structs, enumerations by name, constants outside of these), of all headers that mps.h
+    and experimental.h include."""
+    functions, callbacks, structs, enums, plain_constants = {}, {}, {}, {}, []
+    included = [name for all_of in ("mps.h", "experimental.h")
+                for name in re.findall(r'#include "([\w/]+\.h)"', (directory / all_of).read_text())]
     for header in included:
         text = (directory / header).read_text()
         for match in FUNCTION.finditer(text):
             functions[match[2]] = Entry(match[2], header, before(text, match.start()), match[1].strip(),
                                         parameters(match[3]))
+        for match, result, name, listed, _, _ in shared(text):
+            functions[name] = Entry(name, header, before(text, match.start()), result, parameters(listed))
         for match in CALLBACK.finditer(text):
             callbacks[match[2]] = Entry(match[2], header, before(text, match.start()), match[1].strip(),
                                         parameters(match[3]))
         for match in BODY.finditer(text):
             where, take = (structs, members) if match[1] == "struct" else (enums, constants)
             where[match[3]] = Entry(match[3], header, before(text, match.start()), "", take(match[2]))
-    return functions, callbacks, structs, enums
+        plain_constants += macros(text)
+    return functions, callbacks, structs, enums, plain_constants

@@ -37,14 +37,17 @@ def class_name(kind):
 class Interface:
     """All functions, with what is known of types: opaque objects, structs, callbacks, lengths of arrays."""
 
-    def __init__(self, functions, callbacks, structs, enums, lengths):
-        self.callbacks, self.structs, self.enums, self.lengths = callbacks, structs, enums, lengths
+    def __init__(self, functions, callbacks, structs, enums, constants, shapes):
+        self.callbacks, self.structs, self.enums = callbacks, structs, enums
+        self.shapes, self.lengths = shapes, shapes["FUNCTIONS"]
+        self.constants = [n for entry in enums.values() for n in entry.names] + constants
         self.kinds = sorted(name.removeprefix("mps_").removesuffix("_destroy") for name in functions
                             if name.endswith("_destroy"))
         self.kinds.append("grid") # lent by its solver
         self.functions = {}
         for full, entry in sorted(functions.items()):
-            if not full.endswith(("_destroy", "_init")):
+            of_any_kind = any(n.name in ("def", "out") and "void" in n.type for n in entry.names)
+            if not full.endswith(("_destroy", "_init")) and not of_any_kind:
                 made = self.function(full, entry)
                 self.functions[made.name] = made
 
@@ -74,6 +77,14 @@ class Interface:
             return "Sequence[Mapping[str, Any]]" if where == "member" else f"{class_name(base)} | Mapping[str, Any] | None"
         return "Any"
 
+    def form(self, name):
+        """How Python's function of a parameter or member is called, where that is a callback: "inside(x) -> ..."."""
+        named = self.base(name.type)
+        if named not in self.callbacks or self.callbacks[named].names[0].name != "user":
+            return ""
+        words = [n.name for n in self.callbacks[named].names[1:]]
+        return f"{name.name}({', '.join(self.shapes['passed'](named, words))}){self.shapes['answer'](named)}"
+
     def is_object(self, kind):
         return kind.count("*") == 1 and self.base(kind).removeprefix("mps_") in self.kinds
 
@@ -88,7 +99,7 @@ class Interface:
         trailing = True  # from the end: what is written, and may be left out
         for parameter in reversed(names):
             kind, constant = parameter.type, parameter.type.startswith("const ")
-            if (parameter.name == "user" and kind == "void *") or (sized and parameter.name == "size"):
+            if (parameter.name == "user" and kind == "void *") or kind == "mps_release_fn" or (sized and parameter.name == "size"):
                 continue
             if parameter.name == "def" and constant and self.base(kind) in self.structs:
                 made.definition = self.base(kind)

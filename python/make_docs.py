@@ -39,7 +39,11 @@ class Error(Exception):
     object: str
 
 class StaleError(Exception):
-    """An array of a field whose particles were added, removed or sorted since; a block whose law has returned."""
+    """An array of a field taken before a solver stepped, or before particles were added, removed or sorted; a block
+    whose law has returned."""
+
+class MpsWarning(UserWarning):
+    """A warning of the library, where the context has no hook `log`."""
 
 class Field(NDArrayOperatorsMixin):
     """A field of particles, without a copy; it computes and answers as a NumPy array does."""
@@ -68,6 +72,23 @@ class Edit:
     def __enter__(self) -> Field: ...
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None: ...
+
+class Block:
+    """A block of particles: what a law in Python reads and writes."""
+
+    dim: int
+    count: int
+    dt: float
+    time: float
+    gradient: ndarray
+    stress: ndarray
+    volume_ratio: ndarray
+    deformation: ndarray | None
+    history: ndarray
+    flags: ndarray
+    ids: ndarray
+    position: ndarray
+    temperature: ndarray | None
 
 class Object:
     """An object of the C library; close(), the end of a `with` block, or the last reference destroys it."""
@@ -122,7 +143,7 @@ class Writer:
 
     def members(self, struct):
         return [m for m in self.interface.structs[struct].names
-                if m.name not in ("struct_size", "reserved") and not m.name.endswith("user")]
+                if m.name not in ("struct_size", "reserved") and not m.name.endswith(("user", "release"))]
 
     def result(self, function):
         kinds = [n.type for n in function.results]
@@ -131,6 +152,9 @@ class Writer:
     def doc(self, function):
         """The docstring: what C's comment says, the keywords, the results, the C function."""
         parts = [textwrap.fill(p, 90) for p in self.words(function.entry.text).split("\n\n")]
+        forms = [form for n in function.entry.names if (form := self.interface.form(n))]
+        if forms:
+            parts.append("Called by the library: " + "; ".join(forms) + ".")
         if function.definition:
             parts.append("Keywords (members of the definition; those not given have their defaults):\n"
                          + self.rows(self.members(function.definition), "member"))
@@ -147,7 +171,8 @@ class Writer:
 
     def rows(self, names, where):
         return "\n".join(textwrap.fill(f"{n.name} ({self.interface.python(n.type, where)})"
-                                       f"{': ' + self.words(n.text) if n.text else ''}", 90,
+                                       f"{': ' + self.words(n.text) if n.text else ''}"
+                                       f"{f' (called as {form})' if (form := self.interface.form(n)) else ''}", 90,
                                        initial_indent="  ", subsequent_indent="      ") for n in names)
 
     def keywords(self, struct):
@@ -183,19 +208,18 @@ class Writer:
     @staticmethod
     def quoted(text, indent):
         body = textwrap.indent(text, indent).strip().replace("\\", "\\\\")
+        body += " " if body.endswith('"') else ""
         return f'{indent}"""{body}"""\n'
 
     def stubs(self):
         interface, out = self.interface, [HEAD]
-        named = {word for f in interface.functions.values() for n in (*f.results, *f.arguments)
-                 for word in n.type.split(" | ")}
         for kind, entry in sorted(interface.structs.items()):
-            if kind in ("mps_error", "mps_edit") or (kind.endswith("_def") and class_name(kind) not in named):
+            if kind in ("mps_error", "mps_edit"):
                 continue
             out.append(f"class {class_name(kind)}(Result):")
             out.append(self.quoted(self.words(entry.text) or kind, "    "))
             for m in entry.names:
-                if m.name not in ("struct_size", "reserved"):
+                if m.name not in ("struct_size", "reserved", *WORDS):
                     out.append(f"    {m.name}: {interface.python(m.type, 'out')}")
                     if m.text:
                         out.append(self.quoted(textwrap.fill(self.words(m.text), 90), "    "))
@@ -209,11 +233,10 @@ class Writer:
                     if f.owner == kind and f.method not in SHADOWED and f.name not in OWN.get(kind, ())]
             out.append("    _libmps: ClassVar[Any]\n")
         out += [self.stub(f, "") for f in interface.functions.values() if not f.owner and f.name != "context_create"]
-        for _, entry in sorted(interface.enums.items()):
-            for n in entry.names:
-                out.append(f"{n.name.removeprefix('MPS_')}: int")
-                if n.text:
-                    out.append(self.quoted(textwrap.fill(self.words(n.text), 90), ""))
+        for n in (n for n in interface.constants if not n.name.startswith("MPS_DEF_")):
+            out.append(f"{n.name.removeprefix('MPS_')}: int")
+            if n.text:
+                out.append(self.quoted(textwrap.fill(self.words(n.text), 90), ""))
         return "\n".join(out)
 
     def docs(self):
@@ -236,7 +259,7 @@ def main():
     include, package, out = map(Path, sys.argv[1:4])
     shapes = {}
     exec((package / "_shapes.py").read_text(), shapes)
-    writer = Writer(Interface(*headers.read(include / "mps"), shapes["FUNCTIONS"]))
+    writer = Writer(Interface(*headers.read(include / "mps"), shapes))
     (out / "_docs.py").write_text(writer.docs())
     (out / "__init__.pyi").write_text(writer.stubs())
 

@@ -5,8 +5,6 @@
 
 #include "material_paths.h"
 
-#include <mps/soil.h>
-
 /* A clay with its isotropic first state. */
 typedef struct clay {
   double M, lambda, kappa, nu, e0, p0, R;
@@ -17,20 +15,16 @@ static const clay clays[2] = {{0.92, 0.205, 0.044, 0.25, 1.4, 100e3, 1.0},
                               {1.2, 0.10, 0.02, 0.2, 0.8, 50e3, 4.0}};
 
 static inline mps_material_cam_clay_def clay_def(const clay *c) {
-  mps_material_cam_clay_def def = mps_material_cam_clay_defaults();
-  def.critical_slope = c->M;
-  def.compression = c->lambda;
-  def.swelling = c->kappa;
-  def.poisson = c->nu;
-  def.void_ratio = c->e0;
-  def.preconsolidation = c->R * c->p0;
+  DEF(material_cam_clay, def, .critical_slope = c->M, .compression = c->lambda,
+      .swelling = c->kappa, .poisson = c->nu, .void_ratio = c->e0,
+      .preconsolidation = c->R * c->p0);
   return def;
 }
 
 static inline mps_material *make_clay(const clay *c) {
   const mps_material_cam_clay_def def = clay_def(c);
   mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_create_cam_clay(context, &def, &m));
+  OK(mps_material_create_cam_clay(context, &def, &m));
   return m;
 }
 

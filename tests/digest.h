@@ -5,8 +5,6 @@
 
 #include "test_common.h"
 
-#include <mps/particles.h>
-
 #define DIGEST_START 14695981039346656037u /* FNV-1a */
 
 /* Adds the bits of one value to a digest. */
@@ -17,12 +15,11 @@ static inline uint64_t digest_add(uint64_t hash, const void *value) {
 }
 
 /* Of the fields `names`, NULL at the end. */
-static inline uint64_t digest_fields(mps_context *own, mps_particles *particles,
-                                     const char *const *names) {
+static inline uint64_t digest_fields(mps_particles *particles, const char *const *names) {
   uint64_t hash = DIGEST_START;
   for (; *names; names++) {
     mps_view view;
-    mps_assert_ok(own, mps_particles_view(particles, *names, &view));
+    OK(mps_particles_view(particles, *names, &view));
     for (int64_t c = 0; c < view.shape[1]; c++)
       for (int64_t k = 0; k < view.shape[0]; k++)
         hash = digest_add(hash,

@@ -8,8 +8,6 @@
 
 #include "test_common.h"
 
-#include <mps/domain.h>
-
 #include <pthread.h>
 
 #define TEAM_MOST 16
@@ -343,18 +341,10 @@ static inline void team_star_destroy(void *user, void *handle) {
 }
 
 static inline mps_domain_def team_domain_def(team *t, int32_t rank) {
-  mps_domain_def def = mps_domain_defaults();
-  def.rank = rank;
-  def.size = t->size;
-  def.user = &t->member[rank];
-  def.rendezvous = team_rendezvous;
-  def.star_create = team_star_create;
-  def.star_begin = team_star_begin;
-  def.star_end = team_star_end;
-  def.star_destroy = team_star_destroy;
-  def.reduce_max = team_max;
-  def.reduce_sum = team_sum;
-  def.max_leave = team_max_leave;
+  DEF(domain, def, .rank = rank, .size = t->size, .user = &t->member[rank],
+      .rendezvous = team_rendezvous, .star_create = team_star_create, .star_begin = team_star_begin,
+      .star_end = team_star_end, .star_destroy = team_star_destroy, .reduce_max = team_max,
+      .reduce_sum = team_sum, .max_leave = team_max_leave);
   if (t->size != 2) def.max_begin = team_max_begin, def.max_end = team_max_end;
   return def;
 }

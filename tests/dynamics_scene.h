@@ -5,8 +5,6 @@
 
 #include "ranks_result.h"
 
-#include <mps/dynamics.h>
-
 enum { LAYERS, SCATTERED, PERIODIC, STRIP, UNSTABLE, SCENES };
 
 static inline double noise(uint64_t k) {
@@ -53,8 +51,7 @@ static inline mps_status give_ground(mps_particles *set, bool even) {
 /* `domain` NULL: all of it here. */
 static inline mps_status make_set(mps_context *own, mps_domain *domain, int what,
                                   mps_particles **out) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.5;
+  DEF(particles, def, .spacing = 0.5);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
   const bool strip = what == STRIP || what == UNSTABLE;
@@ -72,8 +69,8 @@ static inline mps_status make_set(mps_context *own, mps_domain *domain, int what
   }
   TRY(give_ground(*out, what == PERIODIC));
   if (what == LAYERS) {
-    TRY(mps_dynamics_add_free_field(*out, MPS_DYNAMICS_SIDE_LEFT, 4));
-    TRY(mps_dynamics_add_free_field(*out, MPS_DYNAMICS_SIDE_RIGHT, 4));
+    TRY(mps_dynamics_add_free_field(*out, MPS_SIDE_X_LOWER, 4));
+    TRY(mps_dynamics_add_free_field(*out, MPS_SIDE_X_UPPER, 4));
   }
   return status;
 }
@@ -89,9 +86,11 @@ static inline mps_status ramp(void *user, double t, double motion[3]) {
 /* A base that drives or absorbs, a load on part of the surface, gravity. */
 static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
                                         mps_dynamics *dynamics, int what, int32_t *base) {
-  mps_signal *signal = NULL;
+  scoped_signal *signal = NULL, *factor = NULL;
   int32_t number;
-  mps_status status = mps_signal_create_user(own, ramp, NULL, &signal);
+  mps_status status =
+      mps_signal_create_user(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, ramp, NULL, NULL, &signal);
+  TRY(mps_signal_create_user(own, MPS_SIGNAL_QUANTITY_VALUE, ramp, NULL, NULL, &factor));
   if (domain) status = mps_domain_agree(domain, status);
   mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
   boundary.lower[0] = boundary.lower[1] = -INFINITY;
@@ -104,17 +103,12 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
   const int64_t ids[3] = {700, 20, 1403};
   point.ids = ids, point.id_count = 3, point.dofs = MPS_DOF_Y;
   TRY(mps_dynamics_add_boundary(dynamics, &point, &number));
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
-  load.lower[0] = 3.0, load.upper[0] = 30.0;
-  load.lower[1] = what == STRIP || what == UNSTABLE ? 2.0 : 29.0, load.upper[1] = INFINITY;
-  load.traction[1] = -1e4, load.traction[0] = 2e3;
-  load.signal[0] = signal;
+  DEF(dynamics_load, load, .lower[0] = 3.0, .upper[0] = 30.0,
+      .lower[1] = what == STRIP || what == UNSTABLE ? 2.0 : 29.0, .upper[1] = INFINITY,
+      .traction[1] = -1e4, .traction[0] = 2e3, .signal[0] = factor);
   TRY(mps_dynamics_add_load(dynamics, &load, &number));
-  mps_dynamics_load_def gravity = mps_dynamics_load_defaults();
-  gravity.kind = MPS_DYNAMICS_LOAD_BODY;
-  gravity.acceleration[1] = -9.81;
+  DEF(dynamics_load, gravity, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.81);
   TRY(mps_dynamics_add_load(dynamics, &gravity, &number));
-  mps_signal_destroy(&signal);
   return status;
 }
 
@@ -131,27 +125,24 @@ static inline mps_status fall_apart(mps_dynamics *dynamics, int64_t length) {
 
 static inline mps_status march(mps_dynamics *dynamics, int64_t length) {
   mps_status status = mps_dynamics_step(dynamics, 3);
-  mps_snapshot *then = NULL;
+  scoped_snapshot *then = NULL;
   if (length == SHORT_RUN) return status;
   TRY(mps_dynamics_snapshot(dynamics, &then));
   TRY(mps_dynamics_step(dynamics, 20));
   TRY(mps_dynamics_rollback(dynamics, then));
   TRY(mps_dynamics_run(dynamics, mps_dynamics_time(dynamics) + 0.03, 7, NULL, NULL));
   TRY(mps_dynamics_refresh(dynamics));
-  mps_snapshot_destroy(&then);
   return status;
 }
 
 /* What a scene's solver is made with. */
 static inline mps_dynamics_def scene_def(mps_domain *domain, int what) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.domain = domain;
-  def.watch_damping = what == LAYERS;
-  def.integrator =
-      what == SCATTERED ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET;
+  DEF(dynamics, def, .domain = domain, .watch_damping = what == LAYERS,
+      .integrator =
+          what == SCATTERED ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET);
   if (what == PERIODIC) def.period_x = 45.0;
   if (what == STRIP) def.radius_ratio = 2.1;
-  if (what == UNSTABLE) def.dt = 5e-3, def.divergence = 1e6;
+  if (what == UNSTABLE) def.divergence = 1e6;
   return def;
 }
 
@@ -163,6 +154,7 @@ static inline mps_status begin_scene(mps_context *own, mps_domain *domain, int w
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_dynamics_create(own, *set, &def, dynamics));
   if (status == MPS_OK) status = add_conditions(own, domain, *dynamics, what, base);
+  if (what == UNSTABLE) TRY(mps_dynamics_set_dt(*dynamics, 5e-3));
   return status;
 }
 
@@ -170,8 +162,8 @@ static inline mps_status begin_scene(mps_context *own, mps_domain *domain, int w
 enum { FIRST_HALF = 1, SECOND_HALF = 2 };
 static inline mps_status compute_halves(mps_context *own, mps_domain *domain, int what, int halves,
                                         const char *path, result *r) {
-  mps_particles *set = NULL;
-  mps_dynamics *dynamics = NULL;
+  scoped_particles *set = NULL;
+  scoped_dynamics *dynamics = NULL;
   int32_t base = -1;
   mps_status status = begin_scene(own, domain, what, &set, &dynamics, &base);
   if (halves & FIRST_HALF) TRY(mps_dynamics_step(dynamics, 9));
@@ -181,15 +173,13 @@ static inline mps_status compute_halves(mps_context *own, mps_domain *domain, in
   TRY(mps_dynamics_get_totals(dynamics, &r->totals));
   TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction[0]));
   TRY(keep(set, r));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
   return status;
 }
 
 static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t length,
                                  result *r) {
-  mps_particles *set = NULL;
-  mps_dynamics *dynamics = NULL;
+  scoped_particles *set = NULL;
+  scoped_dynamics *dynamics = NULL;
   int32_t base = -1;
   mps_status status = begin_scene(own, domain, what, &set, &dynamics, &base);
   TRY(what == UNSTABLE ? fall_apart(dynamics, length) : march(dynamics, length));
@@ -199,10 +189,7 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   if (what != UNSTABLE) TRY(mps_dynamics_find_limit(dynamics, 0.0, &limit));
   r->dt = mps_dynamics_dt(dynamics);
   r->limit = limit.dt, r->omega = limit.omega;
-  r->pairs = mps_dynamics_pairs(dynamics);
   TRY(keep(set, r));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
   return status;
 }
 

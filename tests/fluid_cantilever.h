@@ -6,12 +6,6 @@
 
 #include "fluid_tank.h"
 
-#include <mps/couple.h>
-#include <mps/elastic.h>
-
-#include <math.h>
-#include <stdlib.h>
-
 #define CANTILEVER_LENGTH 0.8 /* m, of the water */
 #define CANTILEVER_DEPTH 0.4
 #define CANTILEVER_HEIGHT 0.5 /* of the wall */
@@ -41,26 +35,25 @@ static inline void cantilever_hold(mps_context *c, cantilever *w) {
   enum { ROOM = 4000 };
   int64_t *ids = malloc(ROOM * sizeof *ids), count;
   const double low[2] = {-9.0, -1e-6}, high[2] = {9.0, 1e-6};
-  mps_elastic_def def = mps_elastic_defaults();
+  DEF(elastic, def, .state = MPS_ELASTIC_STATE_PLANE_STRAIN);
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
-  def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
-  mps_assert_ok(c, mps_elastic_create(c, w->wall, &def, &w->elastic));
-  mps_assert_ok(c, mps_particles_select_box(w->wall, low, high, ROOM, &count, ids));
-  mps_assert_ok(c, mps_elastic_cut(w->elastic, 1, -1, count, ids));
+  OK(mps_elastic_create(c, w->wall, &def, &w->elastic));
+  OK(mps_particles_select_box(w->wall, low, high, ROOM, &count, ids));
+  OK(mps_elastic_cut(w->elastic, MPS_SIDE_Y_LOWER, ids, count));
   held.ids = ids, held.id_count = count;
-  mps_assert_ok(c, mps_elastic_add_boundary(w->elastic, &held, NULL));
+  OK(mps_elastic_add_boundary(w->elastic, &held, NULL));
   free(ids);
 }
 
 /* The wall at rest under the still water. */
-static inline void cantilever_rest(mps_context *c, cantilever *w, double dt, double rho_inf) {
+static inline void cantilever_rest(cantilever *w, double dt, double rho_inf) {
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  mps_assert_ok(c, mps_elastic_select_facets(w->elastic, 0, -1, NULL, NULL, CANTILEVER_FACETS,
-                                             &w->facets, w->ids));
+  OK(mps_elastic_select_facets(w->elastic, MPS_SIDE_X_LOWER, NULL, NULL, CANTILEVER_FACETS,
+                               &w->facets, w->ids));
   assert_in_range(w->facets, 1, CANTILEVER_FACETS);
   w->face = (mps_elastic_facet_arrays){
       .centre = w->centre, .displacement = w->displacement, .velocity = w->velocity};
-  mps_assert_ok(c, mps_elastic_get_facets(w->elastic, w->facets, w->ids, &w->face));
+  OK(mps_elastic_get_facets(w->elastic, w->ids, w->facets, &w->face));
   for (int64_t k = 0; k < w->facets; k++) {
     const double y = w->centre[3 * k + 1];
     w->p[k] = y < CANTILEVER_DEPTH ? 1000.0 * TANK_G * (CANTILEVER_DEPTH - y) : 0.0;
@@ -69,11 +62,11 @@ static inline void cantilever_rest(mps_context *c, cantilever *w, double dt, dou
   w->load = mps_elastic_load_defaults();
   w->load.kind = MPS_ELASTIC_LOAD_PRESSURE;
   w->load.ids = w->ids, w->load.id_count = w->facets, w->load.values = w->p;
-  mps_assert_ok(c, mps_elastic_add_load(w->elastic, &w->load, &w->pressed));
-  mps_assert_ok(c, mps_elastic_solve(w->elastic));
+  OK(mps_elastic_add_load(w->elastic, &w->load, &w->pressed));
+  OK(mps_elastic_solve(w->elastic));
   motion.dt = dt, motion.rho_inf = rho_inf;
-  mps_assert_ok(c, mps_elastic_start(w->elastic, &motion));
-  mps_assert_ok(c, mps_elastic_get_facets(w->elastic, w->facets, w->ids, &w->face));
+  OK(mps_elastic_start(w->elastic, &motion));
+  OK(mps_elastic_get_facets(w->elastic, w->ids, w->facets, &w->face));
   for (int64_t k = 0; k < w->facets; k++) w->rest[k] = w->displacement[3 * k];
 }
 
@@ -88,73 +81,72 @@ static inline void cantilever_make(mps_context *c, cantilever *w, double dt, dou
   const double low[2] = {CANTILEVER_LENGTH, -0.5 * CANTILEVER_SPACING};
   const double high[2] = {CANTILEVER_LENGTH + CANTILEVER_THICK, CANTILEVER_HEIGHT - 1e-9};
   set.spacing = CANTILEVER_SPACING, set.origin[0] = low[0], set.origin[1] = low[1];
-  mps_assert_ok(c, mps_particles_create(c, &set, &w->wall));
-  mps_assert_ok(c, mps_particles_fill_box(w->wall, low, high, NULL));
-  mps_assert_ok(c, mps_particles_set(w->wall, "young", 0, 1.6e9));
-  mps_assert_ok(c, mps_particles_set(w->wall, "poisson", 0, 0.25));
-  mps_assert_ok(c, mps_particles_set(w->wall, "density", 0, 2000.0));
+  OK(mps_particles_create(c, &set, &w->wall));
+  OK(mps_particles_fill_box(w->wall, low, high, NULL));
+  OK(mps_particles_set(w->wall, "young", 0, 1.6e9));
+  OK(mps_particles_set(w->wall, "poisson", 0, 0.25));
+  OK(mps_particles_set(w->wall, "density", 0, 2000.0));
   cantilever_hold(c, w);
-  cantilever_rest(c, w, dt, rho_inf);
-  mps_assert_ok(
-      c, mps_elastic_select_facets(w->elastic, 0, 1, NULL, NULL, CANTILEVER_FACETS, &count, back));
+  cantilever_rest(w, dt, rho_inf);
+  OK(mps_elastic_select_facets(w->elastic, MPS_SIDE_X_UPPER, NULL, NULL, CANTILEVER_FACETS, &count,
+                               back));
   behind.kind = MPS_ELASTIC_LOAD_PRESSURE, behind.ids = back, behind.id_count = count;
   behind.force[0] = CANTILEVER_LOAD;
-  mps_assert_ok(c, mps_elastic_add_load(w->elastic, &behind, NULL));
+  OK(mps_elastic_add_load(w->elastic, &behind, NULL));
   set = mps_particles_defaults();
   set.spacing = CANTILEVER_WATER, def.dt = dt, def.level = CANTILEVER_DEPTH;
-  mps_assert_ok(c, mps_particles_create(c, &set, &w->water.water));
-  tank_fill(c, w->water.water, CANTILEVER_LENGTH, CANTILEVER_DEPTH, NULL, NULL);
-  mps_assert_ok(c, mps_fluid_create(c, w->water.water, &def, &w->water.fluid));
-  tank_wall(c, w->water.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(c, w->water.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  OK(mps_particles_create(c, &set, &w->water.water));
+  tank_fill(w->water.water, CANTILEVER_LENGTH, CANTILEVER_DEPTH, NULL, NULL);
+  OK(mps_fluid_create(c, w->water.water, &def, &w->water.fluid));
+  tank_wall(w->water.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(w->water.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   wall.point[0] = CANTILEVER_LENGTH, wall.normal[0] = -1.0;
   wall.nodes = w->centre, wall.node_count = w->facets;
-  mps_assert_ok(c, mps_fluid_add_boundary(w->water.fluid, &wall, &w->boundary));
+  OK(mps_fluid_add_boundary(w->water.fluid, &wall, &w->boundary));
   agree.size = w->facets, agree.floor = 1e-4 * TANK_G;
-  mps_assert_ok(c, mps_coupling_create(c, &agree, &w->coupling));
+  OK(mps_coupling_create(c, &agree, &w->coupling));
   w->top = mps_particles_nearest(w->wall, (double[2]){CANTILEVER_LENGTH, CANTILEVER_HEIGHT});
 }
 
 /* The face's velocity at the end of a step under its mean accelerations `a`; its response to the
  * water's pressures then to `a`. The pressures are those of the middle of the step; the elastic
  * solver takes its loads at alpha_f before the end, in a straight line. */
-static inline void cantilever_try(mps_context *c, cantilever *w, double dt, double alpha,
-                                  const double *d, const double *v, const double *a,
-                                  double *answer) {
+static inline void cantilever_try(cantilever *w, double dt, double alpha, const double *d,
+                                  const double *v, const double *a, double *answer) {
   double place[CANTILEVER_FACETS], speed[CANTILEVER_FACETS];
   for (int64_t k = 0; k < w->facets; k++)
     speed[k] = v[k] + dt * a[k], place[k] = d[k] + 0.5 * dt * (v[k] + speed[k]);
-  mps_assert_ok(c, mps_fluid_set_wall_motion(w->water.fluid, w->boundary, place, speed));
-  mps_assert_ok(c, mps_fluid_solve_pressure(w->water.fluid));
-  mps_assert_ok(c, mps_fluid_get_pressure(w->water.fluid, w->boundary, w->facets, w->centre, w->p));
-  mps_assert_ok(c, mps_elastic_rollback(w->elastic, w->before));
+  OK(mps_fluid_set_boundary_motion(w->water.fluid, w->boundary, place, speed));
+  OK(mps_fluid_solve_pressure(w->water.fluid));
+  OK(mps_fluid_get_pressure(w->water.fluid, w->boundary, w->facets, w->centre, w->p));
+  OK(mps_elastic_rollback(w->elastic, w->before));
   for (int64_t k = 0; k < w->facets; k++)
     w->next[k] =
         (w->p[k] + (0.5 - alpha) * (w->p[k] - w->last[k]) - alpha * w->at_end[k]) / (1.0 - alpha);
   w->load.values = w->next;
-  mps_assert_ok(c, mps_elastic_set_load(w->elastic, w->pressed, &w->load));
-  mps_assert_ok(c, mps_elastic_step(w->elastic, 1));
-  mps_assert_ok(c, mps_elastic_get_facets(w->elastic, w->facets, w->ids, &w->face));
+  OK(mps_elastic_set_load(w->elastic, w->pressed, &w->load));
+  OK(mps_elastic_step(w->elastic, 1));
+  OK(mps_elastic_get_facets(w->elastic, w->ids, w->facets, &w->face));
   for (int64_t k = 0; k < w->facets; k++) answer[k] = (-w->velocity[3 * k] - v[k]) / dt;
 }
 
-static inline void cantilever_step(mps_context *c, cantilever *w, double dt, double alpha) {
+static inline void cantilever_step(cantilever *w, double dt, double alpha) {
   double d[CANTILEVER_FACETS], v[CANTILEVER_FACETS], a[CANTILEVER_FACETS],
       answer[CANTILEVER_FACETS];
   int32_t done = 0;
-  mps_assert_ok(c, mps_fluid_begin_step(w->water.fluid, dt));
-  mps_assert_ok(c, mps_elastic_snapshot(w->elastic, &w->before));
-  mps_assert_ok(c, mps_elastic_get_facets(w->elastic, w->facets, w->ids, &w->face));
+  OK(mps_fluid_begin_step(w->water.fluid, dt));
+  OK(mps_elastic_snapshot(w->elastic, &w->before));
+  OK(mps_elastic_get_facets(w->elastic, w->ids, w->facets, &w->face));
   for (int64_t k = 0; k < w->facets; k++)
     d[k] = w->rest[k] - w->displacement[3 * k], v[k] = -w->velocity[3 * k];
-  mps_assert_ok(c, mps_coupling_begin(w->coupling, NULL, a));
+  OK(mps_coupling_begin(w->coupling, NULL, a));
   while (!done) {
-    cantilever_try(c, w, dt, alpha, d, v, a, answer);
-    mps_assert_ok(c, mps_coupling_next(w->coupling, answer, a, &done));
+    cantilever_try(w, dt, alpha, d, v, a, answer);
+    OK(mps_coupling_next(w->coupling, answer, a, &done));
   }
-  mps_assert_ok(c, mps_coupling_accept(w->coupling));
+  OK(mps_coupling_accept(w->coupling));
   for (int64_t k = 0; k < w->facets; k++) w->last[k] = w->p[k], w->at_end[k] = w->next[k];
-  mps_assert_ok(c, mps_fluid_end_step(w->water.fluid));
+  OK(mps_fluid_end_step(w->water.fluid));
 }
 
 /* Growth (1/s) of the crest's swing about its mean: from its root mean square in the second and in
@@ -166,11 +158,11 @@ static inline double cantilever_growth(mps_context *c, double dt, double rho_inf
   cantilever_make(c, w, dt, rho_inf);
   while (mps_fluid_time(w->water.fluid) < t_end) {
     mps_view u;
-    cantilever_step(c, w, dt, alpha);
+    cantilever_step(w, dt, alpha);
     const double part = mps_fluid_time(w->water.fluid) / t_end;
     if (part < 0.25 || (part > 0.5 && part < 0.75)) continue;
     const int at = part > 0.5;
-    mps_assert_ok(c, mps_particles_view(w->wall, "displacement", &u));
+    OK(mps_particles_view(w->wall, "displacement", &u));
     const double x = *mps_view_f64(&u, mps_particles_index(w->wall, w->top), 0);
     n[at] += 1.0, sum[at] += x, square[at] += x * x;
   }

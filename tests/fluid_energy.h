@@ -6,9 +6,6 @@
 
 #include "fluid_tank.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #define ENERGY_RHO 1000.0
 
 /* ---- a wall that is forced to vibrate -------------------------------------------------------- */
@@ -100,11 +97,11 @@ static inline forced forced_run(mps_context *c, double l0, double dt, int power,
   forced_fit sum = {0};
   int32_t number;
   set.spacing = l0, def.dt = dt, def.level = FORCED_DEPTH;
-  mps_assert_ok(c, mps_particles_create(c, &set, &t.water));
-  tank_fill(c, t.water, FORCED_LENGTH, FORCED_DEPTH, NULL, NULL);
-  mps_assert_ok(c, mps_fluid_create(c, t.water, &def, &t.fluid));
-  tank_wall(c, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(c, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  OK(mps_particles_create(c, &set, &t.water));
+  tank_fill(t.water, FORCED_LENGTH, FORCED_DEPTH, NULL, NULL);
+  OK(mps_fluid_create(c, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   for (int i = 0; i < FORCED_POINTS; i++) {
     x[3 * i] = FORCED_LENGTH, x[3 * i + 2] = 0.0;
     x[3 * i + 1] = (i + 0.5) * FORCED_HEIGHT / FORCED_POINTS;
@@ -112,16 +109,16 @@ static inline forced forced_run(mps_context *c, double l0, double dt, int power,
   }
   wall.point[0] = FORCED_LENGTH, wall.normal[0] = -1.0;
   wall.nodes = x, wall.node_count = FORCED_POINTS;
-  mps_assert_ok(c, mps_fluid_add_boundary(t.fluid, &wall, &number));
+  OK(mps_fluid_add_boundary(t.fluid, &wall, &number));
   for (double now = 0.0; now < periods * 2.0 * TANK_PI / omega; now = mps_fluid_time(t.fluid)) {
     const double v = forced_speed(omega, now + dt), before = forced_speed(omega, now);
     for (int i = 0; i < FORCED_POINTS; i++)
       place[i] = s[i] * forced_place(omega, now + dt), speed[i] = s[i] * v;
-    mps_assert_ok(c, mps_fluid_begin_step(t.fluid, dt));
-    mps_assert_ok(c, mps_fluid_set_wall_motion(t.fluid, number, place, speed));
-    mps_assert_ok(c, mps_fluid_solve_pressure(t.fluid));
-    mps_assert_ok(c, mps_fluid_get_pressure(t.fluid, number, FORCED_POINTS, x, p));
-    mps_assert_ok(c, mps_fluid_end_step(t.fluid));
+    OK(mps_fluid_begin_step(t.fluid, dt));
+    OK(mps_fluid_set_boundary_motion(t.fluid, number, place, speed));
+    OK(mps_fluid_solve_pressure(t.fluid));
+    OK(mps_fluid_get_pressure(t.fluid, number, FORCED_POINTS, x, p));
+    OK(mps_fluid_end_step(t.fluid));
     if (now < FORCED_FIRST * 2.0 * TANK_PI / omega) continue;
     const double force = forced_force(x, s, p), a = (v - before) / dt, mean = 0.5 * (v + before);
     sum.fa += force * a, sum.fv += force * mean;
@@ -148,7 +145,7 @@ static inline void forced_check(mps_context *c, double l0, double dt, int power,
       "damping/(m omega) %+.3f %%\n",
       l0, power, omega, 1e3 * dt, got.mass, got.exact, 100.0 * (got.mass / got.exact - 1.0),
       100.0 * got.damping);
-  mps_assert_near(got.mass, got.exact, bar * got.exact);
+  NEAR(got.mass, got.exact, bar * got.exact);
   assert_true(got.damping > forced_least(l0, dt));
 }
 
@@ -187,18 +184,18 @@ static inline blocks blocks_run(mps_context *c, int n, double gap, double t_end)
     x[2 * k] = k < each ? l0 * (column + 0.5 + 0.5 * gap) : -l0 * (column + 0.5 + 0.5 * gap);
     x[2 * k + 1] = l0 * (row + 0.5);
   }
-  mps_assert_ok(c, mps_particles_create(c, &set, &water));
-  mps_assert_ok(c, mps_particles_append(water, 2 * each, x));
-  mps_assert_ok(c, mps_particles_add_field(water, "velocity", 0));
-  mps_assert_ok(c, mps_particles_edit(water, "velocity", &u));
+  OK(mps_particles_create(c, &set, &water));
+  OK(mps_particles_append(water, 2 * each, x));
+  OK(mps_particles_add_field(water, "velocity", 0));
+  OK(mps_particles_edit(water, "velocity", &u));
   for (int64_t k = 0; k < 2 * each; k++) *mps_edit_f64(&u, k, 0) = k < each ? -1.0 : 1.0;
-  mps_assert_ok(c, mps_particles_commit(water, &u));
-  mps_assert_ok(c, mps_fluid_create(c, water, &def, &fluid));
-  mps_assert_ok(c, mps_fluid_get_totals(fluid, &sum));
+  OK(mps_particles_commit(water, &u));
+  OK(mps_fluid_create(c, water, &def, &fluid));
+  OK(mps_fluid_get_totals(fluid, &sum));
   const double before = sum.kinetic, struck = 0.5 * (1.0 + gap) * l0;
   while (mps_fluid_time(fluid) < struck + t_end) {
-    mps_assert_ok(c, mps_fluid_step(fluid, 1));
-    mps_assert_ok(c, mps_fluid_get_totals(fluid, &sum));
+    OK(mps_fluid_step(fluid, 1));
+    OK(mps_fluid_get_totals(fluid, &sum));
     got.last = sum.kinetic / before;
     if (mps_fluid_time(fluid) < struck) continue;
     if (got.first == 0.0) got.first = got.last;
@@ -248,8 +245,8 @@ static inline double standing_kept(mps_context *c, double l0, double dt, double 
   for (double begin = 0.0; n < 0.5 * periods; begin = mps_fluid_time(t.fluid)) {
     double qc = 0.0, qs = 0.0, cc = 0.0, ss = 0.0, cs = 0.0;
     while (mps_fluid_time(t.fluid) < begin + window) {
-      mps_assert_ok(c, mps_fluid_step(t.fluid, 1));
-      mps_assert_ok(c, mps_fluid_get_levels(t.fluid, STATIONS, at, level));
+      OK(mps_fluid_step(t.fluid, 1));
+      OK(mps_fluid_get_levels(t.fluid, STATIONS, at, level));
       const double phase = w * mps_fluid_time(t.fluid), co = cos(phase), si = sin(phase);
       double q = 0.0;
       for (int i = 0; i < STATIONS; i++)
@@ -284,18 +281,18 @@ static inline spring_result spring_run(mps_context *c, double l0, double dt, dou
   const double still = 0.5 * ENERGY_RHO * TANK_G * SPRING_DEPTH * SPRING_DEPTH;
   const int64_t steps = (int64_t)ceil(periods * 2.0 * TANK_PI / (omega * dt));
   const double start = fmin(0.0005, 0.2 * TANK_G / (omega * omega));
-  tank t = tank_make(c, SPRING_LENGTH, SPRING_DEPTH, l0, NULL, dt);
+  scoped_tank t = tank_make(c, SPRING_LENGTH, SPRING_DEPTH, l0, NULL, dt);
   double x = start, v = 0.0, a = 0.0;
   spring_result got = {0.0, 0.0};
   for (int64_t n = 0; n < steps; n++) {
     double factor = 0.1, before = 0.0;
-    mps_assert_ok(c, mps_fluid_begin_step(t.fluid, dt));
+    OK(mps_fluid_begin_step(t.fluid, dt));
     for (int k = 0;; k++) {
       const double speed = v + dt * a, place = x + 0.5 * dt * (v + speed) - start;
       mps_reaction r;
-      mps_assert_ok(c, mps_fluid_set_wall_motion(t.fluid, TANK_RIGHT, &place, &speed));
-      mps_assert_ok(c, mps_fluid_solve_pressure(t.fluid));
-      mps_assert_ok(c, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
+      OK(mps_fluid_set_boundary_motion(t.fluid, TANK_RIGHT, &place, &speed));
+      OK(mps_fluid_solve_pressure(t.fluid));
+      OK(mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
       const double load = r.force[0] + still - stiffness * (x + 0.5 * dt * v);
       const double residual = load / (SPRING_MASS + 0.25 * dt * dt * stiffness) - a;
       if (fabs(residual) < 1e-4 * (fabs(a + residual) + 1e-3 * TANK_G)) break;
@@ -304,11 +301,10 @@ static inline spring_result spring_run(mps_context *c, double l0, double dt, dou
       before = residual, a += factor * residual;
     }
     x += 0.5 * dt * (2.0 * v + dt * a), v += dt * a;
-    mps_assert_ok(c, mps_fluid_end_step(t.fluid));
+    OK(mps_fluid_end_step(t.fluid));
     if (n >= steps / 8 && n < steps / 4) got.early = fmax(got.early, fabs(x));
     if (n >= steps - steps / 8) got.late = fmax(got.late, fabs(x));
   }
-  tank_free(&t);
   return got;
 }
 

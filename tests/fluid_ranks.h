@@ -5,10 +5,6 @@
 
 #include "ranks_result.h"
 
-#include <mps/experimental.h>
-#include <mps/fluid.h>
-#include <mps/fluid_rock.h>
-
 /* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
  * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
  * blocks. PUDDLE is less than one, POND little more, EXACT the same with a closer
@@ -35,10 +31,8 @@ static inline void drop_scene(scene *s) {
 
 static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
                               mps_signal *signal) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = kind;
-  def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
-  def.signal = signal;
+  DEF(fluid_boundary, def, .kind = kind, .point[0] = x, .point[1] = y, .normal[0] = nx,
+      .normal[1] = ny, .signal = signal);
   return mps_fluid_add_boundary(s->fluid, &def, NULL);
 }
 
@@ -49,26 +43,21 @@ static inline mps_domain *def_domain(const scene *s) {
 }
 
 static inline mps_status add_float(mps_context *own, scene *s) {
-  mps_status status = mps_signal_create_sine(own, 1.0, 0.3, 0.0, &s->piston);
+  mps_status status =
+      mps_signal_create_sine(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.3, 0.0, &s->piston);
   mps_domain *domain = def_domain(s);
-  mps_body_def body = mps_body_defaults();
+  DEF(body, body, .motion = MPS_BODY_MOTION_FREE, .position[0] = 1.6, .position[1] = 0.9,
+      .mass = 40.0, .inertia[2] = 1.0, .gravity[1] = -9.81);
   const double xy[] = {-0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1};
   mps_fluid_contact_def afloat = mps_fluid_contact_defaults();
-  body.motion = MPS_BODY_MOTION_FREE;
-  body.position[0] = 1.6, body.position[1] = 0.9;
-  body.mass = 40.0, body.inertia[2] = 1.0;
-  body.gravity[1] = -9.81;
   TRY(mps_body_create_polygon(own, &body, 4, xy, &s->body));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, s->piston));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 4.0, 0.0, -1.0, 0.0, NULL));
-  afloat.kind = MPS_BOUNDARY_ROLLER, afloat.floats = 1;
+  afloat.kind = MPS_BOUNDARY_ROLLER;
   TRY(mps_fluid_add_contact(s->fluid, s->body, &afloat, &s->contact));
-  mps_fluid_load_def load = mps_fluid_load_defaults();
-  load.kind = MPS_FLUID_LOAD_PRESSURE;
-  load.pressure = 200.0;
-  load.lower[0] = 3.0;
+  DEF(fluid_load, load, .kind = MPS_FLUID_LOAD_PRESSURE, .pressure = 200.0, .lower[0] = 3.0);
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   return status;
 }
@@ -88,9 +77,8 @@ static inline mps_status add_breakwater(scene *s) {
   const double bed[4][3] = {{-0.5, 0.0, 0.0}, {2.0, 0.0, 0.0}, {2.5, 0.3, 0.0}, {2.5, 1.5, 0.0}};
   const double stones[4][3] = {
       {0.9, -0.1, 0.0}, {1.5, -0.1, 0.0}, {1.4, 1.2, 0.0}, {0.9, 1.2, 0.0}};
-  mps_fluid_boundary_def line = mps_fluid_boundary_defaults();
+  DEF(fluid_boundary, line, .corners = bed[0], .corner_count = 4);
   mps_fluid_rock_def rock = mps_fluid_rock_defaults();
-  line.corners = bed[0], line.corner_count = 4;
   mps_status status = mps_fluid_add_boundary(s->fluid, &line, NULL);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 3.5, 0.0, -1.0, 0.0, NULL));
@@ -101,12 +89,10 @@ static inline mps_status add_breakwater(scene *s) {
 }
 
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
+  DEF(particles, set, .spacing = 0.02);
+  DEF(fluid, def, .domain = domain);
   const double lower[2] = {0.0, 0.0}, small[2] = {0.6, 0.4}, middle[2] = {1.12, 1.0},
                large[2] = {2.0, 1.6};
-  set.spacing = 0.02;
-  def.domain = domain;
   if (what == EXACT) def.tolerance = 1e-11;
   def.viscosity = what == COLLAPSE ? 0.5 : 0.0;
   mps_status status = mps_particles_create(own, &set, &s->set);
@@ -174,9 +160,8 @@ static inline mps_status tell(scene *s, int what, result *r) {
   if (status != MPS_OK) return status;
   const int64_t counts[] = {report.ghosts,     report.surface,       report.apart,
                             report.iterations, report.collisions,    report.limited,
-                            report.pushed,     report.all_iterations};
-  for (int k = 0; k < 8; k++) r->other[8 + k] = (double)counts[k];
-  r->pairs = report.pairs;
+                            report.pushed,     report.all_iterations, report.pairs};
+  for (int k = 0; k < 9; k++) r->other[8 + k] = (double)counts[k];
   r->dt = mps_fluid_dt(s->fluid), r->limit = mps_fluid_limit(s->fluid);
   r->time = mps_fluid_time(s->fluid);
   return keep(s->set, r);
@@ -185,13 +170,12 @@ static inline mps_status tell(scene *s, int what, result *r) {
 /* `from`, `to`: checkpoints, or NULL. */
 static inline mps_status compute_half(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                       const char *from, const char *to, result *r) {
-  scene s = {.set = NULL};
+  SCOPED(drop_scene) scene s = {.set = NULL};
   mps_status status = make_scene(own, domain, what, &s);
   if (from) TRY(mps_fluid_restore(s.fluid, from, NULL));
   TRY(take_steps(&s, what, steps));
   if (to) TRY(mps_fluid_save(s.fluid, to, NULL));
   TRY(tell(&s, what, r));
-  drop_scene(&s);
   return status;
 }
 

@@ -28,13 +28,12 @@ static inline void read_reaction(readings *r, const mps_reaction *force) {
 }
 
 /* Of wall `number`; points along its whole length from `point` on, half a spacing apart. */
-static inline void read_wall(mps_context *c, mps_fluid *fluid, int32_t number, const double *point,
-                             readings *r) {
+static inline void read_wall(mps_fluid *fluid, int32_t number, const double *point, readings *r) {
   enum { MOST = 300 };
   const double half = 0.5 * mps_particles_spacing(mps_fluid_particles(fluid));
   double x[3 * MOST], p[MOST];
   int64_t count = 0;
-  mps_assert_ok(c, mps_fluid_get_wall(fluid, number, MOST, &count, x, p));
+  OK(mps_fluid_get_boundary_points(fluid, number, MOST, &count, x, p));
   assert_true(count <= MOST);
   reading(r, (double)count);
   for (int64_t k = 0; k < count; k++)
@@ -43,14 +42,14 @@ static inline void read_wall(mps_context *c, mps_fluid *fluid, int32_t number, c
     for (int e = 0; e < 3; e++)
       x[3 * k + e] =
           point[e] + (e == (point[2] > 0.0) ? k * half : 0.0) - (e == 2 ? point[2] : 0.0);
-  mps_assert_ok(c, mps_fluid_get_pressure(fluid, number, 60, x, p));
+  OK(mps_fluid_get_pressure(fluid, number, 60, x, p));
   for (int k = 0; k < 60; k++) reading(r, p[k]);
 }
 
 /* `right`: x of the right wall, which is boundary 2; NAN: there is none. `contact`: with a body, or
  * NULL. */
-static inline void read_all(mps_context *c, mps_fluid *fluid, double right,
-                            const mps_contact *contact, readings *r) {
+static inline void read_all(mps_fluid *fluid, double right, const mps_contact *contact,
+                            readings *r) {
   const double points[3][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {right, 0.0, 1.0}};
   double station[60], level[60];
   mps_reaction force;
@@ -58,22 +57,22 @@ static inline void read_all(mps_context *c, mps_fluid *fluid, double right,
   mps_fluid_report report;
   memset(r, 0, sizeof *r);
   for (int k = 0; k < 60; k++) station[k] = 0.0237 * k;
-  mps_assert_ok(c, mps_fluid_get_levels(fluid, 60, station, level));
+  OK(mps_fluid_get_levels(fluid, 60, station, level));
   for (int k = 0; k < 60; k++) reading(r, level[k]);
   for (int32_t b = 0; b < 3; b++) {
-    mps_assert_ok(c, mps_fluid_get_reaction(fluid, b, &force));
+    OK(mps_fluid_get_reaction(fluid, b, &force));
     read_reaction(r, &force);
-    if (b < 2 || !isnan(right)) read_wall(c, fluid, b, points[b], r);
+    if (b < 2 || !isnan(right)) read_wall(fluid, b, points[b], r);
   }
   if (contact) {
-    mps_assert_ok(c, mps_contact_get_reaction(contact, -1, &force));
+    OK(mps_contact_get_reaction(contact, -1, &force));
     read_reaction(r, &force);
   }
-  mps_assert_ok(c, mps_fluid_get_totals(fluid, &totals));
+  OK(mps_fluid_get_totals(fluid, &totals));
   const double sums[] = {totals.kinetic, totals.strain,     totals.work_boundaries,
                          totals.mass,    totals.work_loads, totals.dissipated};
   for (size_t k = 0; k < sizeof sums / sizeof *sums; k++) reading(r, sums[k]);
-  mps_assert_ok(c, mps_fluid_get_report(fluid, &report));
+  OK(mps_fluid_get_report(fluid, &report));
   report.bytes = 0;
   const int64_t counts[] = {report.ghosts,         report.pairs,      report.surface,
                             report.apart,          report.iterations, report.all_iterations,

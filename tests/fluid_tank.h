@@ -5,8 +5,6 @@
 
 #include "test_common.h"
 
-#include <mps/fluid.h>
-
 #define TANK_G 9.81
 #define TANK_PI 3.14159265358979323846
 
@@ -17,23 +15,25 @@ typedef struct tank {
   mps_fluid *fluid;
 } tank;
 
+#define scoped_tank SCOPED(tank_free) tank
+
 /* Adds a wall through (x, y) with the normal (nx, ny) into the water. */
-static inline int32_t tank_wall(mps_context *c, mps_fluid *fluid, double x, double y, double nx,
-                                double ny, mps_signal *signal) {
+static inline int32_t tank_wall(mps_fluid *fluid, double x, double y, double nx, double ny,
+                                mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   int32_t number = -1;
   def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;
-  mps_assert_ok(c, mps_fluid_add_boundary(fluid, &def, &number));
+  OK(mps_fluid_add_boundary(fluid, &def, &number));
   return number;
 }
 
 /* Changes the position and velocity that a particle of the lattice begins with. */
 typedef void (*tank_shape_fn)(void *user, double *x, double *u);
 
-static inline void tank_fill(mps_context *c, mps_particles *water, double length, double depth,
-                             tank_shape_fn shape, void *user) {
+static inline void tank_fill(mps_particles *water, double length, double depth, tank_shape_fn shape,
+                             void *user) {
   const double l0 = mps_particles_spacing(water);
   const int columns = (int)lround(length / l0), rows = (int)lround(depth / l0);
   double *x = malloc((size_t)columns * (size_t)rows * 2 * sizeof *x), u[2];
@@ -43,7 +43,7 @@ static inline void tank_fill(mps_context *c, mps_particles *water, double length
       at[0] = (i + 0.5) * l0, at[1] = (j + 0.5) * l0;
       if (shape) shape(user, at, u);
     }
-  mps_assert_ok(c, mps_particles_append(water, (int64_t)columns * rows, x));
+  OK(mps_particles_append(water, (int64_t)columns * rows, x));
   free(x);
 }
 
@@ -51,17 +51,14 @@ static inline void tank_fill(mps_context *c, mps_particles *water, double length
 static inline tank tank_of(mps_context *c, double length, double depth, double l0, double dt,
                            mps_signal *piston, tank_shape_fn shape, void *user) {
   tank t = {NULL, NULL};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
-  set.spacing = l0;
-  def.dt = dt;
-  def.level = depth;
-  mps_assert_ok(c, mps_particles_create(c, &set, &t.water));
-  tank_fill(c, t.water, length, depth, shape, user);
-  mps_assert_ok(c, mps_fluid_create(c, t.water, &def, &t.fluid));
-  assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL), TANK_BED);
-  assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 1.0, 0.0, piston), TANK_LEFT);
-  assert_int_equal(tank_wall(c, t.fluid, length, 0.0, -1.0, 0.0, NULL), TANK_RIGHT);
+  DEF(particles, set, .spacing = l0);
+  DEF(fluid, def, .dt = dt, .level = depth);
+  OK(mps_particles_create(c, &set, &t.water));
+  tank_fill(t.water, length, depth, shape, user);
+  OK(mps_fluid_create(c, t.water, &def, &t.fluid));
+  assert_int_equal(tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL), TANK_BED);
+  assert_int_equal(tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston), TANK_LEFT);
+  assert_int_equal(tank_wall(t.fluid, length, 0.0, -1.0, 0.0, NULL), TANK_RIGHT);
   return t;
 }
 
@@ -71,20 +68,17 @@ static inline tank tank_make(mps_context *c, double length, double depth, double
 }
 
 /* Puts a body with a slippery surface into the water. */
-static inline mps_contact *tank_body(mps_context *c, mps_fluid *fluid, mps_body *body,
-                                     int32_t floats) {
-  mps_fluid_contact_def def = mps_fluid_contact_defaults();
+static inline mps_contact *tank_body(mps_fluid *fluid, mps_body *body, int32_t mover) {
+  DEF(fluid_contact, def, .kind = MPS_BOUNDARY_ROLLER, .mover = mover);
   mps_contact *contact = NULL;
-  def.kind = MPS_BOUNDARY_ROLLER, def.floats = floats;
-  mps_assert_ok(c, mps_fluid_add_contact(fluid, body, &def, &contact));
+  OK(mps_fluid_add_contact(fluid, body, &def, &contact));
   return contact;
 }
 
 /* The same, and the water moves it; the contact is the fluid's alone. */
-static inline void tank_float(mps_context *c, mps_fluid *fluid, mps_body *body) {
-  mps_fluid_contact_def def = mps_fluid_contact_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER, def.floats = 1;
-  mps_assert_ok(c, mps_fluid_add_contact(fluid, body, &def, NULL));
+static inline void tank_float(mps_fluid *fluid, mps_body *body) {
+  DEF(fluid_contact, def, .kind = MPS_BOUNDARY_ROLLER);
+  OK(mps_fluid_add_contact(fluid, body, &def, NULL));
 }
 
 static inline void tank_free(tank *t) {

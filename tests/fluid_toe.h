@@ -28,13 +28,11 @@ static inline double toe_fill(const toe *s, double foot, tank *t, mps_body **bod
                back = fmax(ends[0], ends[1]);
   const double xy[] = {foot, 0.0,     back + 0.3, 0.0,  back + 0.3,
                        top,  ends[1], top,        foot, s->vertical};
-  mps_particles_def set = mps_particles_defaults();
+  DEF(particles, set, .spacing = l0);
   const mps_body_def at = mps_body_defaults();
   uint64_t seed = 5;
-  set.spacing = l0;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t->water));
-  mps_assert_ok(context,
-                mps_body_create_polygon(context, &at, s->vertical > 0.0 ? 5 : 4, xy, body));
+  OK(mps_particles_create(context, &set, &t->water));
+  OK(mps_body_create_polygon(context, &at, s->vertical > 0.0 ? 5 : 4, xy, body));
   for (int j = 0; j < s->rows; j++)
     for (int i = 0; (i + 0.5) * l0 < back; i++) {
       double p[2] = {(i + 0.5) * l0, (j + 0.5) * l0};
@@ -44,7 +42,7 @@ static inline double toe_fill(const toe *s, double foot, tank *t, mps_body **bod
         seed = seed * 6364136223846793005u + 1442695040888963407u;
         p[c] += 0.05 * l0 * ((double)(seed >> 11) * 0x1p-52 - 1.0);
       }
-      mps_assert_ok(context, mps_particles_append(t->water, 1, p));
+      OK(mps_particles_append(t->water, 1, p));
     }
   return (double)mps_particles_count(t->water) * l0 * l0;
 }
@@ -66,8 +64,8 @@ static inline double toe_depth(const toe *s, double foot, double volume) {
 /* Forces on body and bed, mean over the second half of `duration`, within `bar` of hydrostatics and
  * with a scatter of less than `scatter` of that. */
 static inline void toe_check(const toe *s, double duration, double bar, double scatter) {
-  tank t = {NULL, NULL};
-  mps_body *body;
+  scoped_tank t = {NULL, NULL};
+  scoped_body *body = NULL;
   mps_fluid_def def = mps_fluid_defaults();
   mps_reaction r;
   mps_fluid_report report;
@@ -75,19 +73,19 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   const double foot = 2.0 * TOE_DEPTH + fmax(slope, 0.0) * TOE_DEPTH;
   const double volume = toe_fill(s, foot, &t, &body), depth = toe_depth(s, foot, volume);
   def.level = TOE_DEPTH;
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  const int32_t bed = tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  mps_contact *contact = tank_body(context, t.fluid, body, 0);
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  const int32_t bed = tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_OTHER);
   double mean[3] = {0.0, 0.0, 0.0}, square = 0.0;
   int samples = 0;
   while (mps_fluid_time(t.fluid) < duration) {
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_step(t.fluid, 1));
     if (mps_fluid_time(t.fluid) < 0.5 * duration) continue;
-    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+    OK(mps_contact_get_reaction(contact, -1, &r));
     for (int c = 0; c < 2; c++) mean[c] += r.force[c];
     square += r.force[0] * r.force[0];
-    mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, bed, &r));
+    OK(mps_fluid_get_reaction(t.fluid, bed, &r));
     mean[2] += r.force[1];
     samples++;
   }
@@ -96,7 +94,7 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   const double exact[3] = {0.5 * weight * depth * depth, 0.5 * weight * above * above * slope,
                            weight * depth * foot};
   const double deviation = sqrt(fmax(square / samples - mean[0] * mean[0], 0.0));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_get_report(t.fluid, &report));
   print_message("%3.0f degrees%s, %d rows: force on the body %+.2f %% +- %.2f %%, %+.2f %%, on the "
                 "bed %+.2f %%; collisions %lld, speeds cut %lld\n",
                 s->angle, s->vertical > 0.0 ? ", vertical toe" : "", s->rows,
@@ -105,13 +103,10 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
                 100.0 * (mean[2] / exact[2] - 1.0), (long long)report.collisions,
                 (long long)report.limited);
   const double unit = hypot(exact[0], exact[1]);
-  mps_assert_near(mean[0], exact[0], bar * unit);
-  mps_assert_near(mean[1], exact[1], bar * unit);
-  mps_assert_near(mean[2], exact[2], 0.02 * exact[2]);
+  NEAR(mean[0], exact[0], bar * unit);
+  NEAR(mean[1], exact[1], bar * unit);
+  NEAR(mean[2], exact[2], 0.02 * exact[2]);
   assert_true(deviation < scatter * unit);
-  tank_free(&t);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&body);
 }
 
 #endif

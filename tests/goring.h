@@ -46,8 +46,8 @@ static inline mps_signal *goring_piston(mps_context *c, const solitary *w) {
     x[k] = w->stroke * (tanh(low) - tanh(GORING_START));
   }
   x[0] = 0.0;
-  mps_assert_ok(c, mps_signal_create_table(c, MPS_SIGNAL_QUANTITY_DISPLACEMENT, GORING_SAMPLES,
-                                           times, x, &signal));
+  OK(mps_signal_create_table(c, MPS_SIGNAL_QUANTITY_DISPLACEMENT, GORING_SAMPLES, times, x,
+                             &signal));
   return signal;
 }
 

@@ -6,8 +6,6 @@
 
 #include "test_fixture.h"
 
-#include <mps/material.h>
-
 #define PI 3.14159265358979323846
 #define ROOT3 1.7320508075688772
 
@@ -61,7 +59,7 @@ static inline double drive_laterally(const mps_material *material, mps_material_
     x = i == 0 ? low : i == 1 ? high : low - f_low * (high - low) / (f_high - f_low);
     const double gradient[9] = {x, 0, 0, 0, plane ? 0.0 : x, 0, 0, 0, rate};
     trial = *point;
-    mps_assert_ok(context, mps_material_point_drive(context, material, &trial, gradient, dt, 1));
+    OK(mps_material_point_drive(context, material, &trial, gradient, dt, 1));
     const double f = trial.stress[0] - lateral;
     if (i == 0)
       f_low = f;
@@ -83,7 +81,7 @@ static inline double drive_laterally(const mps_material *material, mps_material_
 /* A point under equal stress p in all directions. */
 static inline mps_material_point point_under(const mps_material *material, double p) {
   mps_material_point point;
-  mps_assert_ok(context, mps_material_point_init(context, material, &point));
+  OK(mps_material_point_init(context, material, &point));
   for (int c = 0; c < 3; c++) point.stress[c] = p;
   return point;
 }

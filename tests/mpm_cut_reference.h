@@ -114,11 +114,14 @@ static inline void reference_scatter(const mps_mpm *mpm, const mpsi_stencil *at,
   }
 }
 
-/* Derivatives along axes with a full stencil, where sides alone cut the support: cut_gather.c. */
+/* Derivatives along axes with a full stencil, where sides alone cut the support: means of dw/w over
+ * the other axes by their weights, as at one side alone (wall_support.h). */
 static inline void reference_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_stencil *at, const mpsi_shape_values *f,
                                     const mpsi_node *tile, reference *out) {
   const int spline = mpm->grid.spline;
+  double weight = 0.0;
+  REFERENCE_NODES(n, i, j, k) weight += ((void)i, (void)j, (void)k, f->w[n]);
   for (int d = 0; d < mpm->grid.dim; d++) {
     const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + at->at[d];
     double slope[4];
@@ -131,7 +134,7 @@ static inline void reference_strain(const mps_mpm *mpm, const mpsi_cell_block *c
       if (f->w[n] == 0.0) continue;
       for (int a = 0; a < mpm->grid.dim; a++)
         out->derivative[a][d] +=
-            mpm->grid.inverse * slope[own] / at->w[d][own] * f->phi[n] * tile[t][1 + a];
+            mpm->grid.inverse * slope[own] / at->w[d][own] * (f->w[n] / weight) * tile[t][1 + a];
     }
   }
 }

@@ -35,10 +35,9 @@ static inline void field_add_rock(mpm_scene *s, const field_ground *of) {
   int64_t count = mps_particles_count(s->particles);
   int64_t *ids = malloc((size_t)count * sizeof *ids);
   if (!ids) abort();
-  mps_assert_ok(s->context, mps_particles_select_box(s->particles, lo, hi, count, &count, ids));
-  mps_assert_ok(s->context, mps_material_create_linear_elastic(s->context, field_young(of->rock),
-                                                               FIELD_NU, &rock));
-  mps_assert_ok(s->context, mps_mpm_set_material(s->mpm, rock, count, ids));
+  OK(mps_particles_select_box(s->particles, lo, hi, count, &count, ids));
+  OK(mps_material_create_linear_elastic(s->context, field_young(of->rock), FIELD_NU, &rock));
+  OK(mps_mpm_set_material(s->mpm, rock, ids, count));
   mps_material_destroy(&rock);
   free(ids);
 }
@@ -48,20 +47,18 @@ static inline void field_set_sides(mpm_scene *s, const field_ground *of) {
   base.kind =
       of->base == MPS_BOUNDARY_HELD && (of->motion || of->heave) ? MPS_BOUNDARY_DRIVEN : of->base;
   base.signal[0] = of->motion, base.signal[1] = of->heave;
-  mps_assert_ok(s->context, mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_Y_LOWER, &base));
-  mpm_scene_side(s, MPS_MPM_SIDE_X_LOWER, of->sides, 0.0);
-  mpm_scene_side(s, MPS_MPM_SIDE_X_UPPER, of->sides, 0.0);
+  OK(mps_mpm_set_boundary(s->mpm, MPS_SIDE_Y_LOWER, &base));
+  mpm_scene_side(s, MPS_SIDE_X_LOWER, of->sides, 0.0);
+  mpm_scene_side(s, MPS_SIDE_X_UPPER, of->sides, 0.0);
 }
 
 static inline mpm_scene field_scene(mps_context *context, const field_ground *of) {
   mpm_scene s = mpm_scene_begin(context, of->spacing, of->shift, 0.0, field_young(of->vs));
   mpm_scene_box(&s, of->shift, 0.0, of->shift + of->width, of->height);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, FIELD_RHO));
-  if (of->heated) mps_assert_ok(context, mps_particles_add_field(s.particles, "temperature", 0));
+  OK(mps_particles_set(s.particles, "density", 0, FIELD_RHO));
+  if (of->heated) OK(mps_particles_add_field(s.particles, "temperature", 0));
   if (of->gravity > 0.0) mpm_scene_weigh(&s, FIELD_RHO * of->gravity, FIELD_K0, of->height);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 2.0 * of->spacing;
-  def.spline = of->spline;
+  DEF(mpm, def, .cell = 2.0 * of->spacing, .spline = of->spline);
   def.origin[0] = def.lower[0] = of->shift;
   def.upper[0] = of->shift + of->width;
   def.lower[1] = 0.0;
@@ -69,8 +66,7 @@ static inline mpm_scene field_scene(mps_context *context, const field_ground *of
   def.gravity[1] = -of->gravity;
   def.budget = of->budget;
   def.flip_time = of->flip_time;
-  mps_assert_ok(context,
-                mps_mpm_create(context, s.particles, of->law ? of->law : s.material, &def, &s.mpm));
+  OK(mps_mpm_create(context, s.particles, of->law ? of->law : s.material, &def, &s.mpm));
   if (of->below > 0.0) field_add_rock(&s, of);
   field_set_sides(&s, of);
   return s;
@@ -124,8 +120,7 @@ static inline mps_signal *field_shaking(mps_context *context, double frequency, 
     v[k] = velocity * share * share * (3.0 - 2.0 * share) * sin(2.0 * PI * frequency * t[k]);
   }
   mps_signal *out = NULL;
-  mps_assert_ok(context,
-                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, count, t, v, &out));
+  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, count, t, v, &out));
   return out;
 }
 
@@ -185,12 +180,12 @@ static inline field_response field_shake_layer(mps_context *context, double spac
                      .sides = MPS_BOUNDARY_FREE_FIELD,
                      .base = MPS_BOUNDARY_ABSORBING,
                      .flip_time = flip_time};
-  mps_signal *signal = field_shaking(context, f, v, end + 1.0);
+  scoped_signal *signal = field_shaking(context, f, v, end + 1.0);
   *(shear ? &of.motion : &of.heave) = signal;
-  mpm_scene s = field_scene(context, &of);
+  scoped_mpm_scene s = field_scene(context, &of);
   double peak = 0.0, now;
   while (mps_mpm_time(s.mpm) < end) {
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+    OK(mps_mpm_step(s.mpm, 5));
     out.apart = fmax(out.apart, field_spread(&s, shear ? 0 : 1, below + H - 0.5 * spacing, &now));
     if (mps_mpm_time(s.mpm) > end - 1.0 / f) peak = fmax(peak, now);
   }
@@ -199,8 +194,6 @@ static inline field_response field_shake_layer(mps_context *context, double spac
               peak;
   out.amplification = peak / v;
   out.apart /= peak;
-  mps_signal_destroy(&signal);
-  mpm_scene_end(&s);
   return out;
 }
 

@@ -10,7 +10,7 @@
 static inline int64_t held_select(mpm_scene *s, const double *lo, const double *hi, int64_t *ids,
                                   int64_t capacity) {
   int64_t count = 0;
-  mps_assert_ok(s->context, mps_particles_select_box(s->particles, lo, hi, capacity, &count, ids));
+  OK(mps_particles_select_box(s->particles, lo, hi, capacity, &count, ids));
   assert_true(count > 0 && count <= capacity);
   return count;
 }
@@ -26,12 +26,12 @@ static inline void held_load(mpm_scene *s, mps_signal *signal, int32_t *loads) {
   const double own = dim == 3 ? 1e-4 : 1e-2;
   int64_t count = held_select(s, lo, hi, ids, MOST);
   mps_mpm_load_def load = mpm_scene_load_def(count, ids, NULL, pull, dim, signal);
-  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, &load, &loads[0]));
+  OK(mps_mpm_add_load(s->mpm, &load, &loads[0]));
   const double all[] = {INFINITY, 0.05, INFINITY}, none[] = {-INFINITY, 0.04, -INFINITY};
   count = held_select(s, none, all, ids, MOST);
   for (int64_t k = 0; k < count; k++) area[k] = own * (1.0 + 0.01 * (double)(ids[k] % 7));
   load = mpm_scene_load_def(count, ids, area, push, dim, NULL);
-  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, &load, &loads[1]));
+  OK(mps_mpm_add_load(s->mpm, &load, &loads[1]));
 }
 
 /* A domain full of particles that move, with the geometry and choices of `from`: x frictional and
@@ -46,9 +46,9 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   const double plane[] = {0.05, -0.3, 0.2, -0.05};
   const double space[] = {0.05, -0.3, 0.1, 0.2, -0.05, 0.1, -0.1, 0.04, 0.03};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
+  OK(mps_particles_add_field(s.particles, "body_acceleration", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit a = mpm_scene_edit(&s, "body_acceleration");
   for (int64_t k = 0; k < x.shape[0]; k++)
@@ -61,26 +61,26 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   }
   def.gravity[0] = 1.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.0005, 0.3, &signal));
+  scoped_signal *signal = NULL;
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 0.0005, 0.3, &signal));
   for (int c = 0; c < dim; c += 2) {
     mpm_scene_side(&s, 2 * c, MPS_BOUNDARY_FRICTIONAL, 0.3);
     mpm_scene_side(&s, 2 * c + 1, MPS_BOUNDARY_ABSORBING, 0.0);
   }
-  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 1.0);
-  mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ABSORBING, 0.0, 0, signal, -0.1);
+  mpm_scene_drive(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 1.0);
+  mpm_scene_drive(&s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_ABSORBING, 0.0, 0, signal, -0.1);
   const double low[] = {0.3, 0.1, 0.02}, high[] = {0.36, 0.16, 0.05};
   const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, low, high, 1, signal, 2.0);
-  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &nodes, box));
-  held_load(&s, signal, loads);
-  mps_signal_destroy(&signal);
+  OK(mps_mpm_add_boundary(s.mpm, &nodes, box));
+  scoped_signal *factor = NULL;
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 20.0, 0.0005, 0.3, &factor));
+  held_load(&s, factor, loads);
   return s;
 }
 
 static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32_t *box,
                                    int32_t *loads) {
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
+  DEF(mpm, def, .geometry = geometry);
   return held_begin_with(context, &def, box, loads);
 }
 

@@ -103,11 +103,11 @@ static inline void rest_fill(rest_scene *r) {
       double at[3] = {0.0};
       if (rest_taken(r, i, j)) continue;
       rest_place(r, x + (i < REST_COLUMNS / 2 ? 0.0 : r->gap), y, at);
-      mps_assert_ok(r->s.context, mps_particles_append(r->s.particles, 1, at));
+      OK(mps_particles_append(r->s.particles, 1, at));
     }
-  mps_assert_ok(r->s.context, mps_particles_set(r->s.particles, "density", 0, REST_DENSITY));
-  mps_assert_ok(r->s.context, mps_particles_add_field(r->s.particles, "volume", 0));
-  mps_assert_ok(r->s.context, mps_particles_add_field(r->s.particles, "stress", 0));
+  OK(mps_particles_set(r->s.particles, "density", 0, REST_DENSITY));
+  OK(mps_particles_add_field(r->s.particles, "volume", 0));
+  OK(mps_particles_add_field(r->s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&r->s, "position");
   mps_edit stress = mpm_scene_edit(&r->s, "stress"), volume = mpm_scene_edit(&r->s, "volume");
   const double c = r->turn[0], s = r->turn[1];
@@ -127,9 +127,8 @@ static inline void rest_fill(rest_scene *r) {
 }
 
 static inline void rest_touch(rest_scene *r, mps_body *body, double offset) {
-  mps_contact_def contact = mps_contact_defaults();
-  contact.offset = offset;
-  mps_assert_ok(r->s.context, mps_mpm_add_contact(r->s.mpm, body, &contact, NULL));
+  DEF(contact, contact, .offset = offset);
+  OK(mps_mpm_add_contact(r->s.mpm, body, &contact, NULL));
 }
 
 static inline mps_body *rest_half(rest_scene *r, double x, double y, double nx, double ny) {
@@ -138,7 +137,7 @@ static inline mps_body *rest_half(rest_scene *r, double x, double y, double nx, 
   mps_body *body = NULL;
   rest_place(r, x, y, at), rest_place(r, nx, ny, normal);
   def.position[0] = at[0], def.position[1] = at[1];
-  mps_assert_ok(r->s.context, mps_body_create_half_plane(r->s.context, &def, normal, &body));
+  OK(mps_body_create_half_plane(r->s.context, &def, normal, &body));
   return body;
 }
 
@@ -149,7 +148,7 @@ static inline mps_body *rest_box(rest_scene *r, double x0, double x1, double y0,
   mps_body *body = NULL;
   rest_place(r, x0, y0, corner), rest_place(r, x1, y0, corner + 2);
   rest_place(r, x1, y1, corner + 4), rest_place(r, x0, y1, corner + 6);
-  mps_assert_ok(r->s.context, mps_body_create_polygon(r->s.context, &def, 4, corner, &body));
+  OK(mps_body_create_polygon(r->s.context, &def, 4, corner, &body));
   return body;
 }
 
@@ -172,9 +171,9 @@ static inline void rest_add_bodies(rest_scene *r) {
                           r->row[REST_BOX_ROWS]);
   if (r->body[3]) rest_touch(r, r->body[3], 0.5 * r->dx);
   if (r->c->edge == REST_FRICTIONAL) {
-    for (int side = MPS_MPM_SIDE_X_LOWER; side <= MPS_MPM_SIDE_Y_LOWER; side += 2)
+    for (int side = MPS_SIDE_X_LOWER; side <= MPS_SIDE_Y_LOWER; side += 2)
       mpm_scene_side(&r->s, side, MPS_BOUNDARY_FRICTIONAL, 0.5);
-    mpm_scene_side(&r->s, MPS_MPM_SIDE_Y_UPPER, MPS_BOUNDARY_FREE, 0.0);
+    mpm_scene_side(&r->s, MPS_SIDE_Y_UPPER, MPS_BOUNDARY_FREE, 0.0);
   }
 }
 
@@ -190,13 +189,12 @@ static inline rest_scene rest_begin(mps_context *context, const rest_case *c) {
   if (c->edge == REST_TIP) r.removed = (r.height - r.row[REST_TIP_ROW]) * r.dx;
   if (c->edge == REST_BOX) r.removed = 2.0 * REST_BOX_COLUMNS * r.dx * r.row[REST_BOX_ROWS];
   rest_fill(&r);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.spline = c->spline;
-  def.gravity[0] = REST_GRAVITY * r.turn[1], def.gravity[1] = -REST_GRAVITY * r.turn[0];
+  DEF(mpm, def, .cell = h, .spline = c->spline, .gravity[0] = REST_GRAVITY * r.turn[1],
+      .gravity[1] = -REST_GRAVITY * r.turn[0]);
   if (rest_at_sides(c)) {
     def.lower[0] = def.lower[1] = 0.0;
     if (c->edge == REST_FRICTIONAL) def.upper[1] = (REST_ROWS / 2 + 1) * h;
-    if (c->edge == REST_FIT) def.walls = MPS_MPM_WALLS_FIT;
+    if (c->edge == REST_FIT) def.edge = MPS_MPM_EDGE_FIT;
   } else {
     def.origin[0] = c->shift * h;
     if (rest_on_side(c))
@@ -204,7 +202,7 @@ static inline rest_scene rest_begin(mps_context *context, const rest_case *c) {
     else
       def.origin[1] = 0.5 * c->shift * h;
   }
-  mps_assert_ok(context, mps_mpm_create(context, r.s.particles, r.s.material, &def, &r.s.mpm));
+  OK(mps_mpm_create(context, r.s.particles, r.s.material, &def, &r.s.mpm));
   rest_add_bodies(&r);
   return r;
 }
@@ -238,9 +236,9 @@ static inline void rest_impulses(rest_scene *r, double *out) {
     mps_reaction f;
     const bool side = !r->body[b] && b < 2; /* what it does to the ground */
     if (side)
-      mps_assert_ok(r->s.context, mps_mpm_get_reaction(r->s.mpm, b == 0 ? 2 : 0, &f));
+      OK(mps_mpm_get_reaction(r->s.mpm, b == 0 ? 2 : 0, &f));
     else if (r->body[b])
-      mps_assert_ok(r->s.context, mps_body_get_reaction(r->body[b], -1, &f));
+      OK(mps_body_get_reaction(r->body[b], -1, &f));
     else
       continue;
     const double sign = side ? -1.0 : 1.0;
@@ -253,15 +251,15 @@ static inline void rest_impulses(rest_scene *r, double *out) {
 /* Takes the steps, the last of which are averaged over. */
 static inline rest_result rest_run(mps_context *context, const rest_case *c, int64_t steps,
                                    int64_t last) {
-  rest_scene r = rest_begin(context, c);
+  SCOPED(rest_end) rest_scene r = rest_begin(context, c);
   rest_result out = {.floor = 0.0};
   double from[4], to[4], first[2], mean[2];
   const double weight = REST_DENSITY * REST_GRAVITY, H = r.height;
   rest_stress(&r, first);
-  mps_assert_ok(context, mps_mpm_step(r.s.mpm, steps - last));
+  OK(mps_mpm_step(r.s.mpm, steps - last));
   const double begin = mps_mpm_time(r.s.mpm);
   rest_impulses(&r, from);
-  mps_assert_ok(context, mps_mpm_step(r.s.mpm, last));
+  OK(mps_mpm_step(r.s.mpm, last));
   rest_impulses(&r, to);
   const double time = mps_mpm_time(r.s.mpm) - begin;
   for (int k = 0; k < 4; k++) to[k] = (to[k] - from[k]) / time;
@@ -287,7 +285,6 @@ static inline rest_result rest_run(mps_context *context, const rest_case *c, int
       rest_names[c->edge], (int)c->spline, c->shift, c->angle * 57.29578, 100.0 * out.wall[0],
       100.0 * out.wall[1], 100.0 * out.floor, 100.0 * out.body, 100.0 * out.across,
       100.0 * out.along, out.kinetic);
-  rest_end(&r);
   return out;
 }
 

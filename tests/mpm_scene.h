@@ -5,8 +5,6 @@
 
 #include "test_common.h"
 
-#include <mps/mpm.h>
-
 typedef struct mpm_scene {
   mps_context *context;
   mps_particles *particles;
@@ -14,16 +12,15 @@ typedef struct mpm_scene {
   mps_mpm *mpm;
 } mpm_scene;
 
+#define scoped_mpm_scene SCOPED(mpm_scene_end) mpm_scene
+
 /* An empty set of spacing `spacing` from the origin (x, y, 0), and elastic material. */
 static inline mpm_scene mpm_scene_begin_in(mps_context *context, int32_t dim, double spacing,
                                            double x, double y, double young) {
   mpm_scene s = {.context = context};
-  mps_particles_def def = mps_particles_defaults();
-  def.dim = dim;
-  def.spacing = spacing;
-  def.origin[0] = x, def.origin[1] = y;
-  mps_assert_ok(context, mps_particles_create(context, &def, &s.particles));
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, young, 0.3, &s.material));
+  DEF(particles, def, .dim = dim, .spacing = spacing, .origin[0] = x, .origin[1] = y);
+  OK(mps_particles_create(context, &def, &s.particles));
+  OK(mps_material_create_linear_elastic(context, young, 0.3, &s.material));
   return s;
 }
 
@@ -34,45 +31,41 @@ static inline mpm_scene mpm_scene_begin(mps_context *context, double spacing, do
 
 static inline void mpm_scene_box(mpm_scene *s, double x0, double y0, double x1, double y1) {
   const double lo[] = {x0, y0}, hi[] = {x1, y1};
-  mps_assert_ok(s->context, mps_particles_fill_box(s->particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s->particles, lo, hi, NULL));
 }
 
 static inline void mpm_scene_ball(mpm_scene *s, double x, double y, double radius) {
   const double centre[] = {x, y};
-  mps_assert_ok(s->context, mps_particles_fill_ball(s->particles, centre, radius, NULL));
+  OK(mps_particles_fill_ball(s->particles, centre, radius, NULL));
 }
 
 /* The solver, of density 1000. */
 static inline void mpm_scene_solve(mpm_scene *s, const mps_mpm_def *def) {
-  mps_assert_ok(s->context, mps_particles_set(s->particles, "density", 0, 1000.0));
-  mps_assert_ok(s->context, mps_mpm_create(s->context, s->particles, s->material, def, &s->mpm));
+  OK(mps_particles_set(s->particles, "density", 0, 1000.0));
+  OK(mps_mpm_create(s->context, s->particles, s->material, def, &s->mpm));
 }
 
 /* Contact with a body, with friction, default stiffness. */
 static inline mps_status mpm_scene_try_contact(mps_mpm *mpm, mps_body *body, double friction) {
-  mps_contact_def def = mps_contact_defaults();
-  def.friction = friction;
+  DEF(contact, def, .friction = friction);
   return mps_mpm_add_contact(mpm, body, &def, NULL);
 }
 
 static inline void mpm_scene_contact(mpm_scene *s, mps_body *body, double friction) {
-  mps_assert_ok(s->context, mpm_scene_try_contact(s->mpm, body, friction));
+  OK(mpm_scene_try_contact(s->mpm, body, friction));
 }
 
 /* A side of the domain gets `kind`, at rest. */
 static inline void mpm_scene_side(mpm_scene *s, int32_t side, int32_t kind, double friction) {
-  mps_assert_ok(s->context, mps_mpm_set_side(s->mpm, side, kind, friction));
+  OK(mps_mpm_set_side(s->mpm, side, kind, friction));
 }
 
 /* The same, a signal driving one component. */
 static inline void mpm_scene_drive(mpm_scene *s, int32_t side, int32_t kind, double friction,
                                    int32_t component, mps_signal *signal, double factor) {
-  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  def.kind = kind == MPS_BOUNDARY_HELD ? MPS_BOUNDARY_DRIVEN : kind;
-  def.friction = friction;
-  def.signal[component] = signal;
-  def.factor[component] = factor;
-  mps_assert_ok(s->context, mps_mpm_set_boundary(s->mpm, side, &def));
+  DEF(mpm_boundary, def, .kind = kind == MPS_BOUNDARY_HELD ? MPS_BOUNDARY_DRIVEN : kind,
+      .friction = friction, .signal[component] = signal, .factor[component] = factor);
+  OK(mps_mpm_set_boundary(s->mpm, side, &def));
 }
 
 /* One component of the nodes in a box. */
@@ -92,8 +85,7 @@ static inline mps_mpm_boundary_def mpm_scene_box_def(mps_mpm *mpm, const double 
 static inline mps_mpm_load_def mpm_scene_load_def(int64_t count, const int64_t *ids,
                                                   const double *area, const double *traction,
                                                   int dim, mps_signal *signal) {
-  mps_mpm_load_def def = mps_mpm_load_defaults();
-  def.id_count = count, def.ids = ids, def.area = area;
+  DEF(mpm_load, def, .id_count = count, .ids = ids, .area = area);
   for (int c = 0; c < dim; c++) def.traction[c] = traction[c], def.signal[c] = signal;
   return def;
 }
@@ -101,7 +93,7 @@ static inline mps_mpm_load_def mpm_scene_load_def(int64_t count, const int64_t *
 /* Force of a boundary in the last step. */
 static inline void mpm_scene_force(mpm_scene *s, int32_t boundary, double *force) {
   mps_reaction r;
-  mps_assert_ok(s->context, mps_mpm_get_reaction(s->mpm, boundary, &r));
+  OK(mps_mpm_get_reaction(s->mpm, boundary, &r));
   for (int c = 0; c < 3; c++) force[c] = r.force[c];
 }
 
@@ -113,7 +105,7 @@ static inline void mpm_scene_end(mpm_scene *s) {
 
 static inline mps_view mpm_scene_view(mpm_scene *s, const char *name) {
   mps_view view;
-  mps_assert_ok(s->context, mps_particles_view(s->particles, name, &view));
+  OK(mps_particles_view(s->particles, name, &view));
   return view;
 }
 
@@ -131,18 +123,18 @@ static inline double mpm_scene_stress_difference(mpm_scene *a, mpm_scene *b) {
 
 static inline mps_edit mpm_scene_edit(mpm_scene *s, const char *name) {
   mps_edit edit;
-  mps_assert_ok(s->context, mps_particles_edit(s->particles, name, &edit));
+  OK(mps_particles_edit(s->particles, name, &edit));
   return edit;
 }
 
 static inline void mpm_scene_commit(mpm_scene *s, mps_edit *edit) {
-  mps_assert_ok(s->context, mps_particles_commit(s->particles, edit));
+  OK(mps_particles_commit(s->particles, edit));
 }
 
 /* Gives the particles the stress of their weight (`unit`, N/m3) below the surface y = `height` (m),
  * with K0 of it sideways. */
 static inline void mpm_scene_weigh(mpm_scene *s, double unit, double K0, double height) {
-  mps_assert_ok(s->context, mps_particles_add_field(s->particles, "stress", 0));
+  OK(mps_particles_add_field(s->particles, "stress", 0));
   const mps_view x = mpm_scene_view(s, "position");
   mps_edit stress = mpm_scene_edit(s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -168,8 +160,8 @@ static inline double mpm_scene_weight_error(mpm_scene *s, double unit, double he
 
 /* Gives all particles the velocity v0 + L x with its gradient. `L` by rows of dim values. */
 static inline void mpm_scene_affine(mpm_scene *s, const double *v0, const double *L) {
-  mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity", 0));
-  mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity_gradient", 0));
+  OK(mps_particles_add_field(s->particles, "velocity", 0));
+  OK(mps_particles_add_field(s->particles, "velocity_gradient", 0));
   mps_view x = mpm_scene_view(s, "position");
   mps_edit v = mpm_scene_edit(s, "velocity");
   mps_edit g = mpm_scene_edit(s, "velocity_gradient");
@@ -189,7 +181,7 @@ static inline void mpm_scene_affine(mpm_scene *s, const double *v0, const double
 
 static inline mps_totals mpm_scene_totals(mpm_scene *s) {
   mps_totals totals;
-  mps_assert_ok(s->context, mps_mpm_get_totals(s->mpm, &totals));
+  OK(mps_mpm_get_totals(s->mpm, &totals));
   return totals;
 }
 

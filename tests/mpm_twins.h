@@ -3,6 +3,8 @@
 #ifndef MPS_TEST_MPM_TWINS_H
 #define MPS_TEST_MPM_TWINS_H
 
+#include "kit/same.h"
+#include "body/body_internal.h"
 #include "mpm_held.h"
 #include "pthread_executor.h"
 
@@ -26,18 +28,15 @@ typedef struct change {
 static const change none = {.spacing = 0.01, .cell = 0.02, .bodies = BODIES};
 
 static inline mps_status make_material(mps_context *context, const change *c, mps_material **out) {
-  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
-  law.young = 1e6, law.poisson = 0.3;
-  law.friction = 0.5, law.cohesion = 200.0;
+  DEF(material_drucker_prager, law, .young = 1e6, .poisson = 0.3, .friction = 0.5,
+      .cohesion = 200.0);
   if (c->elastic) return mps_material_create_linear_elastic(context, 1e6, 0.3, out);
   return mps_material_create_drucker_prager(context, &law, out);
 }
 
 static inline mps_status make_free_body(mps_context *context, int32_t geometry, mps_body **out) {
   const int32_t dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
-  mps_body_def def = mps_body_defaults();
-  def.motion = MPS_BODY_MOTION_FREE;
-  def.mass = dim == 3 ? 1.0 : 20.0;
+  DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = dim == 3 ? 1.0 : 20.0);
   for (int c = 0; c < 3; c++) def.inertia[c] = dim == 3 ? 1e-3 * (1 + c) : c == 2 ? 0.1 : 0.0;
   def.gravity[1] = -9.81;
   def.position[0] = 0.25, def.position[1] = dim == 3 ? 0.28 : 0.33;
@@ -53,9 +52,8 @@ static inline mps_status make_free_body(mps_context *context, int32_t geometry, 
 static inline mps_status make_driven_body(mps_context *context, int32_t dim, const change *c,
                                           mps_body **out) {
   const double up[] = {0.1, 1.0, 0.0}, t[] = {0.0, 1.0}, v[] = {0.3, 0.3};
-  mps_signal *rise = NULL;
-  mps_body_def def = mps_body_defaults();
-  def.position[1] = dim == 3 ? 0.075 : 0.05;
+  scoped_signal *rise = NULL;
+  DEF(body, def, .position[1] = dim == 3 ? 0.075 : 0.05);
   mps_status status =
       mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &rise);
   if (status != MPS_OK) return status;
@@ -65,7 +63,6 @@ static inline mps_status make_driven_body(mps_context *context, int32_t dim, con
   if (status == MPS_OK) status = mps_body_name_part(*out, "base", 0, 1, NULL);
   if (status == MPS_OK) status = mps_body_drive(*out, 1, rise, 1.0);
   if (status == MPS_OK) status = mps_body_drive(*out, 5, rise, 0.2);
-  mps_signal_destroy(&rise);
   return status;
 }
 
@@ -73,9 +70,7 @@ static inline mps_status make_set(mps_context *context, int32_t dim, const chang
                                   mps_particles **out) {
   const double lo[] = {0.04, 0.08, 0.02}, hi[] = {0.44, dim == 3 ? 0.22 : 0.28, 0.18};
   const double beside[] = {0.5, 0.3, 0.1};
-  mps_particles_def def = mps_particles_defaults();
-  def.dim = dim;
-  def.spacing = c->spacing;
+  DEF(particles, def, .dim = dim, .spacing = c->spacing);
   mps_status status = mps_particles_create(context, &def, out);
   if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
   for (int64_t k = 0; k < c->particles && status == MPS_OK; k++)
@@ -89,10 +84,7 @@ static inline mps_status try_build(mps_context *context, int32_t geometry, const
   const int32_t dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   *out = (scene){.s = {.context = context}};
   mpm_scene *s = &out->s;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.cell = c->cell;
-  def.budget = c->budget;
+  DEF(mpm, def, .geometry = geometry, .cell = c->cell, .budget = c->budget);
   for (int k = 0; k < dim; k++) def.lower[k] = def.origin[k] = c->origin;
   def.upper[0] = 1.0 + c->wall;
   def.gravity[1] = -9.81;
@@ -117,39 +109,30 @@ static inline void drop(scene *x) {
 
 static inline scene build(mps_context *context, int32_t geometry, const change *c) {
   scene x;
-  mps_assert_ok(context, try_build(context, geometry, c, &x));
+  OK(try_build(context, geometry, c, &x));
   return x;
 }
 
 /* ---- comparing ------------------------------------------------------------------------------- */
 
 static inline void same_fields(scene *a, scene *b) {
-  mps_particles_field_info info;
-  assert_int_equal(mps_particles_field_count(a->s.particles),
-                   mps_particles_field_count(b->s.particles));
-  for (int32_t f = 0; f < mps_particles_field_count(a->s.particles); f++) {
-    mps_assert_ok(a->s.context, mps_particles_get_field_info(a->s.particles, f, &info));
-    mps_view va = mpm_scene_view(&a->s, info.name), vb = mpm_scene_view(&b->s, info.name);
-    for (int64_t c = 0; c < va.shape[1]; c++)
-      for (int64_t k = 0; k < va.shape[0]; k++)
-        if (memcmp(mps_view_f64(&va, k, c), mps_view_f64(&vb, k, c), 8) != 0)
-          fail_msg("step %d: %s[%d] at index %d", (int)mps_mpm_steps(a->s.mpm), info.name, (int)c,
-                   (int)k);
-  }
+  char what[40];
+  snprintf(what, sizeof what, "step %d", (int)mps_mpm_steps(a->s.mpm));
+  assert_same_rows(a->s.particles, b->s.particles, what);
 }
 
 static inline void same_bodies(scene *a, scene *b) {
   for (int k = 0; k < BODIES; k++) {
     mps_body_state state[2];
     memset(state, 0, sizeof state);
-    mps_assert_ok(a->s.context, mps_body_get_state(a->body[k], &state[0]));
-    mps_assert_ok(b->s.context, mps_body_get_state(b->body[k], &state[1]));
+    OK(mps_body_get_state(a->body[k], &state[0]));
+    OK(mps_body_get_state(b->body[k], &state[1]));
     assert_memory_equal(&state[0], &state[1], sizeof state[0]);
-    for (int32_t p = 0; p < mps_body_part_count(a->body[k]); p++) {
+    for (int32_t p = 0; p < a->body[k]->parts; p++) {
       mps_reaction r[2];
       memset(r, 0, sizeof r);
-      mps_assert_ok(a->s.context, mps_body_get_reaction(a->body[k], p, &r[0]));
-      mps_assert_ok(b->s.context, mps_body_get_reaction(b->body[k], p, &r[1]));
+      OK(mps_body_get_reaction(a->body[k], p, &r[0]));
+      OK(mps_body_get_reaction(b->body[k], p, &r[1]));
       assert_memory_equal(&r[0], &r[1], sizeof r[0]);
     }
   }
@@ -161,9 +144,9 @@ static inline void same(scene *a, scene *b) {
   assert_int_equal(mps_mpm_steps(a->s.mpm), mps_mpm_steps(b->s.mpm));
   assert_true(mps_mpm_time(a->s.mpm) == mps_mpm_time(b->s.mpm));
   assert_true(mps_mpm_dt(a->s.mpm) == mps_mpm_dt(b->s.mpm));
-  mps_mpm_usage ta, tb;
-  mps_assert_ok(a->s.context, mps_mpm_get_usage(a->s.mpm, &ta));
-  mps_assert_ok(b->s.context, mps_mpm_get_usage(b->s.mpm, &tb));
+  mps_mpm_report ta, tb;
+  OK(mps_mpm_get_report(a->s.mpm, &ta));
+  OK(mps_mpm_get_report(b->s.mpm, &tb));
   assert_int_equal(ta.blocks, tb.blocks);
   assert_int_equal(ta.nodes, tb.nodes);
 }
@@ -184,18 +167,17 @@ static inline scene build_held(mps_context *context, int32_t geometry) {
   int64_t ids[4000];
   scene x = {.s = held_begin(context, geometry, &box, loads)};
   const int64_t count = held_select(&x.s, lo, hi, ids, 4000);
-  mps_material *soil = NULL;
-  mps_assert_ok(context, make_material(context, &none, &soil));
-  mps_assert_ok(context, mps_mpm_set_material(x.s.mpm, soil, count, ids));
-  mps_material_destroy(&soil);
+  scoped_material *soil = NULL;
+  OK(make_material(context, &none, &soil));
+  OK(mps_mpm_set_material(x.s.mpm, soil, ids, count));
   return x;
 }
 
 static inline void same_forces(scene *a, scene *b) {
   mps_reaction force[2];
   for (int32_t k = 0; k < 4; k++) {
-    mps_assert_ok(a->s.context, mps_mpm_get_reaction(a->s.mpm, k, &force[0]));
-    mps_assert_ok(b->s.context, mps_mpm_get_reaction(b->s.mpm, k, &force[1]));
+    OK(mps_mpm_get_reaction(a->s.mpm, k, &force[0]));
+    OK(mps_mpm_get_reaction(b->s.mpm, k, &force[1]));
     assert_memory_equal(&force[0], &force[1], sizeof force[0]);
   }
 }

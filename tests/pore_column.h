@@ -6,10 +6,6 @@
 
 #include "mpm_scene.h"
 
-#include <mps/pore_water.h>
-
-#include <math.h>
-
 typedef struct pore_column {
   mpm_scene s;
   double h, modulus; /* m; Pa, M' */
@@ -27,18 +23,16 @@ static inline pore_column pore_column_begin(mps_context *context, int32_t geomet
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {c.h, 1.0, c.h};
   c.modulus = PORE_YOUNG * 0.7 / (1.3 * 0.4);
   c.s = mpm_scene_begin_in(context, dim, 1.0 / (2.0 * ceil(cells)), 0.0, 0.0, PORE_YOUNG);
-  mps_assert_ok(context, mps_particles_fill_box(c.s.particles, lo, hi, NULL));
-  mps_assert_ok(context, mps_particles_set(c.s.particles, "density", 0, 2000.0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.cell = c.h;
+  OK(mps_particles_fill_box(c.s.particles, lo, hi, NULL));
+  OK(mps_particles_set(c.s.particles, "density", 0, 2000.0));
+  DEF(mpm, def, .geometry = geometry, .cell = c.h);
   for (int d = 0; d < dim; d++) {
     def.lower[d] = 0.0;
     if (d != 1) def.upper[d] = c.h;
   }
   def.gravity[1] = -gravity;
   def.viscous_damping = damping;
-  mps_assert_ok(context, mps_mpm_create(context, c.s.particles, c.s.material, &def, &c.s.mpm));
+  OK(mps_mpm_create(context, c.s.particles, c.s.material, &def, &c.s.mpm));
   return c;
 }
 

@@ -22,8 +22,8 @@ static inline void run_rank(void *user, team *t, int32_t rank) {
   ranks *s = user;
   result *r = &s->rank[rank];
   mps_context_def def = test_context_defaults();
-  mps_context *own = NULL;
-  mps_domain *domain = NULL;
+  scoped_context *own = NULL;
+  scoped_domain *domain = NULL;
   def.executor = s->threads > 1 ? MPS_CONTEXT_EXECUTOR_THREADS : MPS_CONTEXT_EXECUTOR_SERIAL;
   def.threads = s->threads;
   s->allocator[rank].refuse_at = rank == 1 ? s->refuse : 0;
@@ -33,8 +33,6 @@ static inline void run_rank(void *user, team *t, int32_t rank) {
   if (r->status == MPS_OK) r->status = mps_domain_create(own, &domain_def, &domain);
   if (r->status == MPS_OK) r->status = s->compute(own, domain, s->what, s->length, r);
   if (own) snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
 static inline void run_team(ranks *s, int32_t size) { team_compute(size, run_rank, s); }
@@ -76,7 +74,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
   } teams[] = {{2, 1}, {3, 2}, {7, 3}, {15, 1}, {1, 1}, {4, 1}};
   result alone = {.count = 0};
   mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(serial, run(serial, NULL, what, length, &alone));
+  OK(run(serial, NULL, what, length, &alone));
   mps_context_destroy(&serial);
   for (int k = 0; k < (test_quick() ? 2 : few ? 4 : 6); k++) {
     ranks s = {.compute = run, .what = what, .threads = teams[k].threads, .length = length};
@@ -124,14 +122,12 @@ typedef struct troubled {
 
 static inline void run_troubled(void *user, team *t, int32_t rank) {
   troubled *s = user;
-  mps_domain *domain = NULL;
-  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_domain *domain = NULL;
+  scoped_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = team_domain_def(t, rank);
   s->status[rank] = mps_domain_create(own, &def, &domain);
   if (s->status[rank] == MPS_OK) s->status[rank] = s->run(own, domain, s->what, rank);
   snprintf(s->message[rank], sizeof s->message[rank], "%s", mps_context_error(own)->message);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
 /* Each of them is the same error on all of three ranks. */

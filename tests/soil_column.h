@@ -5,8 +5,6 @@
 
 #include "test_common.h"
 
-#include <mps/dynamics.h>
-
 typedef struct soil_layer {
   double thickness, density, vs, vp, damping; /* m, kg/m3, m/s, m/s, - */
 } soil_layer;
@@ -15,30 +13,28 @@ typedef struct soil_layer {
 static const soil_layer soil_plain = {1e9, 1500.0, 100.0, 200.0, 0.05};
 
 static inline mps_dynamics *soil_solver(mps_context *context, mps_particles *particles) {
-  mps_dynamics_def def = mps_dynamics_defaults();
+  DEF(dynamics, def, .dt = 1e-3);
   mps_dynamics *dynamics = NULL;
-  def.dt = 1e-3;
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, particles, &def, &dynamics));
   return dynamics;
 }
 
 /* A set of width x height (m) filled with layers from the top down; the lowest goes to the end. */
 static inline mps_particles *soil_particles(mps_context *context, double spacing, double width,
                                             double height, int layers, const soil_layer *layer) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = spacing);
   mps_particles *particles = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
-  def.spacing = spacing;
-  mps_assert_ok(context, mps_particles_create(context, &def, &particles));
-  mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
+  OK(mps_particles_create(context, &def, &particles));
+  OK(mps_particles_fill_box(particles, lo, hi, NULL));
   const char *const names[4] = {"density", "shear_velocity", "pressure_velocity", "damping"};
   mps_view x;
   mps_edit field[4];
   for (int f = 0; f < 4; f++) {
-    mps_assert_ok(context, mps_particles_set(particles, names[f], 0, 0.0));
-    mps_assert_ok(context, mps_particles_edit(particles, names[f], &field[f]));
+    OK(mps_particles_set(particles, names[f], 0, 0.0));
+    OK(mps_particles_edit(particles, names[f], &field[f]));
   }
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
+  OK(mps_particles_view(particles, "position", &x));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     double depth = height - *mps_view_f64(&x, k, 1);
     int m = 0;
@@ -48,7 +44,7 @@ static inline mps_particles *soil_particles(mps_context *context, double spacing
     *mps_edit_f64(&field[2], k, 0) = layer[m].vp;
     *mps_edit_f64(&field[3], k, 0) = layer[m].damping;
   }
-  for (int f = 0; f < 4; f++) mps_assert_ok(context, mps_particles_commit(particles, &field[f]));
+  for (int f = 0; f < 4; f++) OK(mps_particles_commit(particles, &field[f]));
   return particles;
 }
 
@@ -56,19 +52,15 @@ static inline mps_particles *soil_particles(mps_context *context, double spacing
  * one whose list is filled in). */
 static inline mps_status soil_add_held(mps_dynamics *dynamics, uint32_t dofs, int64_t count,
                                        const int64_t *ids) {
-  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  DEF(dynamics_boundary, def, .dofs = dofs, .ids = ids, .id_count = count);
   int32_t number;
-  def.dofs = dofs;
-  def.ids = ids;
-  def.id_count = count;
   return mps_dynamics_add_boundary(dynamics, &def, &number);
 }
 
 static inline mps_status soil_add_driven(mps_dynamics *dynamics, int component, mps_signal *signal,
                                          double factor, int64_t count, const int64_t *ids) {
-  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  DEF(dynamics_boundary, def, .kind = MPS_BOUNDARY_DRIVEN);
   int32_t number;
-  def.kind = MPS_BOUNDARY_DRIVEN;
   if (component < 2) def.dofs = 1u << component;
   def.signal[component] = signal;
   def.factor[component] = factor;
@@ -89,22 +81,22 @@ static inline mps_status soil_add_viscous(mps_dynamics *dynamics,
 }
 
 /* Ids of the particles in a box; the caller frees. */
-static inline int64_t *soil_select(mps_context *context, mps_particles *particles, double x0,
-                                   double y0, double x1, double y1, int64_t *count) {
+static inline int64_t *soil_select(mps_particles *particles, double x0, double y0, double x1,
+                                   double y1, int64_t *count) {
   const double lo[2] = {x0, y0}, hi[2] = {x1, y1};
   const int64_t n = mps_particles_count(particles);
   int64_t *ids = malloc((size_t)n * sizeof *ids);
   if (!ids) abort();
-  mps_assert_ok(context, mps_particles_select_box(particles, lo, hi, n, count, ids));
+  OK(mps_particles_select_box(particles, lo, hi, n, count, ids));
   return ids;
 }
 
 /* Holds degrees of freedom of the particles in a box. */
-static inline void soil_hold(mps_context *context, mps_particles *particles, mps_dynamics *dynamics,
-                             uint32_t dofs, double x0, double y0, double x1, double y1) {
+static inline void soil_hold(mps_particles *particles, mps_dynamics *dynamics, uint32_t dofs,
+                             double x0, double y0, double x1, double y1) {
   int64_t count;
-  int64_t *ids = soil_select(context, particles, x0, y0, x1, y1, &count);
-  mps_assert_ok(context, soil_add_held(dynamics, dofs, count, ids));
+  int64_t *ids = soil_select(particles, x0, y0, x1, y1, &count);
+  OK(soil_add_held(dynamics, dofs, count, ids));
   free(ids);
 }
 
@@ -119,25 +111,25 @@ static inline mps_dynamics *paper_column(mps_context *context, double radius, do
   *particles = soil_particles(context, D, width, height, 1, &soil);
   mps_dynamics *dynamics = NULL;
   mps_signal *ricker = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, *particles, def, &dynamics));
+  OK(mps_dynamics_create(context, *particles, def, &dynamics));
   const uint32_t held = wave == 'S' ? MPS_DOF_Y : MPS_DOF_X;
-  soil_hold(context, *particles, dynamics, held, -1.0, -1.0, D, height);
-  soil_hold(context, *particles, dynamics, held, width - D, -1.0, width, height);
-  soil_hold(context, *particles, dynamics, held, -1.0, -1.0, width, D);
+  soil_hold(*particles, dynamics, held, -1.0, -1.0, D, height);
+  soil_hold(*particles, dynamics, held, width - D, -1.0, width, height);
+  soil_hold(*particles, dynamics, held, -1.0, -1.0, width, D);
   int64_t count;
-  int64_t *base = soil_select(context, *particles, -1.0, -1.0, width, D, &count);
-  mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.25, 1.0, &ricker));
-  mps_assert_ok(context, soil_add_driven(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
+  int64_t *base = soil_select(*particles, -1.0, -1.0, width, D, &count);
+  OK(mps_signal_create_ricker(context, 4.0, 0.25, 1.0, &ricker));
+  OK(soil_add_driven(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
   mps_signal_destroy(&ricker);
   free(base);
   return dynamics;
 }
 
 /* Present value of a field of the particle `id`. */
-static inline double soil_value(mps_context *context, mps_particles *particles, const char *field,
-                                int64_t id, int component) {
+static inline double soil_value(mps_particles *particles, const char *field, int64_t id,
+                                int component) {
   mps_view view;
-  mps_assert_ok(context, mps_particles_view(particles, field, &view));
+  OK(mps_particles_view(particles, field, &view));
   return *mps_view_f64(&view, mps_particles_index(particles, id), component);
 }
 

@@ -1,22 +1,18 @@
-/* test_fixture.h - one serial context for all tests of a program: the group's setup and teardown.
+/* test_fixture.h - one serial context for all tests of a program.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_FIXTURE_H
 #define MPS_TEST_FIXTURE_H
 
 #include "test_common.h"
 
-static mps_context *context;
+extern mps_context *context;
 
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  return 0;
-}
+int make_context(void **state);
+int drop_context(void **state);
 
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
+/* Before a program's own TEST_GROUP, which takes its place. */
+__attribute__((constructor(101))) static void register_fixture(void) {
+  test_register_group(make_context, drop_context);
 }
 
 #endif

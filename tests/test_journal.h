@@ -5,8 +5,6 @@
 
 #include "test_common.h"
 
-#include <stdio.h>
-
 typedef struct journal {
   int count, asked; /* warnings; calls of a test's cancel hook */
   char last[512];

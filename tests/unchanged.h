@@ -7,8 +7,6 @@
 
 #include "digest.h"
 
-#include <mps/mps.h>
-
 static inline uint64_t seen_bytes(uint64_t hash, const void *data, size_t size) {
   for (size_t k = 0; k < size; k++)
     hash = (hash ^ ((const unsigned char *)data)[k]) * 1099511628211u;
@@ -16,14 +14,14 @@ static inline uint64_t seen_bytes(uint64_t hash, const void *data, size_t size) 
 }
 
 /* Readers of `own` may fail where there is nothing to read: its record of an error stays. */
-static inline uint64_t seen_set(mps_context *own, mps_particles *set) {
+static inline uint64_t seen_set(mps_particles *set) {
   const uint64_t epoch = mps_particles_epoch(set);
   uint64_t hash = digest_add(DIGEST_START, &epoch);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
-    mps_assert_ok(own, mps_particles_get_field_info(set, f, &info));
+    OK(mps_particles_get_field_info(set, f, &info));
     const char *const names[2] = {info.name, NULL};
-    const uint64_t values = digest_fields(own, set, names);
+    const uint64_t values = digest_fields(set, names);
     hash = seen_bytes(hash, info.name, strlen(info.name));
     hash = digest_add(hash, &values);
   }
@@ -31,14 +29,14 @@ static inline uint64_t seen_set(mps_context *own, mps_particles *set) {
 }
 
 /* The same by ids, whatever their order and the epoch: of calls that may sort the particles. */
-static inline uint64_t seen_values(mps_context *own, mps_particles *set) {
+static inline uint64_t seen_values(mps_particles *set) {
   const int64_t count = mps_particles_count(set);
   uint64_t hash = digest_add(DIGEST_START, &count);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
     mps_view view;
-    mps_assert_ok(own, mps_particles_get_field_info(set, f, &info));
-    mps_assert_ok(own, mps_particles_view(set, info.name, &view));
+    OK(mps_particles_get_field_info(set, f, &info));
+    OK(mps_particles_view(set, info.name, &view));
     hash = seen_bytes(hash, info.name, strlen(info.name));
     for (int64_t id = 0, found = 0; found < count; id++) {
       const int64_t k = mps_particles_index(set, id);
@@ -52,13 +50,13 @@ static inline uint64_t seen_values(mps_context *own, mps_particles *set) {
   return hash;
 }
 
-static inline uint64_t seen_body(mps_context *own, mps_body *body) {
+static inline uint64_t seen_body(mps_body *body) {
   mps_body_state state;
   mps_body_totals totals;
   mps_reaction reaction;
-  mps_assert_ok(own, mps_body_get_state(body, &state));
-  mps_assert_ok(own, mps_body_get_totals(body, &totals));
-  mps_assert_ok(own, mps_body_get_reaction(body, -1, &reaction));
+  OK(mps_body_get_state(body, &state));
+  OK(mps_body_get_totals(body, &totals));
+  OK(mps_body_get_reaction(body, -1, &reaction));
   uint64_t hash = seen_bytes(DIGEST_START, &state, sizeof state);
   hash = seen_bytes(hash, &totals, sizeof totals);
   return seen_bytes(hash, &reaction, sizeof reaction);
@@ -77,7 +75,7 @@ static inline uint64_t seen_body(mps_context *own, mps_body *body) {
     mps_totals totals;                                                                             \
     memset(&totals, 0, sizeof totals);                                                             \
     mps_particles *set = mps_##S##_particles(s);                                                   \
-    uint64_t hash = sorts ? seen_values(own, set) : seen_set(own, set);                            \
+    uint64_t hash = sorts ? seen_values(set) : seen_set(set);                                      \
     for (int k = 0; k < 3; k++) hash = digest_add(hash, &numbers[k]);                              \
     hash = digest_add(hash, &steps);                                                               \
     const mps_status status = mps_##S##_get_totals(s, &totals);                                    \

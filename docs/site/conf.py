@@ -10,7 +10,7 @@ sys.path.insert(0, str(here))
 
 project = "libmps"
 author = copyright = "the libmps authors"
-release = ".".join(re.findall(r"#define MPS_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", (root / "include/mps/base.h").read_text()))
+release = "{}.{}.{}{}".format(*re.findall(r'#define MPS_VERSION_(?:MAJOR|MINOR|PATCH|SUFFIX) "?([^"\s]*)', (root / "include/mps/base.h").read_text()))
 version = release
 
 extensions = ["myst_parser", "sphinx_design", "sphinx_copybutton", "sphinx.ext.mathjax", "links"]

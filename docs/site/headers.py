@@ -18,7 +18,7 @@ TOKEN = re.compile(r"""
   | (?P<skip>MPS_EXTERN_C_(?:BEGIN|END)|extern\s+"C"\s*\{)
   | (?P<declaration>[A-Za-z_][^;{}]*;)
 """, re.X | re.M | re.S)
-MARKS = r"\b(?:MPS_API|MPS_PETSC_API|MPS_EXPERIMENTAL_API|MPS_NODISCARD)\b\s*"
+MARKS = r"\b(?:MPS_API|MPS_PETSC_API|MPS_NODISCARD|MPS_DEPRECATED\(\d+, \d+,\s*\"[^\"]*\"\))(?!\w)\s*"
 
 
 def plain(comment):
@@ -116,20 +116,10 @@ def split_members(text):
     return [names[0]] + [base[1].rstrip("* ") + " " + other for other in names[1:]]
 
 
-def made_by_macro(text):
-    """Inline functions that a macro makes, one a line, as declarations; the others of the text stay."""
-    for macro, head in re.findall(r"^#define (MPS_\w+_DEFAULTS)\((?:\w+)\)\s*\\\s*static inline ([^{\\]*?)\s*\{", text, re.M):
-        parameter = re.search(rf"#define {macro}\((\w+)\)", text)[1]
-        def function(match, head=head, parameter=parameter):
-            return "static inline " + re.sub(rf"##{parameter}##|##{parameter}\b", match[1], head) + " {}"
-        text = re.sub(rf"^{macro}\((\w+)\)$", function, text, flags=re.M)
-    return text
-
-
 def inline_comment(name):
     """What an inline function without a comment of its own does: there are two kinds of these."""
     if name.endswith("_defaults"):
-        return f"The defaults by value, as `{name[:-len('s')].replace('_default', '_def')}_init` fills them (inline)."
+        return "The defaults by value, as `mps_def_init` fills them (inline)."
     return f"Calls `{name}_sized` with the size of the struct that this header declares (inline)."
 
 
@@ -140,7 +130,6 @@ def parse(text):
         rows = re.findall(r'X\((\w+),\s*(\d+),\s*"([^"]*)"\)', body)
         tables[name.replace("_TABLE", "")] = {row[0]: (row[1], row[2]) for row in rows}
     introduction, entries, comment, place = None, [], "", 0
-    text = made_by_macro(text)
     while True:
         match = TOKEN.search(text, place)
         if not match:
@@ -244,8 +233,8 @@ def summary(text):
     return escape(said[:1].upper() + said[1:])
 
 
-def page(name, text):
-    """The page of the header `name`."""
+def page(name, text, tables=None):
+    """The page of the header `name`; `tables`: members of definitions (definitions.c), for a table of each."""
     introduction, entries = parse(text)
     introduction = re.sub(r"\s*SPDX-License-Identifier:.*", "", introduction)
     title, rest = f"mps/{name}", introduction.partition(" - ")[2]
@@ -257,8 +246,20 @@ def page(name, text):
         if chosen:
             lines += [heading, "-" * len(heading), ""]
         for entry in chosen:
-            lines += directive(entry)
+            lines += directive(entry) + ranges((tables or {}).get(entry.name, []))
     return "\n".join(lines) + "\n", entries
+
+
+def ranges(members):
+    """What the library's own table says of each member of a definition, within its entry."""
+    rows = [(f"``{name}``", unit, f"``{default}``", "; ".join(escape(said) for said in ([allowed] if allowed else []) + rules))
+            for name, unit, default, allowed, rules in members if not name.startswith("reserved")]
+    if not rows:
+        return []
+    lines = ["   .. list-table::", "      :header-rows: 1", ""]
+    for row in [("member", "unit", "default", "allowed"), *rows]:
+        lines += [f"      {'-' if k else '* -'} {cell}".replace("      -", "        -") for k, cell in enumerate(row)]
+    return [*lines, ""]
 
 
 def directive(entry):

@@ -32,7 +32,7 @@ def library(build):
     found = sorted((build / "src").glob("libmps.so.*.*.*")) or sorted((build / "src").glob("libmps.so*"))
     if not found:
         sys.exit(f"docs: {build} has no src/libmps.so: cmake --build {build} first")
-    return found[0].resolve()
+    return found[-1].resolve()
 
 
 def environment(build):

@@ -11,7 +11,7 @@ import textwrap
 
 import headers
 
-PLAIN = ("Error", "StaleError", "Field", "Edit", "Object", "Result")
+PLAIN = ("Error", "StaleError", "MpsWarning", "Field", "Block", "Edit", "Object", "Result")
 
 
 def stubs(root):

@@ -2,10 +2,13 @@
 reference of the headers, and the table of equations. Links between pages hold in the repository; here those to files
 that are no pages become names of files, which links.py leads to listings."""
 
+import json
 import os
 import pathlib
 import re
 import shutil
+import subprocess
+import tempfile
 
 import equations
 import headers
@@ -23,8 +26,8 @@ def place_of(path):
         return ROOT_PAGES[path]
     if path == "include/mps":
         return "api/index.rst"
-    if re.fullmatch(r"include/mps/\w+\.h", path):
-        return f"api/{path[len('include/mps/'):-2]}.rst"
+    if re.fullmatch(r"include/mps/[\w/]+\.h", path):
+        return f"api/{path[len('include/mps/'):-2].replace('/', '-')}.rst"
     if path.startswith("docs/") and path.endswith(".md") and not path.startswith("docs/site/"):
         return path[len("docs/"):]
     return None
@@ -96,22 +99,34 @@ def stage_cards(out):
         part.save(out / "images" / name)
 
 
+def definitions(root):
+    """What the tables of src/core/definition say of each struct, by a program that prints them."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder) / "definitions"
+        subprocess.run([os.environ.get("CC", "cc"), "-DMPS_EXPERIMENTAL", "-D_GNU_SOURCE", f"-I{root / 'include'}", f"-I{root / 'src'}", "-o",
+                        program, root / "docs/site/definitions.c", *sorted((root / "src/core/definition").glob("*.c")), "-lm"], check=True)
+        return json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
+
+
 def stage_reference(root, out):
     """A page for each header; every exported name must be on one."""
-    names, rows = set(), []
-    for path in sorted((root / "include/mps").glob("*.h")):
-        text, entries = headers.page(path.name, path.read_text())
+    names, rows, pages = set(), [], []
+    tables = definitions(root)
+    for path in (p for pattern in ("*.h", "*/*.h") for p in sorted((root / "include/mps").glob(pattern))):
+        header = str(path.relative_to(root / "include/mps"))
+        pages.append(header[:-2].replace("/", "-"))
+        text, entries = headers.page(header, path.read_text(), tables)
         names |= {entry.name for entry in entries}
-        write(out / "api" / f"{path.stem}.rst", text)
+        write(out / "api" / f"{pages[-1]}.rst", text)
         first = headers.summary(path.read_text())
-        rows.append(f"* - :doc:`mps/{path.name} <{path.stem}>`\n  - {first}\n  - {sum(e.kind == 'function' for e in entries)}")
+        rows.append(f"* - :doc:`mps/{header} <{pages[-1]}>`\n  - {first}\n  - {sum(e.kind == 'function' for e in entries)}")
     exported = set(re.findall(r"^\s+(mps_\w+);", "".join(p.read_text() for p in (root / "src").rglob("*.map")), re.M))
     if exported - names:
         raise SystemExit(f"docs: exported, and on no page of the reference: {', '.join(sorted(exported - names))}")
     head = (root / "docs/site/reference.rst").read_text()
     table = ".. list-table::\n   :header-rows: 1\n   :widths: 24 66 10\n\n   * - header\n     - what\n     - functions\n"
     table += "\n".join("   " + row.replace("\n", "\n   ") for row in rows)
-    tree = ".. toctree::\n   :hidden:\n\n" + "\n".join(f"   {p.stem}" for p in sorted((root / "include/mps").glob("*.h")))
+    tree = ".. toctree::\n   :hidden:\n\n" + "\n".join(f"   {page}" for page in pages)
     write(out / "api" / "index.rst", f"{head}\n{table}\n\n{tree}\n")
 
 

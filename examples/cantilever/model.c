@@ -45,7 +45,8 @@ static bool support_wall(model *m, const elastic_method *method, int64_t *ids, d
     if (!elastic_hold(m->a, m->elastic, c, count, ids, values)) return false;
   }
   /* The published method has whole cells everywhere. */
-  return method->published || app_check(m->a, mps_elastic_cut(m->elastic, 0, 1, count, ids));
+  return method->published ||
+         app_check(m->a, mps_elastic_cut(m->elastic, MPS_SIDE_X_UPPER, ids, count));
 }
 
 static mps_status end_traction(void *user, const double *x, const double *normal,
@@ -61,8 +62,8 @@ static bool support_and_load(model *m, const elastic_method *method) {
   beam problem = *m->problem;
   bool done = app_agree(m->a, (list && values) || app_no_memory(m->a)) &&
               support_wall(m, method, list, values);
-  done = done && app_check(m->a, mps_elastic_select_facets(m->elastic, 0, -1, NULL, NULL, m->ny,
-                                                           &count, list));
+  done = done && app_check(m->a, mps_elastic_select_facets(m->elastic, MPS_SIDE_X_LOWER, NULL, NULL,
+                                                           m->ny, &count, list));
   done = done && elastic_pull(m->a, m->elastic, count, list, end_traction, &problem);
   free(list);
   free(values);
@@ -111,11 +112,13 @@ static bool find_errors(model *m) {
   m->stress_error = sqrt(wrong / all);
   double load[3];
   mps_reaction reaction[2]; /* of the two components of the wall */
+  mps_totals totals;
   if (!app_check(m->a, mps_elastic_get_load_resultant(m->elastic, NULL, load, NULL)) ||
       !app_check(m->a, mps_elastic_get_reaction(m->elastic, 0, &reaction[0])) ||
       !app_check(m->a, mps_elastic_get_reaction(m->elastic, 1, &reaction[1])) ||
-      !app_check(m->a, mps_elastic_get_energy(m->elastic, &m->energy, NULL)))
+      !app_check(m->a, mps_elastic_get_totals(m->elastic, &totals)))
     return false;
+  m->energy = totals.strain;
   m->equilibrium = hypot(load[0] + reaction[0].force[0], load[1] + reaction[1].force[1]) /
                    hypot(load[0], load[1]);
   return true;

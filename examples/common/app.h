@@ -6,7 +6,7 @@
 
 #include "progress.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 
 #include <stdarg.h>
 #include <stdbool.h>
@@ -37,15 +37,16 @@ typedef struct app {
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 prints and writes; 0 of one process */
-  void *equations;    /* ranks_solve_elastic, ..._fluid, ..._pore_water */
+  void *equations;    /* ranks_solve */
   bool agreed;        /* an error is known to all ranks */
   char line[700];     /* the error line of this rank */
 } app;
 
 /* Creates the context on `threads` threads (0: all processors), its warnings and progress going to
- * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. Where mpirun
- * has started several ranks, with the domain for the solvers, and `threads` of each rank (0: its
- * part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
+ * stderr, and Ctrl-C, SIGTERM and SIGHUP to its cancel hook. False, with an error line, when that
+ * fails. Where mpirun has started several ranks, with the domain for the solvers, and `threads` of
+ * each rank (0: its part of the node); one of these signals, or SIGUSR1, to any rank then stops
+ * all. */
 bool app_start(app *a, const char *program, int64_t threads);
 /* After work that differs between ranks: true where `ok` on all ranks. Else one rank reports the
  * error, and all return false. Collective; what the library does on all ranks is agreed upon by

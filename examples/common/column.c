@@ -30,11 +30,13 @@ static mps_status set_materials(const column *c) {
   for (int k = 0; k < 4 && status == MPS_OK; k++)
     status = mps_particles_edit(c->particles, names[k], &field[k]);
   for (int64_t i = 0; i < position.shape[0] && status == MPS_OK; i++) {
-    const layer *l = layers_at(c->def.ground, c->height - *mps_view_f64(&position, i, 1));
-    *mps_edit_f64(&field[0], i, 0) = layers_density(l);
-    *mps_edit_f64(&field[1], i, 0) = l->vs;
-    *mps_edit_f64(&field[2], i, 0) = l->vp;
-    *mps_edit_f64(&field[3], i, 0) = l->damping;
+    /* of the row of particles: a layer that lies within it counts too */
+    const double depth = c->height - *mps_view_f64(&position, i, 1), half = 0.5 * c->spacing;
+    const layer l = layers_mean(c->def.ground, depth - half, depth + half);
+    *mps_edit_f64(&field[0], i, 0) = layers_density(&l);
+    *mps_edit_f64(&field[1], i, 0) = l.vs;
+    *mps_edit_f64(&field[2], i, 0) = l.vp;
+    *mps_edit_f64(&field[3], i, 0) = l.damping;
   }
   for (int k = 0; k < 4 && status == MPS_OK; k++)
     status = mps_particles_commit(c->particles, &field[k]);

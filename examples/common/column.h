@@ -6,7 +6,7 @@
 
 #include "layers.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/dynamics.h>
 
 typedef struct column_def {

@@ -76,29 +76,46 @@ static bool convert_list(const reading *r, const yaml_node_t *node, int level, d
   return true;
 }
 
+/* By key; of equal keys the first in the file comes first. */
+static int by_key(const void *a, const void *b) {
+  const document *p = *(const document *const *)a, *q = *(const document *const *)b;
+  const int order = strcmp(p->key, q->key);
+  return order ? order : (p > q) - (p < q);
+}
+
+/* Refuses the first line that repeats a key. Sorted, so that the time is in proportion to the size.
+ */
+static bool has_unique_keys(const reading *r, const document *map) {
+  const document **sorted = malloc((size_t)(map->count + 1) * sizeof *sorted), *twice = NULL;
+  if (!sorted) return refuse(r, map->line, "out of memory", "");
+  for (int k = 0; k < map->count; k++) sorted[k] = &map->child[k];
+  qsort(sorted, (size_t)map->count, sizeof *sorted, by_key);
+  for (int k = 1; k < map->count; k++)
+    if (strcmp(sorted[k]->key, sorted[k - 1]->key) == 0 && (!twice || sorted[k] < twice))
+      twice = sorted[k];
+  free(sorted);
+  return !twice || refuse(r, twice->line, " is given twice", twice->key);
+}
+
 static bool convert_map(const reading *r, const yaml_node_t *node, int level, document *out) {
   const yaml_node_pair_t *first = node->data.mapping.pairs.start;
   const ptrdiff_t count = node->data.mapping.pairs.top - first;
   out->kind = DOCUMENT_MAP;
   out->child = calloc((size_t)count + 1, sizeof *out->child);
   if (!out->child) return refuse(r, out->line, "out of memory", "");
-  for (ptrdiff_t k = 0; k < count; k++) {
-    document *child = &out->child[k];
+  for (ptrdiff_t k = 0; k < count; k++, out->count++) {
     const yaml_node_t *key = yaml_document_get_node(r->source, first[k].key);
-    const int line = (int)key->start_mark.line + 1;
-    if (key->type != YAML_SCALAR_NODE) return refuse(r, line, "a key must be a word", "");
-    char *name = copy(key);
-    const bool twice = name && document_find(out, name);
-    if (twice) refuse(r, line, " is given twice", name);
-    if (!name) refuse(r, line, "out of memory", "");
-    if (twice || !name) {
-      free(name);
-      return false;
-    }
-    out->count++;
-    child->key = name;
-    if (!convert(r, first[k].value, level + 1, child)) return false;
-    child->line = line;
+    out->child[k].line = (int)key->start_mark.line + 1;
+    if (key->type != YAML_SCALAR_NODE)
+      return refuse(r, out->child[k].line, "a key must be a word", "");
+    out->child[k].key = copy(key);
+    if (!out->child[k].key) return refuse(r, out->child[k].line, "out of memory", "");
+  }
+  if (!has_unique_keys(r, out)) return false;
+  for (ptrdiff_t k = 0; k < count; k++) {
+    const int line = out->child[k].line;
+    if (!convert(r, first[k].value, level + 1, &out->child[k])) return false;
+    out->child[k].line = line;
   }
   return true;
 }
@@ -165,36 +182,66 @@ static char *read_bytes(const char *path, size_t *length, char *why, size_t size
   return NULL;
 }
 
-/* Aliases make a tree whose size is no longer that of the file. */
-static bool has_alias(const char *bytes, size_t length, int *line) {
+/* Before the file is loaded: depth, at which the first level too many ends the scan, and what
+ * libyaml compares with all that came before it: anchors. Aliases make a tree whose size is no
+ * longer that of the file. */
+static bool is_plain(const reading *r, const char *bytes, size_t length) {
+  static const char *const wrong[] = {
+      NULL, "more than 10 levels", "an alias (*name): write the part again",
+      "an anchor (&name): without aliases nothing refers to it", "a tag directive (%TAG)"};
   yaml_parser_t parser;
   yaml_event_t event;
-  bool found = false, over = false;
-  if (!yaml_parser_initialize(&parser)) return false;
+  int found = 0, level = 0, line = 1, anchored = 0; /* line of the first anchor */
+  bool over = false;
+  for (const char *at = bytes; found == 0 && at && at < bytes + length; line++) {
+    if ((size_t)(bytes + length - at) > 4 && memcmp(at, "%TAG", 4) == 0) found = 4;
+    at = memchr(at, '\n', (size_t)(bytes + length - at));
+    if (at) at++;
+  }
+  if (found) return refuse(r, line - 1, wrong[found], "");
+  if (!yaml_parser_initialize(&parser)) return refuse(r, 1, "out of memory", "");
   yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, length);
-  while (!found && !over && yaml_parser_parse(&parser, &event)) {
-    found = event.type == YAML_ALIAS_EVENT;
+  while (found == 0 && !over && yaml_parser_parse(&parser, &event)) {
+    const yaml_char_t *anchor = NULL;
+    switch (event.type) {
+    case YAML_SEQUENCE_START_EVENT:
+      anchor = event.data.sequence_start.anchor, level++;
+      break;
+    case YAML_MAPPING_START_EVENT:
+      anchor = event.data.mapping_start.anchor, level++;
+      break;
+    case YAML_SCALAR_EVENT:
+      anchor = event.data.scalar.anchor;
+      break;
+    case YAML_SEQUENCE_END_EVENT:
+    case YAML_MAPPING_END_EVENT:
+      level--;
+      break;
+    default:
+      break;
+    }
+    if (anchor && !anchored) anchored = (int)event.start_mark.line + 1;
+    found = event.type == YAML_ALIAS_EVENT ? 2 : level > LEVELS + 1 ? 1 : 0;
     over = event.type == YAML_STREAM_END_EVENT;
-    *line = (int)event.start_mark.line + 1;
+    line = (int)event.start_mark.line + 1;
     yaml_event_delete(&event);
   }
   yaml_parser_delete(&parser);
-  return found;
+  if (found == 0 && anchored) found = 3, line = anchored;
+  return found == 0 || refuse(r, line, wrong[found], "");
 }
 
 document *document_read(const char *path, char *why, size_t size) {
   yaml_parser_t parser;
   size_t length;
-  int line = 0;
   document *out = NULL;
   const reading r = {NULL, path, why, size};
   char *bytes = read_bytes(path, &length, why, size);
   if (!bytes) return NULL;
-  if (has_alias(bytes, length, &line)) {
-    refuse(&r, line, "an alias (*name): write the part again", "");
-  } else if (!yaml_parser_initialize(&parser)) {
+  const bool plain = is_plain(&r, bytes, length);
+  if (plain && !yaml_parser_initialize(&parser)) {
     refuse(&r, 1, "out of memory", "");
-  } else {
+  } else if (plain) {
     yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, length);
     out = parse(&parser, &r);
     yaml_parser_delete(&parser);

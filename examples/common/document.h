@@ -19,8 +19,8 @@ typedef struct document {
 } document;
 
 /* Reads the file. NULL: the reason in `why`, with the line where there is one. Of a map that names
- * a key twice the second line is an error, and so are files above 1 MB, aliases, and more than 10
- * levels. */
+ * a key twice the second line is an error, and so are files above 1 MB, anchors, aliases, tag
+ * directives, and more than 10 levels. Takes time in proportion to the size of the file. */
 document *document_read(const char *path, char *why, size_t size);
 void document_free(document *d);
 /* The member of a map; NULL where it has none. */

@@ -1,7 +1,6 @@
 /* layers.h - horizontal soil layers, from the ground surface down, and the file that lists them.
  *
- * One layer a line, separated by commas, semicolons or blanks, '#' begins a comment, and one header
- * line may come first:
+ * One layer a line, by a header as table.h reads it:
  *   thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_LAYERS_H
@@ -30,6 +29,12 @@ bool layers_read(app *a, const char *path, layers *out);
 double layers_thickness(const layers *ground);
 /* The layer at `depth` (m) below the surface; the last one continues downwards. */
 const layer *layers_at(const layers *ground, double depth);
+/* What waves much longer than the span between two depths (m) feel: the compliances of its parts
+ * add up (harmonic mean of the moduli), their masses too, the damping is by their shares of the
+ * strain energy. The layer itself where there is one alone. */
+layer layers_mean(const layers *ground, double top, double bottom);
+/* The first layer thinner than `size` (m); -1: none. */
+int64_t layers_thin(const layers *ground, double size);
 double layers_density(const layer *l); /* kg/m3 */
 /* Time (s) that a wave 'S' or 'P' takes from depth `from` up to depth `to` (m). */
 double layers_travel_time(const layers *ground, char wave, double from, double to);

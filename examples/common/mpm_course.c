@@ -47,9 +47,12 @@ mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) 
   const resume r = parts(c);
   const mpm_course_options *o = c->options;
   c->from = NAN;
-  mps_status status = MPS_OK;
-  if (o->restart && restores) {
+  mps_status status =
+      c->columns ? rows_begin(&c->rows, mps_mpm_solver(c->m->mpm), c->columns) : MPS_OK;
+  c->m->history = c->rows.history;
+  if (status == MPS_OK && o->restart && restores) {
     status = resume_restore(context, &r, o->restart);
+    if (c->columns) rows_look(&c->rows), c->m->samples = c->rows.count;
     c->from = mps_mpm_time(c->m->mpm);
   }
   const double every = isnan(o->every_checkpoint) ? 0.1 * c->duration : o->every_checkpoint;
@@ -65,6 +68,12 @@ static mps_status write_frame(mpm_course *c) {
   if (!c->opened) status = mpm_model_series(c->m, c->directory, c->what, c->from, &c->series);
   c->opened = true;
   return status == MPS_OK ? mpm_model_frame(c->m, c->series) : status;
+}
+
+mps_status mpm_course_add(mpm_course *c, const void *row) {
+  const mps_status status = rows_add(&c->rows, row);
+  c->m->samples = c->rows.count;
+  return status;
 }
 
 mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples) {

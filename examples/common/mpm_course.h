@@ -8,6 +8,7 @@
 #include "mpm_heap.h"
 #include "mpm_model.h"
 #include "resume.h"
+#include "rows.h"
 
 /* Options of a program, and the rows of its table. */
 typedef struct mpm_course_options {
@@ -32,7 +33,9 @@ typedef struct mpm_course {
   const option *table;
   void (*pass)(void *user, resume_bytes *b);
   void *user;
+  const rows_column *columns; /* of `rows`; NULL: the program keeps its results in another way */
   /* made here */
+  result_rows rows;
   mps_recorder *series; /* rank 0; made with the first frame: a series without one is none */
   double from;          /* s, time of the checkpoint that the run continues from; NaN: the start */
   bool opened;
@@ -47,6 +50,8 @@ mps_status mpm_course_load(mpm_course *c, mps_context *context);
 /* Once the model is built: restores the checkpoint, if any, if it is of this model (`restores`) and
  * not of an earlier one of the run. */
 mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores);
+/* A row of results, of a course with `columns`. */
+mps_status mpm_course_add(mpm_course *c, const void *row);
 /* After sample `k` of 0 to `samples`, of which 0 is the start: the frame and the checkpoint that
  * are due. Where a run ends before its time, that sample is the last one, `k` = `samples`: the
  * series has its end. */

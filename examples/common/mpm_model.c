@@ -10,6 +10,7 @@
 #include <string.h>
 
 void mpm_model_destroy(mpm_model *model) {
+  mps_history_destroy(&model->history);
   mps_mpm_destroy(&model->mpm);
   mps_fluid_destroy(&model->fluid);
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
@@ -52,7 +53,7 @@ mps_status mpm_model_whole(mpm_model *m, mps_particles **whole) {
   *whole = m->fluid && m->a->rank > 0 ? NULL : m->particles; /* a fluid is whole on each rank */
   if (!m->a->domain || m->fluid) return MPS_OK;
   *whole = NULL;
-  const mps_status status = mps_domain_gather(m->a->domain, m->particles, &m->whole);
+  const mps_status status = mps_domain_gather_fields(m->a->domain, m->particles, 0, NULL, &m->whole);
   if (status == MPS_OK) *whole = m->whole;
   return status;
 }

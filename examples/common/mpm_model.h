@@ -7,8 +7,9 @@
 #include "options.h"
 #include "output.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/fluid.h>
+#include <mps/history.h>
 #include <mps/io.h>
 #include <mps/mpm.h>
 
@@ -19,6 +20,7 @@ typedef struct mpm_model {
   mps_material *material;
   mps_mpm *mpm;
   mps_fluid *fluid;                 /* in its place where a program has the choice */
+  mps_history *history;             /* of the solver, NULL: none */
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
   int64_t samples;                  /* rows of results so far, which `march` counts */
   bool failed;   /* `march` sets it where something is missing that was requested: exit code 1 */

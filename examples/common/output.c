@@ -1,14 +1,17 @@
-/* output.c - result files: every write is checked, and only complete files get their name.
+/* output.c - result files: one program writes into a directory at a time, every write is checked,
+ * and only complete files get their name.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "output.h"
 
 #include "options.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,6 +24,43 @@ static bool make_one(app *a, const char *path) {
   if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return true;
   return app_error(a, "cannot make the directory %s: %s", path,
                    strerror(reason == EEXIST ? ENOTDIR : reason));
+}
+
+/* A lock ends with the process, however that ends. NFS locks no directory, but files of it; where
+ * neither can be locked, nothing is. */
+static int lock(int directory) {
+  int fd = directory, result = flock(fd, LOCK_EX | LOCK_NB);
+  if (result != 0 && errno != EWOULDBLOCK) {
+    fd = openat(directory, ".lock", O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    result = fd < 0 ? 0 : flock(fd, LOCK_EX | LOCK_NB);
+    if (fd < 0) fd = directory;
+  }
+  const bool busy = result != 0 && errno == EWOULDBLOCK;
+  if (fd != directory) close(directory);
+  if (busy) close(fd);
+  return busy ? -1 : fd;
+}
+
+/* Of this process until its end. It may ask for the directory that it asked for last again. */
+static bool lock_directory(app *a, const char *path) {
+  static dev_t device;
+  static ino_t number;
+  static int held = -1;
+  struct stat info;
+  const int directory = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return true; /* without the right to read it */
+  const bool known = fstat(directory, &info) == 0;
+  if (known && held >= 0 && device == info.st_dev && number == info.st_ino) {
+    close(directory);
+    return true;
+  }
+  const int fd = lock(directory);
+  if (fd < 0)
+    return app_error(a, "another program is writing into the directory %s: choose another --out",
+                     path);
+  held = fd;
+  if (known) device = info.st_dev, number = info.st_ino;
+  return true;
 }
 
 bool output_directory(app *a, const char *path) {
@@ -36,7 +76,7 @@ bool output_directory(app *a, const char *path) {
   free(copy);
   if (ok && access(path, W_OK | X_OK) != 0)
     return app_error(a, "cannot write into the directory %s: %s", path, strerror(errno));
-  return ok;
+  return ok && lock_directory(a, path);
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -55,6 +95,18 @@ static void forget(output *file) {
   *file = (output){0};
 }
 
+int output_exclusive(const char *path) {
+  struct stat info;
+  if (lstat(path, &info) == 0) {
+    if (!S_ISREG(info.st_mode)) {
+      errno = EEXIST;
+      return -1;
+    }
+    unlink(path); /* of a program that was killed: the directory is locked */
+  }
+  return open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
 bool output_open(output *file, app *a, const char *directory, const char *name) {
   *file = (output){.a = a};
   file->path = join(directory, name, "");
@@ -63,13 +115,14 @@ bool output_open(output *file, app *a, const char *directory, const char *name) 
     forget(file);
     return app_no_memory(a);
   }
-  file->stream = fopen(file->temporary, "w");
-  if (!file->stream) {
-    app_error(a, "cannot write %s: %s", file->temporary, strerror(errno));
-    forget(file);
-    return false;
-  }
-  return true;
+  const int fd = output_exclusive(file->temporary);
+  file->stream = fd < 0 ? NULL : fdopen(fd, "w");
+  if (file->stream) return true;
+  app_error(a, "cannot write %s: %s", file->temporary,
+            errno == EEXIST ? "something that is no file has this name" : strerror(errno));
+  if (fd >= 0) close(fd);
+  forget(file);
+  return false;
 }
 
 bool output_close(output *file) {

@@ -8,7 +8,8 @@
 
 #include <stdio.h>
 
-/* Makes the directory `path` with its parents. */
+/* Makes the directory `path` with its parents, and locks it until this process ends: an error where
+ * another one has it. */
 bool output_directory(app *a, const char *path);
 
 typedef struct output {
@@ -21,6 +22,10 @@ typedef struct output {
   int64_t rows;  /* CSV: written so far */
   char bad[160]; /* the first cell that should have had a number, "": none */
 } output;
+
+/* A new file, in place of one that a killed program has left; it follows no link. Its descriptor, or
+ * -1 and errno: EEXIST where the name is a link or anything else but a file. */
+int output_exclusive(const char *path);
 
 /* Opens DIR/NAME for writing. False, with an error line, when that fails: `file` is then closed. */
 bool output_open(output *file, app *a, const char *directory, const char *name);

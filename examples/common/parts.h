@@ -5,7 +5,7 @@
 #ifndef EXAMPLES_PARTS_H
 #define EXAMPLES_PARTS_H
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 
 mps_status parts_create(mps_context *context, mps_domain *domain, const mps_particles_def *def,
                         mps_particles **out);

@@ -56,8 +56,9 @@ static double round_up(double value) {
 }
 
 void plot_key_below(output *script) {
-  output_text(script,
-              "set key outside bottom center horizontal reverse Left height 1\nset xlabel offset 0,0.5\n");
+  output_text(
+      script,
+      "set key outside bottom center horizontal reverse Left height 1\nset xlabel offset 0,0.5\n");
 }
 
 double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }
@@ -159,8 +160,13 @@ static bool draw(app *a, const char *directory, const char *name, const char *ki
   if (snprintf(picture, sizeof picture, "%s/%s.%s", directory, name, kind) >= (int)sizeof picture ||
       snprintf(part, sizeof part, "%s/%s.%s.part", directory, name, kind) >= (int)sizeof part)
     return app_error(a, "the path of %s.%s is too long", name, kind);
+  const int empty = output_exclusive(part); /* for gnuplot, which would follow a link */
+  if (empty < 0 || close(empty) != 0)
+    return app_error(a, "cannot draw %s: cannot write %s: %s", picture, part,
+                     errno == EEXIST ? "something that is no file has this name" : strerror(errno));
   const int status = run(directory, variable, script, said, sizeof said);
   if (status == NOT_FOUND) {
+    unlink(part);
     if (!a->no_gnuplot)
       printf("No pictures: gnuplot is not installed. Later: cd '%s' && gnuplot *.gp\n", directory);
     a->no_gnuplot = true;

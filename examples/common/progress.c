@@ -1,4 +1,4 @@
-/* progress.c - progress bar and Ctrl-C.
+/* progress.c - progress bar, and signals that end a run: Ctrl-C, SIGTERM, SIGHUP.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "progress.h"
 
@@ -62,14 +62,19 @@ void progress_start(progress *bar, const char *program) {
   struct sigaction action = {.sa_handler = on_interrupt};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  /* nohup has SIGHUP ignored; a terminal that hangs up breaks its pipes too */
+  struct sigaction former;
+  if (sigaction(SIGHUP, NULL, &former) == 0 && former.sa_handler != SIG_IGN)
+    sigaction(SIGHUP, &action, NULL);
   action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, NULL);
   sigaction(SIGXFSZ, &action, NULL);
 }
 
 void progress_heed_launcher(void) {
   struct sigaction action = {.sa_handler = on_interrupt};
   sigemptyset(&action.sa_mask);
-  sigaction(SIGTERM, &action, NULL);
   sigaction(SIGUSR1, &action, NULL);
 }
 

@@ -27,13 +27,13 @@ typedef struct progress {
 
 enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };
 
-/* Starts the clock and, from now on, turns Ctrl-C into a request to stop. A second one changes
- * nothing, as a terminal and a program that started this one may both pass on the same; a third one
- * ends the program at once, with exit code 130 and a line after the name of the `program`. A write
- * beyond a limit on the size of files fails like one to a full disk, instead of killing the
- * program. */
+/* Starts the clock and, from now on, turns Ctrl-C, SIGTERM and SIGHUP (unless it is ignored, as
+ * after nohup) into a request to stop. A second one changes nothing, as a terminal and a program
+ * that started this one may both pass on the same; a third Ctrl-C ends the program at once, with
+ * exit code 130 and a line after the name of the `program`. A write beyond a limit on the size of
+ * files, or into a broken pipe, fails like one to a full disk, instead of killing the program. */
 void progress_start(progress *bar, const char *program);
-/* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
+/* From now on SIGUSR1 is a request to stop too: mpirun and srun send it to ranks. */
 void progress_heed_launcher(void);
 /* The part `share` of the whole that the hook draws from now on, with `done` before it, in which
  * the solver's time goes from `from` to `to` (s). There is one bar, of all that a program does:
@@ -44,7 +44,7 @@ void progress_part(progress *bar, double done, double share, double from, double
 void progress_draw(progress *bar, double fraction, const char *text);
 /* Erases the bar from the terminal, before a line is printed. */
 void progress_clear(progress *bar);
-/* Ctrl-C was pressed. */
+/* Ctrl-C was pressed, or another signal asked to stop. */
 bool progress_interrupted(void);
 /* For an uninterruptible computation, such as the factorisation of a matrix: until the next call
  * with NULL, Ctrl-C gives the file `part` the name `whole` (NULL: there is none), prints `line` and

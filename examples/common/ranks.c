@@ -133,9 +133,9 @@ bool ranks_same_options(mps_domain *domain, char *why, size_t size) {
 
 /* ---- equations ------------------------------------------------------------------------------- */
 
-typedef mps_status (*create_fn)(mps_context *context, int32_t method, void **solver);
-typedef mps_status (*solve_fn)(void *solver, mps_elastic *elastic);
-typedef void (*destroy_fn)(void **solver);
+typedef mps_status (*create_fn)(mps_context *context, int32_t method, void **petsc);
+typedef mps_status (*define_fn)(void *petsc, mps_linear_solver_def *def);
+typedef void (*destroy_fn)(void **petsc);
 
 /* The recorded message, where it is of this status. */
 static const char *reason(const mps_context *context, mps_status status) {
@@ -143,59 +143,27 @@ static const char *reason(const mps_context *context, mps_status status) {
   return error && error->status == status ? error->message : mps_status_text(status);
 }
 
-bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solver, char *why,
-                         size_t size) {
+bool ranks_solve(mps_solver *solver, int32_t equation, int32_t method, void **petsc, char *why,
+                 size_t size) {
+  mps_context *context = mps_solver_context(solver);
+  mps_linear_solver_def def;
   create_fn create = NULL;
-  solve_fn solve = NULL;
+  define_fn define = NULL;
   if (!load("mps_petsc_solver_create_world", &create, why, size) ||
-      !load("mps_petsc_solve_elastic", &solve, why, size))
+      !load("mps_petsc_linear_solver", &define, why, size))
     return false;
-  const int32_t multigrid = 0; /* MPS_PETSC_METHOD_MULTIGRID */
-  mps_status status = *solver ? MPS_OK : create(context, multigrid, solver);
-  if (status == MPS_OK) status = solve(*solver, elastic);
+  mps_status status = *petsc ? MPS_OK : create(context, method, petsc);
+  if (status == MPS_OK) status = define(*petsc, &def);
+  if (status == MPS_OK) status = mps_solver_set_linear_solver(solver, equation, &def);
   if (status != MPS_OK)
-    snprintf(why, size, "the ranks cannot solve together: %s", reason(context, status));
+    snprintf(why, size, "PETSc's solver cannot be had: %s", reason(context, status));
   return status == MPS_OK;
 }
 
-typedef mps_status (*solve_fluid_fn)(void *solver, mps_fluid *fluid, int64_t least);
-
-bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
-                       char *why, size_t size) {
-  create_fn create = NULL;
-  solve_fluid_fn solve = NULL;
-  if (!load("mps_petsc_solver_create_world", &create, why, size) ||
-      !load("mps_petsc_solve_fluid", &solve, why, size))
-    return false;
-  mps_status status = *solver ? MPS_OK : create(context, method, solver);
-  if (status == MPS_OK) status = solve(*solver, fluid, 0);
-  if (status != MPS_OK)
-    snprintf(why, size, "PETSc's solver of the pressure cannot be had: %s",
-             reason(context, status));
-  return status == MPS_OK;
-}
-
-typedef mps_status (*solve_pores_fn)(void *solver, mps_mpm *mpm, int64_t least);
-
-bool ranks_solve_pore_water(mps_context *context, mps_mpm *mpm, int32_t method, void **solver,
-                            char *why, size_t size) {
-  create_fn create = NULL;
-  solve_pores_fn solve = NULL;
-  if (!load("mps_petsc_solver_create_world", &create, why, size) ||
-      !load("mps_petsc_solve_pore_water", &solve, why, size))
-    return false;
-  mps_status status = *solver ? MPS_OK : create(context, method, solver);
-  if (status == MPS_OK) status = solve(*solver, mpm, 0);
-  if (status != MPS_OK)
-    snprintf(why, size, "PETSc's solver of the pore pressures cannot be had: %s",
-             reason(context, status));
-  return status == MPS_OK;
-}
-
-void ranks_drop_solver(void **solver) {
+void ranks_drop_solver(void **petsc) {
   destroy_fn destroy = NULL;
   char why[300];
-  if (*solver && load("mps_petsc_solver_destroy", &destroy, why, sizeof why)) destroy(solver);
+  if (*petsc && load("mps_petsc_solver_destroy", &destroy, why, sizeof why)) destroy(petsc);
 }
 
 /* ---- threads --------------------------------------------------------------------------------- */

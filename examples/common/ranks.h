@@ -5,10 +5,8 @@
 #ifndef EXAMPLES_RANKS_H
 #define EXAMPLES_RANKS_H
 
-#include <mps/domain.h>
-#include <mps/elastic.h>
-#include <mps/fluid.h>
-#include <mps/mpm.h>
+#include <mps/experimental/domain.h>
+#include <mps/experimental/linear_solver.h>
 
 #include <stdbool.h>
 
@@ -25,19 +23,13 @@ void ranks_keep_options(int argc, char **argv);
 /* Whether this rank was started with the options of rank 0, but for --threads; else the difference
  * in `why`. Collective. */
 bool ranks_same_options(mps_domain *domain, char *why, size_t size);
-/* Lets all ranks of its domain solve `elastic`, by PETSc's multigrid; *solver is made at the first
- * call, and destroyed by ranks_drop_solver after the objects that it solves for. False as above.
+/* Lets PETSc, by `method` of mps_petsc_method (0: multigrid), solve `equation` of `solver`
+ * (mps_linear_equation) on all ranks of its domain, or in one process; *petsc is made at the first
+ * call, and destroyed by ranks_drop_solver after the solvers that it is set for. False as above.
  * Collective. */
-bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solver, char *why,
-                         size_t size);
-/* Lets PETSc solve the pressure of `fluid`, `method` of mps_petsc_method, of one process too. False
- * as above. Collective. */
-bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
-                       char *why, size_t size);
-/* The same for the implicit pressures of the pore water of `mpm`. */
-bool ranks_solve_pore_water(mps_context *context, mps_mpm *mpm, int32_t method, void **solver,
-                            char *why, size_t size);
-void ranks_drop_solver(void **solver);
+bool ranks_solve(mps_solver *solver, int32_t equation, int32_t method, void **petsc, char *why,
+                 size_t size);
+void ranks_drop_solver(void **petsc);
 /* Threads for this rank: the processors that it may use, divided by the number of ranks of its node
  * that may use the same ones. Collective. */
 mps_status ranks_threads(mps_domain *domain, int64_t *threads);

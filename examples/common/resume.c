@@ -66,7 +66,7 @@ static mps_status pack(const resume *r, mps_checkpoint *info) {
   *info = mps_checkpoint_defaults();
   resume_bytes count = {0};
   pass_warnings(r, &count);
-  r->pass(r->user, &count);
+  if (r->pass) r->pass(r->user, &count);
   info->user_bytes = OPTIONS + count.bytes;
   info->user_data = malloc((size_t)info->user_bytes);
   if (!info->user_data) return MPS_ERROR_MEMORY;
@@ -75,7 +75,7 @@ static mps_status pack(const resume *r, mps_checkpoint *info) {
   memcpy(info->user_data, text, OPTIONS);
   resume_bytes b = {.at = (char *)info->user_data + OPTIONS, .size = count.bytes};
   pass_warnings(r, &b);
-  r->pass(r->user, &b);
+  if (r->pass) r->pass(r->user, &b);
   return MPS_OK;
 }
 
@@ -122,7 +122,7 @@ static mps_status unpack(const resume *r, const mps_checkpoint *info) {
   resume_bytes b = {
       .at = (char *)info->user_data + OPTIONS, .size = info->user_bytes - OPTIONS, .reads = true};
   pass_warnings(r, &b);
-  r->pass(r->user, &b);
+  if (r->pass) r->pass(r->user, &b);
   resume_wrong(&b, b.bytes != b.size);
   return b.status;
 }

@@ -16,7 +16,7 @@
 #include "app.h"
 #include "options.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
 #include <mps/mpm.h>
@@ -40,10 +40,10 @@ bool resume_same(resume_bytes *b, const void *value, size_t size);
 typedef struct resume {
   const char *key; /* names the program and the layout of the bytes */
   const option *table;
-  void (*pass)(void *user, resume_bytes *b);
-  void *user;         /* of pass */
-  mps_mpm *mpm;       /* the solver: this one */
-  mps_fluid *fluid;   /* or this */
+  void (*pass)(void *user, resume_bytes *b); /* NULL: the solver has all (rows.h) */
+  void *user;                                /* of pass */
+  mps_mpm *mpm;                              /* the solver: this one */
+  mps_fluid *fluid;                          /* or this */
   app *a;             /* its warnings are kept too: summary.json has those of the whole run */
   mps_domain *domain; /* of several ranks: saving, peeking and restoring are collective */
 } resume;

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "strip.h"
 
+#include <mps/experimental/domain.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -36,7 +37,8 @@ static mps_status make_edge(strip *s, int edge, int64_t *ids) {
   lo[axis] = at - 0.25 * def->spacing, hi[axis] = at + 0.25 * def->spacing;
   mps_status status =
       mps_particles_select_box(s->set, lo, hi, mps_particles_count(s->set), &count, ids);
-  if (status == MPS_OK) status = mps_elastic_cut(s->solver, axis, side, count, ids);
+  if (status == MPS_OK)
+    status = mps_elastic_cut(s->solver, mps_side_of(axis, side > 0), ids, count);
   if (status != MPS_OK || !(def->clamped & edge)) return status;
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
   held.ids = ids, held.id_count = count;
@@ -53,11 +55,11 @@ static mps_status find_facets(strip *s) {
   s->given = calloc(3 * all, sizeof *s->given);
   mps_status status = s->facet && s->centre && s->area && s->given ? MPS_OK : MPS_ERROR_MEMORY;
   if (status == MPS_OK)
-    status = mps_elastic_select_facets(s->solver, axis, side, NULL, NULL, (int64_t)all, &s->count,
-                                       s->facet);
+    status = mps_elastic_select_facets(s->solver, mps_side_of(axis, side > 0), NULL, NULL,
+                                       (int64_t)all, &s->count, s->facet);
   if (s->def.domain) status = mps_domain_agree(s->def.domain, status);
   const mps_elastic_facet_arrays arrays = {.centre = s->centre, .area = s->area};
-  return status == MPS_OK ? mps_elastic_get_facets(s->solver, s->count, s->facet, &arrays) : status;
+  return status == MPS_OK ? mps_elastic_get_facets(s->solver, s->facet, s->count, &arrays) : status;
 }
 
 static mps_status set_load(strip *s, bool first) {

@@ -16,6 +16,9 @@ typedef enum units_status {
 /* Reads all of `text` into *value: a number in `unit`, or with a unit of the same quantity. Where
  * `unit` is none of a quantity ("1", "N", NULL) the number has no unit. */
 units_status units_read(const char *text, const char *unit, double *value);
+/* The value in `unit`'s SI quantity ("1": a ratio) of one of the unit that `text` is, in the
+ * spellings of headers: "m_s", "kN/m^3", "feet", "%". False: it is none of that quantity. */
+bool units_factor(const char *text, const char *unit, double *factor);
 /* The option's unit is one of a physical quantity. */
 bool units_known(const char *unit);
 /* True where `text` ends with a unit. */

@@ -75,7 +75,8 @@ double waves_havelock(double k, double depth) {
   return 2.0 * (cosh(a) - 1.0) / (sinh(a) + a);
 }
 
-void waves_warn(app *a, double period, double depth, double amplitude, double spacing) {
+bool waves_check(app *a, double period, double depth, double amplitude, double spacing,
+                 double length) {
   const double k = waves_number(period, depth), most = 0.142 * 2.0 * WAVES_PI / k * tanh(k * depth);
   const double height = 2.0 * fabs(amplitude) * waves_havelock(k, depth);
   if (height > 0.0 && height < 2.0 * spacing)
@@ -83,9 +84,19 @@ void waves_warn(app *a, double period, double depth, double amplitude, double sp
              "the piston's waves, %.2g m high, are lower than 2 spacings of %g m: they will lose "
              "height",
              height, spacing);
+  if (!(fabs(amplitude) < length))
+    return app_error(a, "--amplitude is %g m, must be below the length of the tank, %g m",
+                     amplitude, length);
+  if (height > most)
+    return app_error(
+        a,
+        "--amplitude %g m: waves of %.3g m would be above the breaking height %.3g m of "
+        "a period of %g s in a depth of %g m",
+        amplitude, height, most, period, depth);
   if (height > 0.8 * most)
     app_warn(a, "the piston's waves, %.2g m high, are more than .8 of those that break, %.2g m",
              height, most);
+  return true;
 }
 
 void waves_warn_of_step(app *a, double omega, double dt) {
@@ -124,5 +135,6 @@ double waves_sloshing_period(double length, double depth) {
 
 bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size) {
   /* choices after the first are those of mps_petsc_method */
-  return choice == 0 || ranks_solve_fluid(a->context, fluid, choice - 1, &a->equations, why, size);
+  return choice == 0 || ranks_solve(mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE,
+                                    choice - 1, &a->equations, why, size);
 }

@@ -44,8 +44,10 @@ double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
 double waves_havelock(double k, double depth);
 /* A warning where the waves of a piston are lower than 2 spacings, and one where they are higher
- * than .8 of breaking waves, .142 L tanh(kd) (Miche). */
-void waves_warn(app *a, double period, double depth, double amplitude, double spacing);
+ * than .8 of breaking waves, .142 L tanh(kd) (Miche). False, after an error line, where they are
+ * higher than those, or the piston would leave the tank of `length` (m). */
+bool waves_check(app *a, double period, double depth, double amplitude, double spacing,
+                 double length);
 /* A warning where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled motion
  * then has a wrong period and is damped by the scheme. */
 void waves_warn_of_step(app *a, double omega, double dt);

@@ -88,16 +88,13 @@ double column_degree(const simulation *sim, int step, double settlement) {
 
 /* ---- options --------------------------------------------------------------------------------- */
 
-static const char *fault(const double *row) {
-  if (!(row[0] > 0.0 && row[0] <= 1e6)) return "thickness_m must be above 0, at most 1e6";
-  if (!(row[1] > 0.0 && row[1] <= 1.0)) return "permeability_m_s must be above 0, at most 1";
-  if (!(row[2] >= 1.0 && row[2] <= 1e16)) return "modulus_Pa must be in [1, 1e16]";
-  return NULL;
-}
-
 static const char *read_layers(simulation *sim) {
-  static const table_def def = {"layer", "thickness_m, permeability_m_s, modulus_Pa", 3,
-                                STRATA_MOST, fault};
+  static const table_def def = {.row = "layer",
+                                .column = {{"thickness", "m", "m", 0.0, 1e4, true},
+                                           {"permeability", "m/s", "m/s", 0.0, 1.0, true},
+                                           {"modulus", "Pa", "Pa", 1e3, 1e13, false}},
+                                .count = 3,
+                                .most = STRATA_MOST};
   static char why[600];
   double rows[3 * STRATA_MOST];
   int64_t count = 0;

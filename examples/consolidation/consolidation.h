@@ -8,7 +8,7 @@
 #include "common/mpm_model.h"
 #include "strata.h"
 
-#include <mps/pore_water.h>
+#include <mps/experimental/pore_water.h>
 
 enum { TERZAGHI, LARGE, MCC, MANDEL, CRYER, STRIP, BARRON };
 enum { EXPLICIT, IMPLICIT };
@@ -60,6 +60,8 @@ typedef struct simulation {
 
 /* Completes the settings. Why they are not consistent; NULL: good. */
 const char *consolidation_settle(simulation *sim, const option *table);
+/* The default duration of T = 1, s, at which inertia does not count. */
+double consolidation_duration(const simulation *sim);
 mps_status consolidation_build(mps_context *context, void *user);
 mps_status consolidation_march(void *user);
 bool consolidation_finish(app *a, void *user);

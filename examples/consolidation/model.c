@@ -10,8 +10,10 @@
 
 #include "common/ranks.h"
 
-#include <mps/mpm_settle.h>
+#include <mps/experimental/settle.h>
 #include <mps/soil.h>
+#include <mps/experimental/pore_water.h>
+#include <mps/experimental/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,7 +103,7 @@ static double fastest(const simulation *sim) {
 
 /* Large strains make the ground swing as its surface passes from cell to cell, which counts most
  * beside a load that is still small. */
-static double usual_duration(const simulation *sim) {
+double consolidation_duration(const simulation *sim) {
   const settings *s = &sim->s;
   const double waves = has_plate(s) ? 1000.0 : s->kase == LARGE && s->ramp > 0.0 ? 2000.0 : 300.0;
   const double slow = WATER * MPS_PORE_GRAVITY * fastest(sim) / (sim->modulus * FASTEST);
@@ -139,7 +141,7 @@ const char *consolidation_settle(simulation *sim, const option *table) {
                : "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + "
                  "nu)(1 - 2 nu)): the exact solution is of small strains";
   if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
-  if (isnan(s->duration)) s->duration = usual_duration(sim);
+  if (isnan(s->duration)) s->duration = consolidation_duration(sim);
   unused = read_times(sim, table);
   return unused ? unused : column_finish_settings(sim);
 }
@@ -179,7 +181,7 @@ static mps_status cut_ball(mps_particles *set) {
   for (int64_t k = 0; k < x.shape[0]; k++)
     if (*mps_view_f64(&x, k, 0) < 0.0 || *mps_view_f64(&x, k, 1) < 0.0)
       gone[count++] = *mps_view_i64(&id, k, 0);
-  if (count > 0) status = mps_particles_remove(set, count, gone);
+  if (count > 0) status = mps_particles_remove(set, gone, count);
   free(gone);
   return status;
 }
@@ -271,10 +273,10 @@ static mps_status add_water(simulation *sim) {
 }
 
 /* Choices of --solver after the first are those of mps_petsc_method. */
-static mps_status choose_solver(mps_context *context, simulation *sim) {
+static mps_status choose_solver(simulation *sim) {
   mpm_model *m = &sim->m;
-  if (sim->s.solver == 0 || ranks_solve_pore_water(context, m->mpm, sim->s.solver - 1,
-                                                   &m->a->equations, m->why, sizeof m->why))
+  if (sim->s.solver == 0 || ranks_solve(mps_mpm_solver(m->mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE,
+                                        sim->s.solver - 1, &m->a->equations, m->why, sizeof m->why))
     return MPS_OK;
   return MPS_ERROR_UNSUPPORTED;
 }
@@ -284,9 +286,9 @@ static mps_pore_face_def drains_of(const simulation *sim, double load) {
   mps_pore_face_def face = mps_pore_face_defaults();
   face.kind = MPS_PORE_FACE_DRAINED;
   face.pressure = -load - start_of(s);
-  if (s->drained != DRAINED_BOTTOM) face.sides |= 1u << MPS_MPM_SIDE_Y_UPPER;
-  if (s->drained != DRAINED_TOP) face.sides |= 1u << MPS_MPM_SIDE_Y_LOWER;
-  if (s->kase == CRYER) face.sides |= 1u << MPS_MPM_SIDE_X_UPPER;
+  if (s->drained != DRAINED_BOTTOM) face.sides |= 1u << MPS_SIDE_Y_UPPER;
+  if (s->drained != DRAINED_TOP) face.sides |= 1u << MPS_SIDE_Y_LOWER;
+  if (s->kase == CRYER) face.sides |= 1u << MPS_SIDE_X_UPPER;
   return face;
 }
 
@@ -294,7 +296,7 @@ static mps_status add_drains(simulation *sim) {
   const settings *s = &sim->s;
   const mps_pore_face_def face = drains_of(sim, is_column(s) ? column_load(sim, 0, 0.0) : s->load);
   mps_pore_face_def sealed = mps_pore_face_defaults(); /* the free surface else drains */
-  sealed.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+  sealed.sides = 1u << MPS_SIDE_Y_UPPER;
   mps_status status = MPS_OK;
   if (s->drained == DRAINED_BOTTOM) status = mps_mpm_add_pore_face(sim->m.mpm, &sealed, NULL);
   return status == MPS_OK ? mps_mpm_add_pore_face(sim->m.mpm, &face, &sim->drain) : status;
@@ -312,7 +314,7 @@ static mps_status begin_mandel(simulation *sim) {
 static mps_status begin_barron(simulation *sim) {
   mps_pore_face_def drain = mps_pore_face_defaults();
   drain.kind = MPS_PORE_FACE_DRAINED;
-  drain.sides = 1u << MPS_MPM_SIDE_X_LOWER;
+  drain.sides = 1u << MPS_SIDE_X_LOWER;
   const mps_status status = mps_particles_set(sim->m.particles, "pore_pressure", 0, sim->s.load);
   return status == MPS_OK ? mps_mpm_add_pore_face(sim->m.mpm, &drain, NULL) : status;
 }
@@ -343,7 +345,7 @@ static mps_status drive_plate(mps_context *context, simulation *sim) {
   plate.kind = MPS_BOUNDARY_ROLLER;
   plate.signal[1] = down;
   plate.factor[1] = -1.0;
-  if (status == MPS_OK) status = mps_mpm_set_boundary(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
+  if (status == MPS_OK) status = mps_mpm_set_boundary(sim->m.mpm, MPS_SIDE_Y_UPPER, &plate);
   mps_signal_destroy(&down);
   return status;
 }
@@ -386,7 +388,7 @@ static mps_status load_strip(simulation *sim) {
 
 static mps_status add_case(mps_context *context, simulation *sim) {
   mps_status status = add_water(sim);
-  if (status == MPS_OK) status = choose_solver(context, sim);
+  if (status == MPS_OK) status = choose_solver(sim);
   if (status != MPS_OK) return status;
   if (sim->s.kase == STRIP) return load_strip(sim);
   if (sim->s.kase == MCC)
@@ -439,7 +441,7 @@ static mps_status set_layer(mps_context *context, simulation *sim, const stratum
     status = mps_material_create_linear_elastic(context, young_of(sim, layer), sim->s.nu, &law);
   int64_t all = count;
   if (status == MPS_OK) status = mpm_model_sum(&sim->m, &all);
-  if (status == MPS_OK && all > 0) status = mps_mpm_set_material(sim->m.mpm, law, count, ids);
+  if (status == MPS_OK && all > 0) status = mps_mpm_set_material(sim->m.mpm, law, ids, count);
   mps_material_destroy(&law);
   free(ids);
   return status;
@@ -487,7 +489,7 @@ mps_status consolidation_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_law(context, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->kase == STRIP)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   for (int i = 1; i < sim->ground.count && status == MPS_OK; i++)
     status = set_layer(context, sim, &sim->ground.layer[i]);
   if (status == MPS_OK) status = add_case(context, sim);
@@ -529,7 +531,7 @@ static mps_status measure(simulation *sim) {
   if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
   if (status == MPS_OK) status = mps_mpm_get_pore_budget(sim->m.mpm, &water);
   if (status == MPS_OK && has_plate(s))
-    status = mps_mpm_get_reaction(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
+    status = mps_mpm_get_reaction(sim->m.mpm, MPS_SIDE_Y_UPPER, &plate);
   if (status != MPS_OK) return status;
   const double lost = 1.0 - totals.volume / sim->volume;
   now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;

@@ -29,8 +29,9 @@ bool elastic_make(app *a, mps_particles *particles, const elastic_method *method
                         ? app_check(a, mps_experimental_elastic_published(
                                            a->context, particles, &def, method->constant, out))
                         : app_check(a, mps_elastic_create(a->context, particles, &def, out));
-  if (!made || !a->domain) return made;
-  return ranks_solve_elastic(a->context, *out, &a->equations, why, sizeof why) ||
+  if (!made || !a->domain || method->published) return made; /* that, each rank solves alone */
+  return ranks_solve(mps_elastic_solver(*out), MPS_LINEAR_EQUATION_STIFFNESS, 0, &a->equations, why,
+                     sizeof why) ||
          app_error(a, "%s", why);
 }
 

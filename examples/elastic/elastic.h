@@ -8,7 +8,7 @@
 #include "common/options.h"
 
 #include <mps/elastic.h>
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 
 typedef struct elastic_settings {
   double young, poisson;      /* Pa, - */

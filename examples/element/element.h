@@ -8,6 +8,7 @@
 #include "common/output.h"
 
 #include <mps/soil.h>
+#include <mps/experimental/material_point.h>
 
 enum {
   ELASTIC,
@@ -43,6 +44,7 @@ typedef struct settings {
   bool linear;                                      /* softening */
   double bulk, viscosity;                           /* Pa, Pa s */
   double M, lambda, kappa, e0, ocr, shear_modulus;  /* e0: NaN, there is none */
+  double e_max;                                     /* end of dilation; NaN: none */
   bool lode;
   double reference_strain, curvature, strength; /* small strain: 1, 1, Pa */
   double csr;                                   /* cyclic stress ratio; NaN: by strain */

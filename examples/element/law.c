@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "element.h"
 
+#include <mps/experimental/soil.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +19,7 @@ static const struct {
             {"cohesion", "  VTDM   Q"},
             {"phi", "    DM   Q"},
             {"psi", "    DM   Q"},
+            {"emax", "    DM   Q"},
             {"tension", "   TDM    "},
             {"cone", "    D     "},
             {"yield", "  V       "},
@@ -89,6 +91,8 @@ const char *element_settle(settings *s, const option *table) {
   if (s->law == TRESCA) s->phi = s->psi = 0.0;
   if (isnan(s->yield)) s->yield = ROOT3 * s->cohesion;
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (!isnan(s->e_max) && !(s->e0 <= s->e_max))
+    return "--emax asks for --e0, the void ratio at the start, of at most --emax";
   const bool cyclic = element_is_cyclic(s);
   if (s->cycles > 1 && !cyclic) return "--cycles is for --path cyclic, cyclic-triaxial";
   if (s->drained && !cyclic) return "--drained is for --path cyclic, cyclic-triaxial";
@@ -159,12 +163,16 @@ static bool make_von_mises(element *x) {
   return app_check(&x->a, mps_material_create_von_mises(x->a.context, &d, &x->material));
 }
 
+/* The void ratio at the start, where dilation ends at e_max. */
+static double first_voids(const settings *s) { return isnan(s->e_max) ? NAN : s->e0; }
+
 static bool make_mohr_coulomb(element *x) {
   const settings *s = &x->s;
   mps_material_mohr_coulomb_def d = mps_material_mohr_coulomb_defaults();
   d.young = s->young, d.poisson = s->poisson;
   d.friction = s->phi * RADIANS, d.dilation = s->psi * RADIANS;
   d.cohesion = s->cohesion, d.tension = s->tension;
+  d.void_ratio = first_voids(s), d.max_void_ratio = s->e_max;
   d.residual_friction = s->residual_phi * RADIANS;
   d.residual_cohesion =
       s->law == TRESCA && s->residual < 1.0 ? s->residual * s->cohesion : s->residual_cohesion;
@@ -180,6 +188,7 @@ static bool make_drucker_prager(element *x) {
   d.young = s->young, d.poisson = s->poisson, d.cone = s->cone;
   d.friction = s->phi * RADIANS, d.dilation = s->psi * RADIANS;
   d.cohesion = s->cohesion, d.tension = s->tension;
+  d.void_ratio = first_voids(s), d.max_void_ratio = s->e_max;
   return app_check(&x->a, mps_material_create_drucker_prager(x->a.context, &d, &x->material));
 }
 
@@ -191,6 +200,7 @@ static bool make_cyclic_sand(element *x) {
   d.relative_density = s->relative_density, d.blow_count = s->blow_count;
   d.c1 = s->c[0], d.c2 = s->c[1], d.c3 = s->c[2], d.c4 = s->c[3];
   d.threshold = s->threshold, d.strain_limit = s->strain_limit;
+  d.void_ratio = first_voids(s), d.max_void_ratio = s->e_max;
   return app_check(&x->a, mps_material_create_cyclic_sand(x->a.context, &d, &x->material));
 }
 

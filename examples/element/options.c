@@ -33,6 +33,7 @@ settings element_defaults(void) {
                     .lambda = 0.205,
                     .kappa = 0.044,
                     .e0 = NAN,
+                    .e_max = NAN,
                     .ocr = 1.0,
                     .shear_modulus = NAN,
                     .reference_strain = 1e-3,
@@ -133,6 +134,9 @@ static size_t elastic_options(settings *s, option *out) {
                     "vonmises: linear, per plastic strain"),
       COMMON_NUMBER("phi", &s->phi, "druckerprager, mohrcoulomb"),
       COMMON_NUMBER("psi", &s->psi, "at most phi"),
+      OPTION_NUMBER("emax", "1", OPTION_FROM_TO(0.01, 20.0), &s->e_max,
+                    "void ratio at which dilation ends, from --e0, which is emax - Dr (emax - "
+                    "emin); without it dilation has no end"),
       OPTION_NUMBER("tension", "Pa", OPTION_STRENGTH, &s->tension,
                     "largest tension; default: up to the apex"),
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,

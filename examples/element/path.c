@@ -66,6 +66,8 @@ static bool bad(reader *r, const char *what, const char *cell) {
 static bool read_line(reader *r, bool *end) {
   for (*end = false; fgets(r->text, sizeof r->text, r->file);) {
     r->line++;
+    if (r->line == 1 && strncmp(r->text, "\xef\xbb\xbf", 3) == 0) /* a mark of UTF-8 */
+      memmove(r->text, r->text + 3, strlen(r->text + 3) + 1);
     size_t length = strlen(r->text);
     /* a NUL hides the newline that ends the line */
     if ((length == 0 || r->text[length - 1] != '\n') && !feof(r->file))

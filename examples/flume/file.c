@@ -166,9 +166,12 @@ static bool join(document *value) {
     size += strlen(value->child[k].text) + 1;
   }
   value->text = calloc(size, 1);
-  for (int k = 0; value->text && k < value->count; k++) {
-    if (k > 0) strcat(value->text, ",");
-    strcat(value->text, value->child[k].text);
+  char *at = value->text;
+  for (int k = 0; at && k < value->count; k++) {
+    const size_t length = strlen(value->child[k].text);
+    if (k > 0) *at++ = ',';
+    memcpy(at, value->child[k].text, length);
+    at += length;
   }
   return value->text != NULL;
 }

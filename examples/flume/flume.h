@@ -6,12 +6,14 @@
 #include "common/document.h"
 #include "common/output.h"
 #include "common/resume.h"
+#include "common/rows.h"
 #include "common/waves.h"
 
 #include <mps/body.h>
 #include <mps/io.h>
-#include <mps/wave_loads.h>
-#include <mps/waves.h>
+#include <mps/experimental/wave_loads.h>
+#include <mps/experimental/waves.h>
+#include <mps/fluid.h>
 
 enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
 enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
@@ -20,7 +22,7 @@ enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
 enum { FLUME_POINTS = 64, FLUME_ROCKS = 8, FLUME_PROBES = 32, FLUME_GAUGES = 16 };
 enum { FLUME_BED = 0, FLUME_MAKER, FLUME_END, FLUME_BODY }; /* boundaries of the fluid */
 
-/* Radius of the weights in rock, in spacings, at most (mps/fluid_rock.h). */
+/* Radius of the weights in rock, in spacings, at most (mps/experimental/fluid_rock.h). */
 #define FLUME_ROCK_RADIUS 3.6
 
 /* Periods in which water that has passed the crest returns: with q = 1e-3 m2/s of a flume of 1.9 m2
@@ -63,7 +65,7 @@ typedef struct flume_settings {
   flume_rock rock;                              /* of --rock, and what others have by default */
   int64_t seed, frames, animation, threads;
   double every_checkpoint; /* s */
-  const char *file, *out, *checkpoint, *restart, *model, *gauges, *profile, *rocks;
+  const char *file, *column, *out, *checkpoint, *restart, *model, *gauges, *profile, *rocks;
 } flume_settings;
 
 typedef struct flume_sample {
@@ -118,12 +120,14 @@ typedef struct flume {
   int32_t probe_wall[FLUME_PROBES]; /* FLUME_BED, FLUME_END or FLUME_BODY */
   double record_height;             /* m: 4 standard deviations of the record of a file */
   document *text;                   /* the model file; NULL: none */
+  mps_signal *record;               /* of --waves file */
   mps_waves *waves;
   mps_absorber *maker, *end;
   mps_particles *water;
   mps_fluid *fluid;
   mps_recorder *series;
-  flume_sample *sample;
+  result_rows rows;
+  const flume_sample *sample; /* of `rows` */
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
   double offset;            /* m: of the level at the maker's face, which takes it back */
@@ -200,7 +204,8 @@ mps_status flume_fill(const flume *m, mps_particles *water);
 /* waves.c: the sea, and the pistons that absorb. */
 mps_status flume_make_waves(app *a, flume *m);
 mps_status flume_make_pistons(app *a, flume *m);
-/* model.c: water, walls, structure. */
+/* model.c: water, walls, structure; flume_rows sets `sample` from `rows`. */
+void flume_rows(flume *m);
 mps_status flume_build(app *a, flume *m);
 void flume_free(flume *m);
 /* loads.c: weight (N) of a caisson in still water. */

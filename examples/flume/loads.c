@@ -112,10 +112,11 @@ mps_status flume_measure_loads(flume *m, flume_sample *sample) {
 
 static mps_status add_faces(flume *m, int32_t wall, double from, flume_look *look) {
   int64_t count;
-  mps_status status = mps_fluid_get_wall(m->fluid, wall, 0, &count, NULL, NULL);
+  mps_status status = mps_fluid_get_boundary_points(m->fluid, wall, 0, &count, NULL, NULL);
   double *x = calloc(4 * (size_t)count + 1, sizeof *x), *p = x ? x + 3 * count : NULL;
   float *more = NULL;
-  if (status == MPS_OK && x) status = mps_fluid_get_wall(m->fluid, wall, count, &count, x, p);
+  if (status == MPS_OK && x)
+    status = mps_fluid_get_boundary_points(m->fluid, wall, count, &count, x, p);
   if (status == MPS_OK && x)
     more = realloc(look->face, 3 * (size_t)(look->faces + count + 1) * sizeof *more);
   if (more) look->face = more;

@@ -3,11 +3,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
-#include <mps/fluid_rock.h>
+#include <mps/experimental/fluid_rock.h>
+#include <mps/experimental/waves.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define FOLLOWED 30 /* rows: half a period by default */
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
@@ -50,7 +53,7 @@ static mps_status add_zone(const flume *m) {
   mps_fluid_load_def def = mps_fluid_load_defaults();
   def.kind = MPS_FLUID_LOAD_DAMPING;
   def.lower[0] = m->outlet - m->s.zone * m->wave_length, def.upper[0] = m->outlet;
-  def.side = 1;
+  def.rise = 1;
   def.rate = m->s.rate / m->s.period;
   return mps_fluid_add_load(m->fluid, &def, NULL);
 }
@@ -103,15 +106,38 @@ static bool make_looks(flume *m) {
   return good;
 }
 
+void flume_rows(flume *m) {
+  rows_look(&m->rows);
+  m->sample = m->rows.row, m->samples = m->rows.count;
+}
+
 mps_status flume_build(app *a, flume *m) {
+  static const rows_column columns[] = {{"maker", "m", 0},
+                                        {"end", "m", 0},
+                                        {"level", "m", FLUME_GAUGES},
+                                        {"force", "N", 0},
+                                        {"moment", "N m", 0},
+                                        {"uplift", "N", 0},
+                                        {"uplift_moment", "N m", 0},
+                                        {"foot", "Pa", 0},
+                                        {"volume", "m2", 0},
+                                        {"returned", "m2", 0},
+                                        {"water", "m2", 0},
+                                        {"head", "m", 0},
+                                        {"run_up", "m", 0},
+                                        {"resolved", "m", 0},
+                                        {"layer", "m", 0},
+                                        {"probe", "Pa", FLUME_PROBES},
+                                        {0}};
   mps_status status = flume_make_pistons(a, m);
   if (status == MPS_OK) status = make_fluid(a, m);
   m->restarted = NAN;
   m->capacity = (int64_t)ceil(m->s.duration / m->s.sample - 1e-9);
-  m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
   flume_find_rest(m);
   if (status == MPS_OK && flume_is_open(m)) m->filled = flume_count_water(m);
-  return status == MPS_OK && !(m->sample && make_looks(m)) ? MPS_ERROR_MEMORY : status;
+  if (status == MPS_OK) status = rows_begin(&m->rows, mps_fluid_solver(m->fluid), columns);
+  if (status == MPS_OK) status = rows_follow(&m->rows, m->s.out, "history.csv", FOLLOWED);
+  return status == MPS_OK && !make_looks(m) ? MPS_ERROR_MEMORY : status;
 }
 
 void flume_free(flume *m) {
@@ -121,10 +147,11 @@ void flume_free(flume *m) {
   mps_absorber_destroy(&m->maker);
   mps_absorber_destroy(&m->end);
   mps_waves_destroy(&m->waves);
+  mps_signal_destroy(&m->record);
   document_free(m->text);
   for (int64_t k = 0; m->frame && k < m->frame_room; k++) free(m->frame[k].value);
   free(m->frame);
-  free(m->sample);
+  rows_end(&m->rows);
   free(m->look.value);
   free(m->look.face);
   free(m->cells.wet);

@@ -63,7 +63,10 @@ static option table[] = {
      .count = 2,
      .number = model.s.focus,
      .help = "X,T: station (m) and time (s) of the focus"},
-    OPTION_TEXT("file", "FILE", &model.s.file, "time (s) and level (m) in two columns, at x = 0"),
+    OPTION_TEXT(
+        "file", "FILE", &model.s.file,
+        "level at x = 0: columns whose header names time, level and units; s and m without"),
+    OPTION_TEXT("file-column", "NAME", &model.s.column, "of a file with several gauges"),
     OPTION_CHOICE("order", "second|linear|narrow", &model.s.order,
                   "theory of the maker: sums and differences of all pairs of components; linear; "
                   "differences alone, as of a narrow band"),

@@ -1,6 +1,6 @@
-/* restart.c - a run of mps-flume in a file: the state of the fluid, of the pistons, the samples,
- * the water at the largest force and of the animation, and the probes of the model file, which must
- * be those of the run (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
+/* restart.c - a run of mps-flume in a file: the state of the pistons, the water at the largest
+ * force and of the animation, and the probes of the model file, which must be those of the run
+ * (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 
 typedef struct notes {
-  int64_t samples, frames, returned;
+  int64_t frames, returned;
   double due, offset;
   double maker[MPS_ABSORBER_MEMORY], end[MPS_ABSORBER_MEMORY];
   mps_fluid_report report;
@@ -61,28 +61,26 @@ static void pass(void *user, resume_bytes *b) {
   notes n;
   bool good = true;
   memset(&n, 0, sizeof n);
-  n.samples = m->samples, n.frames = m->frames, n.report = m->report;
+  n.frames = m->frames, n.report = m->report;
   n.returned = m->returned, n.due = m->due, n.offset = m->offset;
   if (m->maker) good = good && mps_absorber_get_memory(m->maker, n.maker) == MPS_OK;
   if (m->end) good = good && mps_absorber_get_memory(m->end, n.end) == MPS_OK;
   pass_probes(m, b);
   resume_pass(b, &n, sizeof n);
-  good = good && n.samples >= 0 && n.samples <= m->capacity && n.frames >= 0 &&
-         n.frames <= m->frame_room && n.returned >= 0 && n.due >= 0.0 && n.due <= 1.0 &&
-         fabs(n.offset) <= 1e6;
+  good = good && n.frames >= 0 && n.frames <= m->frame_room && n.returned >= 0 && n.due >= 0.0 &&
+         n.due <= 1.0 && fabs(n.offset) <= 1e6;
   if (resume_wrong(b, !good)) return;
   if (b->reads &&
       resume_wrong(b, !restore_piston(m->maker, n.maker) || !restore_piston(m->end, n.end)))
     return;
-  m->samples = n.samples, m->frames = n.frames, m->report = n.report;
+  m->frames = n.frames, m->report = n.report;
   m->returned = n.returned, m->due = n.due, m->offset = n.offset;
-  resume_pass(b, m->sample, (size_t)m->samples * sizeof *m->sample);
   pass_look(b, &m->look);
   for (int64_t k = 0; k < m->frames; k++) pass_look(b, &m->frame[k]);
 }
 
 static resume parts(flume *m) {
-  return resume_of_fluid("mps-flume 4", m->table, pass, m, m->fluid, m->a);
+  return resume_of_fluid("mps-flume 5", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status flume_save(void *user) {
@@ -98,5 +96,7 @@ mps_status flume_peek(mps_context *context, flume *m) {
 
 mps_status flume_restore(mps_context *context, flume *m) {
   const resume r = parts(m);
-  return resume_go_on(context, &r, m->s.restart, &m->restarted, &m->saves);
+  const mps_status status = resume_go_on(context, &r, m->s.restart, &m->restarted, &m->saves);
+  flume_rows(m);
+  return status;
 }

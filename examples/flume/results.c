@@ -2,6 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
+#include "common/compare.h"
+#include "common/record.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -178,6 +181,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   const bool regular = m->s.waves == FLUME_REGULAR, there = g->separated;
   mps_waves_report waves;
   if (mps_waves_get_report(m->waves, &waves) != MPS_OK) return;
+  if (m->record) record_json(f, m->record);
   json_number(f, "wave_length", m->wave_length);
   json_integer(f, "components", waves.components);
   json_number(f, "stroke", fmax(waves.stroke[1], -waves.stroke[0]));
@@ -225,6 +229,39 @@ static void summarise_absorption(output *f, const flume *m) {
   json_integer_if(f, active, "limited_steps", report.limited);
 }
 
+#define STEEPEST                                                                                   \
+  0.3 /* k H: standing waves of the incident height, up to which linear theory holds */
+#define HIGHEST 0.4       /* H over the depth */
+#define LONGEST 26.3      /* H L^2/depth^3, 8 pi^2/3 */
+#define LEAST_OF_SEA 30.0 /* waves, among which the highest of Goda's is */
+#define LEAST_OF_REGULAR 3.0
+
+static comparison compare_standing(const flume *m, const flume_figures *g) {
+  const double k = 2.0 * WAVES_PI / m->wave_length, H = m->s.height, d = m->s.depth;
+  comparison c = compare_with("a linear standing wave", g->force_harmonic, g->force_linear);
+  compare_require(&c, k * H <= STEEPEST, "k H of these waves is %.2g, and it is of waves below %g",
+                  k * H, STEEPEST);
+  compare_require(&c, H <= HIGHEST * d, "the waves are %.2g of the depth high", H / d);
+  compare_require(&c, H * pow(m->wave_length, 2.0) <= LONGEST * pow(d, 3.0),
+                  "the waves are long: H L^2/depth^3 is %.3g, and linear waves have less than %g",
+                  H * pow(m->wave_length, 2.0) / pow(d, 3.0), LONGEST);
+  return c;
+}
+
+/* Goda's formula is for the highest wave of a sea, or for regular waves of one height. */
+static comparison compare_goda(const flume *m, const flume_figures *g, double force) {
+  const double waves = (g->to - g->from) / m->s.period;
+  const double least = m->s.waves == FLUME_REGULAR ? LEAST_OF_REGULAR : LEAST_OF_SEA;
+  comparison c = compare_with("Goda", force, g->has_goda ? g->goda.force : NAN);
+  compare_require(&c, g->separated, "the incident waves are not known");
+  compare_require(&c, g->has_goda, "his formula does not hold for this wall and these waves");
+  compare_require(&c, m->s.waves != FLUME_FOCUSED, "his force is of a sea, not of a focused wave");
+  compare_require(&c, waves >= least,
+                  "the window has %.0f waves, and the highest of at least %.0f is wanted", waves,
+                  least);
+  return c;
+}
+
 static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   const bool wall = flume_is_loaded(m), caisson = flume_is_caisson(m), body = flume_has_body(m);
   const bool regular = !isnan(g->force_mean);
@@ -234,9 +271,17 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, wall, "force_peak_at", g->peak_at);
   json_number_if(f, regular, "force_peak_mean", g->force_mean);
   json_number_if(f, regular, "force_harmonic", g->force_harmonic);
-  json_number_if(f, regular, "force_harmonic_linear", g->force_linear);
+  const comparison standing = compare_standing(m, g);
+  const comparison goda = compare_goda(m, g, g->force_peak - g->force_still);
+  if (regular)
+    json_comparison(f, "force_harmonic_linear", &standing);
+  else
+    json_number(f, "force_harmonic_linear", NAN);
   json_number_if(f, wall, "foot_peak", g->foot_peak);
-  json_number_if(f, g->has_goda, "force_goda", g->goda.force);
+  if (wall)
+    json_comparison(f, "force_goda", &goda);
+  else
+    json_number(f, "force_goda", NAN);
   json_number_if(f, !isnan(g->force_sainflou), "force_sainflou", g->force_sainflou);
   json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
   json_number_if(f, body, "uplift_peak", g->uplift_peak);
@@ -251,16 +296,24 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   if (body && g->has_goda && !isnan(g->uplift_peak))
     printf("uplift above rest then %.1f N through the bedding, %.1f N as a triangle, Goda %.1f N\n",
            g->uplift_peak, g->uplift_triangle, g->goda.uplift);
-  if (wall && !isnan(g->force_peak) && g->has_goda)
-    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N (%+.1f %%)\n",
-           g->force_peak - g->force_still, g->peak_at, g->goda.force,
-           100.0 * ((g->force_peak - g->force_still) / g->goda.force - 1.0));
-  if (regular && g->has_goda)
-    printf(
-        "mean of the highest force of each wave %.1f N (%+.1f %% of Goda's); first harmonic %.1f "
-        "N, linear theory %.1f N (%+.1f %%)\n",
-        g->force_mean, 100.0 * (g->force_mean / g->goda.force - 1.0), g->force_harmonic,
-        g->force_linear, 100.0 * (g->force_harmonic / g->force_linear - 1.0));
+  if (wall && !isnan(g->force_peak) && g->has_goda) {
+    printf("largest force above rest %.1f N at %.2f s", g->force_peak - g->force_still, g->peak_at);
+    if (compare_holds(&goda))
+      printf(", Goda %.1f N (%+.1f %%)", goda.reference, 100.0 * compare_error(&goda));
+    printf("\n");
+    compare_tell(&goda);
+  }
+  if (regular && g->has_goda) {
+    printf("mean of the highest force of each wave %.1f N", g->force_mean);
+    if (compare_holds(&goda))
+      printf(" (%+.1f %% of Goda's)", 100.0 * (g->force_mean / goda.reference - 1.0));
+    printf("; first harmonic %.1f N", g->force_harmonic);
+    if (compare_holds(&standing))
+      printf(", linear theory %.1f N (%+.1f %%)", standing.reference,
+             100.0 * compare_error(&standing));
+    printf("\n");
+    compare_tell(&standing);
+  }
 }
 
 static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
@@ -340,6 +393,7 @@ bool flume_write(app *a, flume *m) {
   if (good && flume_has_slope(m)) good = write_run_up(a, m);
   if (good && g.separated) good = write_waves(a, m, &g) && write_spectrum(a, m, &g);
   if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
+  if (good) good = app_check(a, mps_history_flush(m->rows.history));
   good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);
   flume_free_figures(&g);
   if (good) app_tell_results(a, m->s.out);

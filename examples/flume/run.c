@@ -5,6 +5,7 @@
 
 #include "common/frame.h"
 
+#include <mps/experimental/fluid_parts.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -20,7 +21,7 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
   mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, &level);
   level -= m->s.depth + m->offset;
   if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level, moved, &u);
-  return status == MPS_OK ? mps_fluid_set_wall_motion(m->fluid, wall, moved, &u) : status;
+  return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
 }
 
 static double place_of(const mps_absorber *piston) {
@@ -59,7 +60,7 @@ static mps_status move_maker(flume *m, double dt) {
   if (m->maker)
     return move_piston(m, m->maker, FLUME_MAKER, place_of(m->maker) + 0.5 * m->s.spacing, dt, &s);
   const mps_status status = mps_waves_get_piston(m->waves, 1, &t, &s, &u, NULL, NULL);
-  return status == MPS_OK ? mps_fluid_set_wall_motion(m->fluid, FLUME_MAKER, &s, &u) : status;
+  return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, FLUME_MAKER, &s, &u) : status;
 }
 
 static mps_status keep_memory(const mps_absorber *piston, double *memory) {
@@ -145,8 +146,9 @@ static mps_status take_sample(flume *m) {
   if (status != MPS_OK) return status;
   sample.maker = flume_maker_place(m);
   sample.end = place_of(m->end);
-  m->sample[m->samples++] = sample;
-  status = take_frame(m);
+  status = rows_add(&m->rows, &sample);
+  flume_rows(m);
+  if (status == MPS_OK) status = take_frame(m);
   return status == MPS_OK ? take_look(m, &sample) : status;
 }
 

@@ -32,6 +32,7 @@ int flume_check_unused(const options_program *program, const flume *m) {
       {"seed", "--waves jonswap or pm", sea},
       {"random", "--waves jonswap or pm", sea},
       {"focus", "--waves focused", s->waves == FLUME_FOCUSED},
+      {"file-column", "--waves file", s->waves == FLUME_FILE},
       {"file", "--waves file", s->waves == FLUME_FILE},
       {"form", "--absorb active", s->absorb == FLUME_ACTIVE},
       {"zone", "--absorb zone", s->absorb == FLUME_ZONE},

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
+#include "common/record.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +13,8 @@ enum { POINTS = 40 }; /* a period, of a record read from a file */
 
 static mps_waves_def definition(const flume_settings *s) {
   mps_waves_def def = mps_waves_defaults();
-  static const int32_t kinds[] = {MPS_WAVES_KIND_REGULAR, MPS_WAVES_KIND_JONSWAP,
-                                  MPS_WAVES_KIND_PIERSON_MOSKOWITZ, MPS_WAVES_KIND_JONSWAP,
-                                  MPS_WAVES_KIND_RECORD};
+  static const int32_t kinds[] = {MPS_WAVES_REGULAR, MPS_WAVES_JONSWAP, MPS_WAVES_PIERSON_MOSKOWITZ,
+                                  MPS_WAVES_JONSWAP, MPS_WAVES_RECORD};
   def.kind = kinds[s->waves];
   def.theory = s->order;
   def.depth = s->depth, def.gravity = WAVES_G;
@@ -44,8 +45,9 @@ static mps_status read_file(app *a, flume *m, mps_waves_def *def, double **room)
   mps_signal_record_def record = mps_signal_record_defaults();
   mps_signal *signal = NULL;
   double start, end;
-  record.format = MPS_SIGNAL_RECORD_CSV, record.quantity = MPS_SIGNAL_QUANTITY_DISPLACEMENT;
-  const mps_status status = mps_signal_create_record(a->context, s->file, &record, &signal);
+  record.column = s->column, record.format = MPS_SIGNAL_RECORD_FORMAT_CSV;
+  record.quantity = MPS_SIGNAL_QUANTITY_DISPLACEMENT;
+  const mps_status status = record_read(a, "file", s->file, &record, &signal);
   if (status != MPS_OK) return status;
   mps_signal_span(signal, &start, &end);
   def->samples = (int64_t)fmin(fmax(ceil(POINTS * (end - start) / s->period), 16.0), 2e6);
@@ -59,7 +61,7 @@ static mps_status read_file(app *a, flume *m, mps_waves_def *def, double **room)
     def->times = t, def->levels = level;
     m->record_height = height_of(def->samples, level);
   }
-  mps_signal_destroy(&signal);
+  m->record = signal;
   return *room ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
@@ -77,7 +79,7 @@ static void find_line(app *a, flume *m) {
 mps_status flume_make_waves(app *a, flume *m) {
   mps_waves_def def = definition(&m->s);
   double *room = NULL;
-  mps_waves_report report;
+  mps_waves_report report = {0};
   mps_status status = MPS_OK;
   if (m->s.waves == FLUME_FILE) status = read_file(a, m, &def, &room);
   if (status == MPS_OK) status = mps_waves_create(a->context, &def, &m->waves);
@@ -85,6 +87,13 @@ mps_status flume_make_waves(app *a, flume *m) {
   if (status == MPS_ERROR_ARGUMENT) find_line(a, m);
   if (status == MPS_OK) status = mps_waves_get_report(m->waves, &report);
   if (status == MPS_OK) m->wave_length = 2.0 * WAVES_PI / report.wave_number;
+  const double most = fmax(report.stroke[1], -report.stroke[0]);
+  if (status == MPS_OK && !(most < m->s.length)) {
+    snprintf(m->why, sizeof m->why,
+             "these waves need a maker that moves by %.3g m, must be below --length %g m", most,
+             m->s.length);
+    status = MPS_ERROR_ARGUMENT;
+  }
   return app_settle(a, status);
 }
 

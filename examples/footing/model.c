@@ -3,9 +3,9 @@
 #include "common/ranks.h"
 #include "footing.h"
 
-#include <mps/geostatic.h>
-#include <mps/mpm_settle.h>
 #include <mps/soil.h>
+#include <mps/experimental/settle.h>
+#include <mps/experimental/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,8 +50,9 @@ const char *footing_settle(settings *s, const option *table) {
   if (!options_lengths(s->domain, "m", 2, sides))
     return "--domain must be two lengths in m, WxH, such as 5x2";
   if (!cone &&
-      (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
-    return "--phi, --psi and --cone are for --model druckerprager";
+      (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "e0") ||
+       options_given(table, "emax") || options_given(table, "cone")))
+    return "--phi, --psi, --e0, --emax and --cone are for --model druckerprager";
   if (cone && s->shape == CIRCLE) return "--shape circle is for --model vonmises";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
@@ -80,10 +81,14 @@ const char *footing_settle(settings *s, const option *table) {
   if (isnan(s->rate)) s->rate = (s->settled ? 1.5e-3 : 0.5e-3) * (cone ? 1.0 : faster(s));
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (sand_check(&s->voids)) return sand_check(&s->voids);
   if (isnan(s->settlement)) s->settlement = cone ? 4e-3 : clay_settlement(s);
   if (s->settlement > 0.5 * s->half_width)
     return "--settlement must be at most half of --half-width";
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
+  if (s->section > s->width || s->section < (footing_is_whole(s) ? -s->width : 0.0))
+    return "--section must be in the ground, whose left side is 0, or of an eccentric load the "
+           "width of --domain to the left";
   return NULL;
 }
 
@@ -221,6 +226,7 @@ static mps_status make_material(mps_context *context, const settings *s, mps_par
   law.cone = s->cone;
   law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
+  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   return mps_material_create_drucker_prager(context, &law, out);
 }
 
@@ -247,7 +253,7 @@ static mps_status add_layer_and_surcharge(mps_context *context, const settings *
   if (status == MPS_OK && s->top > 0.0) {
     status = choose(s, set, 0.0, s->depth - s->top, &count, ids);
     if (status == MPS_OK) status = make_clay(context, s, s->top_cohesion, &clay);
-    if (status == MPS_OK && count > 0) status = mps_mpm_set_material(m->mpm, clay, count, ids);
+    if (status == MPS_OK && count > 0) status = mps_mpm_set_material(m->mpm, clay, ids, count);
     mps_material_destroy(&clay);
   }
   if (status == MPS_OK && s->surcharge > 0.0) {
@@ -265,16 +271,17 @@ mps_status footing_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   sim->samples = s->settled ? FOOTING_SETTLED : FOOTING_SAMPLES;
+  static const rows_column columns[] = {
+      {"settlement", "m", 0}, {"pressure", "Pa", 0}, {"impulse", "N s", 0}, {0}};
   const double end = s->settlement / s->rate;
   sim->course = (mpm_course){.options = &s->course,
                              .m = &sim->m,
                              .directory = s->out,
                              .what = "ground",
                              .duration = end,
-                             .key = "mps-footing 3",
+                             .key = "mps-footing 4",
                              .table = options_read(),
-                             .pass = footing_pass,
-                             .user = sim};
+                             .columns = columns};
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_ground(context, s, &sim->m);
   if (status == MPS_OK) status = make_material(context, s, sim->m.particles, &sim->m.material);
@@ -291,12 +298,10 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_footing(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
   if (status == MPS_OK) status = add_layer_and_surcharge(context, s, &sim->m);
-  if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
-  sim->m.samples = sim->rows;
-  return status;
+  return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }
 
 /* Area of the base that the force of the model acts on: half a strip 1 m long, all of it under an
@@ -317,23 +322,21 @@ static mps_status take_sample(simulation *sim) {
   mps_status status = mps_body_get_reaction(sim->m.body[0], -1, &reaction);
   if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &body);
   if (status != MPS_OK) return status;
-  const double t = mps_mpm_time(sim->m.mpm);
-  const double force = s->settled
-                           ? reaction.force[1]
-                           : (reaction.impulse[1] - sim->last_impulse) / (t - sim->last_time);
-  sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
-  sim->q[sim->rows++] = force / footing_area(s);
-  sim->m.samples = sim->rows;
-  sim->last_impulse = reaction.impulse[1];
-  sim->last_time = t;
-  return MPS_OK;
+  const int rows = footing_rows(sim);
+  const footing_row last = rows > 0 ? *footing_row_of(sim, rows - 1) : (footing_row){0};
+  footing_row now = {.t = mps_mpm_time(sim->m.mpm), .impulse = reaction.impulse[1]};
+  const double force =
+      s->settled ? reaction.force[1] : (now.impulse - last.impulse) / (now.t - last.t);
+  now.path = s->depth + 0.5 * s->half_width - body.position[1];
+  now.q = force / footing_area(s);
+  return mpm_course_add(&sim->course, &now);
 }
 
 /* Brings the ground to rest, or continues doing so where Ctrl-C has cut it short. The pressure
  * falls as long as that lasts: where it is measured, the tolerance is the user's. */
 static mps_status come_to_rest(simulation *sim) {
   mps_mpm_settle_def rest = mps_mpm_settle_defaults();
-  rest.tolerance = 2 * sim->rows < sim->samples ? TOLERANCE : sim->s.tolerance;
+  rest.tolerance = 2 * footing_rows(sim) < sim->samples ? TOLERANCE : sim->s.tolerance;
   rest.max_steps = SETTLE_STEPS;
   return mps_mpm_settle(sim->m.mpm, &rest, NULL);
 }
@@ -345,15 +348,16 @@ mps_status footing_march(void *user) {
   mps_particles *whole;
   mps_status status = MPS_OK;
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->t_end);
-  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, sim->samples);
-  while (sim->rows < sim->samples && status == MPS_OK) {
-    const double t = sim->t_end * (sim->rows + 1) / sim->samples;
+  if (footing_rows(sim) == 0) status = mpm_course_sample(&sim->course, 0, sim->samples);
+  while (footing_rows(sim) < sim->samples && status == MPS_OK) {
+    const double t = sim->t_end * (footing_rows(sim) + 1) / sim->samples;
     status = mpm_model_advance(&sim->m, t, INT64_MAX, NULL, NULL);
     if (status == MPS_OK && sim->s.settled) status = come_to_rest(sim);
     if (status == MPS_OK) status = take_sample(sim);
-    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, sim->samples);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, footing_rows(sim), sim->samples);
   }
   status = mpm_course_end(&sim->course, status);
-  const mps_status brought = mpm_model_whole(&sim->m, &whole); /* for footing_finish */
+  mps_status brought = mpm_model_whole(&sim->m, &whole); /* for footing_finish */
+  if (brought == MPS_OK && status == MPS_OK) brought = footing_take_section(sim);
   return status == MPS_OK ? brought : status;
 }

@@ -1,6 +1,7 @@
 /* results.c - exact capacity, tables and pictures of mps-footing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/area.h"
+#include "common/compare.h"
 #include "common/plot.h"
 #include "footing.h"
 
@@ -12,7 +13,9 @@
 
 enum { LINES = 40 };
 
-#define GROWTH 0.1 /* of the pressure, over the second half of the path: more is no capacity */
+#define GROWTH 0.1   /* of the pressure, over the second half of the path: more is no capacity */
+#define FASTEST 0.08 /* of the capacity: v (rho G)^1/2, at which inertia adds some 5 % */
+#define DEEPEST 0.05 /* of the half width: limit analysis knows the ground's first shape only */
 
 /* q/c of the run, and the reference values. */
 typedef struct capacity {
@@ -21,23 +24,31 @@ typedef struct capacity {
   double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
                                   per mm: limit analysis knows the ground's first shape only */
   double smooth, rough, exact; /* limits; NaN where the base is neither */
+  double growth;               /* of the pressure, over the second half of the path */
+  comparison limit;            /* of the capacity with `exact` */
 } capacity;
 
 static void fit_path(const simulation *sim, capacity *c) {
-  const int first = sim->rows / 2, n = sim->rows - first;
+  const int first = footing_rows(sim) / 2, n = footing_rows(sim) - first;
   const double unit = c->unit;
   double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
   c->last = 0.0;
-  for (int k = first; k < sim->rows; k++) x += sim->path[k] * 1e3 / n, q += sim->q[k] / unit / n;
-  for (int k = first; k < sim->rows; k++) {
-    const double dx = sim->path[k] * 1e3 - x;
+  for (int k = first; k < footing_rows(sim); k++)
+    x += footing_row_of(sim, k)->path * 1e3 / n, q += footing_row_of(sim, k)->q / unit / n;
+  for (int k = first; k < footing_rows(sim); k++) {
+    const double dx = footing_row_of(sim, k)->path * 1e3 - x;
     xx += dx * dx;
-    xq += dx * (sim->q[k] / unit - q);
+    xq += dx * (footing_row_of(sim, k)->q / unit - q);
   }
   c->slope = xq / xx;
   c->undeformed = q - c->slope * x;
-  const int fifth = sim->rows < 5 ? 1 : sim->rows / 5;
-  for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
+  const int fifth = footing_rows(sim) < 5 ? 1 : footing_rows(sim) / 5;
+  for (int k = footing_rows(sim) - fifth; k < footing_rows(sim); k++)
+    c->last += footing_row_of(sim, k)->q / unit / fifth;
+  const double path = (footing_row_of(sim, footing_rows(sim) - 1)->path -
+                       footing_row_of(sim, footing_rows(sim) / 2)->path) *
+                      1e3;
+  c->growth = c->slope * path / c->last;
 }
 
 /* The limit by characteristics, which supposes associated flow; its error falls with the square of
@@ -82,19 +93,62 @@ static void find_cohesive_limits(const settings *s, capacity *c) {
   c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
 }
 
+static const char *source_of(const settings *s) {
+  return s->model == DRUCKER_PRAGER || s->gradient > 0.0 ? "characteristics"
+         : footing_is_thin(s)                            ? "Meyerhof and Chaplin"
+         : footing_is_whole(s)                           ? "Meyerhof, B - 2 e"
+         : s->shape == STRIP                             ? "Prandtl"
+                                                         : "Shield, Eason";
+}
+
+/* Of a rigid, perfectly plastic ground, slowly, before its shape changes. */
+static comparison compare_limit(const simulation *sim, const capacity *c) {
+  const settings *s = &sim->s;
+  const bool cone = s->model == DRUCKER_PRAGER;
+  const double shear = s->young / (2.0 + 2.0 * s->poisson);
+  const double inertia = s->settled ? 0.0 : s->rate * sqrt(s->density * shear);
+  const double width = footing_is_whole(s) ? 1.0 - s->eccentricity / s->half_width : 1.0;
+  const double most = (isnan(c->exact) ? fmax(c->smooth, c->rough) : c->exact) / width;
+  comparison out = compare_with(source_of(s), cone ? c->undeformed : c->last, c->exact);
+  compare_require(&out, s->top == 0.0,
+                  "ground of two layers is known by bounds alone, not by an exact capacity");
+  compare_require(&out, !cone || s->psi == s->phi,
+                  "--psi is below --phi: the exact capacity is of associated flow");
+  compare_require(&out, s->settlement <= DEEPEST * s->half_width,
+                  "the footing is pressed by %.2g of its half width, and the capacity is of ground "
+                  "in its first shape",
+                  s->settlement / s->half_width);
+  compare_require(&out, !(c->growth > GROWTH),
+                  "the pressure grows by %.0f %% over the second half of the path: the ground has "
+                  "not reached its bearing capacity",
+                  100.0 * c->growth);
+  compare_require(&out, !(inertia > FASTEST * most * c->unit),
+                  "the footing moves at %g mm/s: the inertia of the ground, v (rho G)^1/2, is %.2g "
+                  "of the capacity",
+                  1e3 * s->rate, inertia / (most * c->unit));
+  return out;
+}
+
 static capacity measure(const simulation *sim) {
   const settings *s = &sim->s;
   capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
   c.unit = s->top > 0.0 ? s->top_cohesion : s->cohesion;
-  c.last = c.undeformed = c.slope = NAN; /* the ground bears more until the end of the path */
-  if (sim->rows == sim->samples) fit_path(sim, &c);
+  /* the ground bears more until the end of the path */
+  c.last = c.undeformed = c.slope = c.growth = NAN;
+  if (footing_rows(sim) == sim->samples) fit_path(sim, &c);
   if (s->model == VON_MISES) {
     find_cohesive_limits(s, &c);
-    return c;
+  } else {
+    c.smooth = limit(s, false);
+    c.rough = limit(s, true);
+    c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
   }
-  c.smooth = limit(s, false);
-  c.rough = limit(s, true);
-  c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
+  c.limit = compare_limit(sim, &c);
+  if (c.limit.reason[0]) c.smooth = c.rough = c.exact = NAN;
+  compare_require(&c.limit, !isnan(c.exact),
+                  "it is of a smooth or a rough base, between which the friction of this one, %g, "
+                  "lies",
+                  s->mu);
   return c;
 }
 
@@ -104,8 +158,9 @@ static bool write_pressure(app *a, const settings *s, const simulation *sim, con
   output f;
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
   csv_header(&f, "settlement_mm,q_kPa,q_over_c");
-  for (int k = 0; k < sim->rows; k++) {
-    const double row[] = {sim->path[k] * 1e3, sim->q[k] * 1e-3, sim->q[k] / c->unit};
+  for (int k = 0; k < footing_rows(sim); k++) {
+    const double row[] = {footing_row_of(sim, k)->path * 1e3, footing_row_of(sim, k)->q * 1e-3,
+                          footing_row_of(sim, k)->q / c->unit};
     csv_row(&f, 3, row);
   }
   return output_close(&f);
@@ -144,6 +199,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
   json_number(&f, "h", s->h);
   json_number(&f, "flip_time", s->flip_time);
+  sand_write(&f, &s->voids, s->model == DRUCKER_PRAGER ? s->psi : 0.0);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
   json_number(&f, "rate", s->rate);
@@ -157,7 +213,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "q_over_c", c->last);
   json_number(&f, "q_over_c_undeformed", c->undeformed);
   json_number(&f, "q_over_c_per_mm", c->slope);
-  json_number(&f, "q_exact", c->exact);
+  json_comparison(&f, "q_exact", &c->limit);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
   /* Over the last fifth of the path: N_q, N_gamma where there is nothing else that bears. */
@@ -236,7 +292,8 @@ static bool image_bands(app *a, const settings *s, const simulation *sim, const 
     row[3 * k + 1] = *mps_view_f64(&x, k, 1);
     row[3 * k + 2] = *mps_view_f64(&strain, k, 0);
   }
-  const double base[2] = {s->half_width, s->depth - sim->path[sim->rows - 1]};
+  const double base[2] = {s->half_width,
+                          s->depth - footing_row_of(sim, footing_rows(sim) - 1)->path};
   const area_def def = {.spacing = mps_particles_spacing(set),
                         .slit = AREA_SLIT_SHEARED,
                         .lower = {lower[0], lower[1]},
@@ -268,7 +325,7 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
               "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
               "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n",
               left, upper[0], lower[1], top, fmax(left, -s->half_width),
-              s->depth - sim->path[sim->rows - 1], s->half_width, top);
+              s->depth - footing_row_of(sim, footing_rows(sim) - 1)->path, s->half_width, top);
   plot_colours(&f, 0.0, 0.5 * sim->strain, image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "shear_bands.bin", &image, 1.0, 1.0);
@@ -283,63 +340,48 @@ static void print(const settings *s, const capacity *c) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
-  if (s->top > 0.0) {
-    printf("bearing capacity q/c %.3f, c that of the upper layer\n", c->last);
-    return;
-  }
-  if (s->model == VON_MISES && isnan(c->exact) && isnan(c->rough)) {
-    printf(
-        "bearing capacity q/c %.3f (smooth base %.3f; no characteristics found of a rough one)\n",
-        c->last, c->smooth);
-    return;
-  }
-  if (s->model == VON_MISES && isnan(c->exact) && isnan(c->smooth)) {
-    printf("bearing capacity q/c %.3f (rough base %.3f)\n", c->last, c->rough);
-    return;
-  }
-  if (s->model == VON_MISES && isnan(c->exact)) {
-    printf("bearing capacity q/c %.3f (smooth base %.2f, rough %.2f)\n", c->last, c->smooth,
-           c->rough);
-    return;
-  }
-  if (s->model == VON_MISES) {
-    printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
-           footing_is_thin(s)    ? "thin layer, rough base"
-           : footing_is_whole(s) ? "Meyerhof, B - 2 e"
-           : s->gradient > 0.0   ? "characteristics"
-           : s->shape == STRIP   ? "Prandtl"
-           : s->mu > 0.0         ? "rough base"
-                                 : "smooth base",
-           c->exact, 100.0 * (c->last / c->exact - 1.0));
-    return;
-  }
-  printf("bearing capacity q/c %.2f, taken back to no settlement %.2f; exact: ", c->last,
-         c->undeformed);
-  if (isnan(c->exact))
-    printf("smooth base %.2f, rough %.2f\n", c->smooth, c->rough);
-  else
-    printf("%.2f (%s base), %+.1f %%\n", c->exact, s->mu > 0.0 ? "rough" : "smooth",
-           100.0 * (c->undeformed / c->exact - 1.0));
+  const bool cone = s->model == DRUCKER_PRAGER;
+  printf("bearing capacity q/c %.*f", cone ? 2 : 3, c->last);
+  if (s->top > 0.0) printf(", c that of the upper layer");
+  if (cone) printf(", taken back to no settlement %.2f", c->undeformed);
+  if (compare_holds(&c->limit) && cone)
+    printf("; exact: %.2f (%s base), %+.1f %%", c->exact, s->mu > 0.0 ? "rough" : "smooth",
+           100.0 * compare_error(&c->limit));
+  else if (compare_holds(&c->limit))
+    printf(" (%s %.3f, %+.1f %%)",
+           footing_is_thin(s)                  ? "thin layer, rough base"
+           : s->shape == CIRCLE && s->mu > 0.0 ? "rough base"
+           : s->shape == CIRCLE                ? "smooth base"
+                                               : c->limit.source,
+           c->exact, 100.0 * compare_error(&c->limit));
+  else if (!isnan(c->smooth) && !isnan(c->rough))
+    printf(" (smooth base %.2f, rough %.2f)", c->smooth, c->rough);
+  else if (!isnan(c->smooth))
+    printf(" (smooth base %.3f; no characteristics found of a rough one)", c->smooth);
+  else if (!isnan(c->rough))
+    printf(" (rough base %.3f)", c->rough);
+  printf("\n");
+  compare_tell(&c->limit);
+  if (cone) sand_print(&s->voids, s->psi);
 }
 
 /* Ground whose pressure still grows has not reached its bearing capacity, and the line through it
  * means nothing. */
-static void warn_of_growth(app *a, const simulation *sim, const capacity *c) {
-  const double growth = c->slope * (sim->path[sim->rows - 1] - sim->path[sim->rows / 2]) * 1e3;
-  if (growth > GROWTH * c->last)
+static void warn_of_growth(app *a, const capacity *c) {
+  if (c->growth > GROWTH)
     app_warn(a,
              "the pressure grows by %.0f %% over the second half of the path: the ground has not "
              "reached its bearing capacity, take a longer --settlement",
-             100.0 * growth / c->last);
+             100.0 * c->growth);
 }
 
 bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   const capacity c = measure(sim);
-  if (!isnan(c.last)) warn_of_growth(a, sim, &c); /* before the summary, which lists it */
+  if (!isnan(c.last)) warn_of_growth(a, &c); /* before the summary, which lists it */
   if (!write_pressure(a, s, sim, &c) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
-      !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
+      !draw_pressure(a, s, &c) || !draw_bands(a, s, sim) || !footing_write_section(a, sim))
     return false;
   app_tell_results(a, s->out);
   print(s, &c);

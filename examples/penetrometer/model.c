@@ -68,6 +68,8 @@ const char *pen_check(penetrometer *p, const option *table) {
   const double edge = nearbyint(cbrt((double)s->ppc));
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (isnan(s->e0)) s->e0 = s->law == PEN_SAND ? SAND_E0 : 1.4;
+  if (s->law == PEN_SAND && s->e0 > s->e_max) return "--emax must be at least --e0";
   reason = pen_check_soil(p, table);
   if (reason) return reason;
   if (s->alpha > 0.0 && s->contact == MPS_CONTACT_METHOD_PENALTY)

@@ -9,6 +9,7 @@
 
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
+#include "common/sand.h"
 
 #define PEN_PI 3.14159265358979323846
 #define PEN_WATER 1000.0 /* kg/m3, in pores */
@@ -32,10 +33,11 @@ typedef struct pen_settings {
   double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
   double width, breadth, height;           /* what `soil` says */
+  double e_max;                            /* of sand */
   double cohesion, phi, psi;               /* Pa, degrees */
   double young, poisson, density, gravity; /* Pa, 1, kg/m3, m/s2; NaN: by the law */
   double surcharge, k0, ir;                /* Pa, horizontal over vertical stress, G/su */
-  double M, lambda, kappa, e0, ocr;        /* of Cam-Clay */
+  double M, lambda, kappa, e0, ocr;        /* of Cam-Clay; e0 of sand too */
   double permeability;                     /* m/s; NaN: undrained */
   double h, courant, flip_time;            /* m, 1, s; NaN: by law and speed */
   bool axisymmetric, no_space;

@@ -2,16 +2,24 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
+#include "common/compare.h"
 #include "common/frame.h"
 
-#include <mps/pore_water.h>
+#include <mps/experimental/pore_water.h>
 
 #include <math.h>
 #include <stdio.h>
 
 #define LAST 0.2 /* of the path: means for the summary */
-/* v D/c_v, above which a warning: N_kt by implicit pressures was right at 33, 9 % low at 335. */
-#define MOST_SPEED 100.0
+/* A deep cone: its tip so far below the surface, and on its way, in diameters. */
+#define DEEP 5.0
+#define UNDER_WAY 1.0
+#define WIDE 0.8 /* of the plastic zone's radius, R Ir^1/2: half the width of the ground */
+/* Hertz: the contact radius over that of the sphere, the width of the ground over it, and the part
+ * of the force that is a dashpot's. */
+#define SHALLOW 0.3
+#define HALF_SPACE 8.0
+#define SLOWLY 0.05
 
 double pen_hertz(const penetrometer *p, double depth) {
   const double stiffness = p->s.young / (1.0 - p->s.poisson * p->s.poisson);
@@ -89,6 +97,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_text(f, "geometry", p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric");
   json_number(f, "h", s->h);
   json_number(f, "flip_time", s->flip_time);
+  sand_write(f, &(sand_voids){s->e0, s->e_max}, s->law == PEN_SAND ? s->psi : 0.0);
   json_number(f, "diameter", s->diameter);
   json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);
@@ -109,10 +118,76 @@ static double speed_of(const pen_settings *s) {
   return s->rate * s->diameter / c_v;
 }
 
+/* Solutions of a deep, smooth cone of 60 degrees in undrained, perfectly plastic ground. */
+static comparison compare_cone(const penetrometer *p, const mean *m, const char *source,
+                               double value, double reference) {
+  const pen_settings *s = &p->s;
+  const double zone = WIDE * sqrt(p->state.shear / p->state.strength) * pen_radius(p);
+  const double shear = sqrt(p->state.shear / s->density);
+  comparison c = compare_with(source, value, reference);
+  compare_require(&c, s->tip == PEN_CONE, "it is of a cone");
+  compare_require(&c, fabs(s->angle - 60.0) <= 1e-9, "it is of a cone of 60 degrees");
+  compare_require(&c, s->friction == 0.0, "it is of a smooth cone");
+  compare_require(&c, isnan(speed_of(s)), "it is of undrained ground, and water flows");
+  compare_require(&c, m->depth >= DEEP * s->diameter,
+                  "it is of a deep cone, from %g diameters on, and this one is at %.3g", DEEP,
+                  m->depth / s->diameter);
+  compare_require(&c, m->depth - s->start >= UNDER_WAY * s->diameter,
+                  "the cone is %.2g diameters on its way, and its resistance is steady from %g on",
+                  (m->depth - s->start) / s->diameter, UNDER_WAY);
+  compare_require(&c, p->run[0].size[0] >= zone,
+                  "the ground is %.3g m wide to each side, its plastic zone would be %.3g m",
+                  p->run[0].size[0], zone);
+  compare_require(&c, s->rate <= SLOWLY * shear,
+                  "the cone moves at %.2g times the velocity of shear waves: inertia counts",
+                  s->rate / shear);
+  return c;
+}
+
+typedef struct cone_theory {
+  pen_factor n;
+  comparison teh_houlsby, lu;
+} cone_theory;
+
+static cone_theory find_cone(const penetrometer *p, const mean *m) {
+  cone_theory t = {.n = pen_factor_of(p, m->force[PEN_TIP] / base_area(p), m->depth)};
+  const double Ir = t.n.rigidity;
+  t.teh_houlsby = compare_cone(p, m, "Teh and Houlsby", t.n.n_kt, t.n.teh_houlsby);
+  compare_require(&t.teh_houlsby, Ir >= 50.0 * (1.0 - 1e-9) && Ir <= 500.0 * (1.0 + 1e-9),
+                  "it is of Ir = 50 to 500, here it is %.4g", Ir);
+  t.lu = compare_cone(p, m, "Lu et al.", t.n.n_kt, t.n.lu);
+  return t;
+}
+
+/* A smooth sphere on an elastic half space, slowly, and shallow beside its radius. */
+static comparison compare_hertz(const penetrometer *p, const mean *m) {
+  const pen_settings *s = &p->s;
+  const double R = pen_radius(p), a = sqrt(R * fmax(0.0, m->depth));
+  const double G = 0.5 * s->young / (1.0 + s->poisson);
+  const double dashpot = 3.4 * a * a * sqrt(G * s->density) / (1.0 - s->poisson) * s->rate;
+  const int up = p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1;
+  const double least = fmin(p->run[0].size[0], p->run[0].size[up]);
+  comparison c = compare_with("Hertz", m->force[PEN_TOTAL], m->hertz);
+  compare_require(&c, m->depth > 0.0, "the sphere has not reached the ground");
+  compare_require(&c, s->friction == 0.0, "it is of a smooth sphere");
+  compare_require(&c, s->start == 0.0, "it is of a sphere on the surface");
+  compare_require(&c, a <= SHALLOW * R,
+                  "the contact's radius is %.2g of the sphere's, and it is of a small one", a / R);
+  compare_require(&c, least >= HALF_SPACE * a,
+                  "the ground is %.3g contact radii wide to each side or deep, less than %g: it is "
+                  "of a half space",
+                  least / a, HALF_SPACE);
+  compare_require(&c, dashpot <= SLOWLY * m->hertz,
+                  "at this speed the waves that leave take %.0f %% of the force",
+                  100.0 * dashpot / m->hertz);
+  return c;
+}
+
 /* Undrained ground: the net cone factor and what it refers to. */
 static void write_factor(output *f, const penetrometer *p, const mean *m) {
   const pen_settings *s = &p->s;
-  const pen_factor n = pen_factor_of(p, m->force[PEN_TIP] / base_area(p), m->depth);
+  const cone_theory t = find_cone(p, m);
+  const pen_factor n = t.n;
   if (s->start > 0.0) json_number(f, "start", s->start);
   if (s->surcharge > 0.0) json_number(f, "surcharge", s->surcharge);
   if (p->hold > 0.0) json_number(f, "q_at_rest", p->run[0].rest / base_area(p));
@@ -122,8 +197,8 @@ static void write_factor(output *f, const penetrometer *p, const mean *m) {
   json_number(f, "vertical_stress", n.vertical);
   json_number(f, "stress_deviation", n.deviation);
   json_number(f, "n_kt", n.n_kt);
-  if (isfinite(n.teh_houlsby)) json_number(f, "n_kt_teh_houlsby", n.teh_houlsby);
-  if (isfinite(n.lu)) json_number(f, "n_kt_lu", n.lu);
+  json_comparison(f, "n_kt_teh_houlsby", &t.teh_houlsby);
+  json_comparison(f, "n_kt_lu", &t.lu);
   if (!isnan(speed_of(s))) json_number(f, "v_d_over_cv", speed_of(s));
 }
 
@@ -131,12 +206,6 @@ static void write_factor(output *f, const penetrometer *p, const mean *m) {
 static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   const pen_run *r = &p->run[0], *other = &p->run[p->runs - 1];
   output f;
-  if (speed_of(&p->s) > MOST_SPEED)
-    app_warn(a,
-             "V = v D/c_v is %.3g: hardly any water flows, and the implicit pressures of "
-             "--permeability lag: N_kt comes out up to 10 %% too low; undrained ground (without "
-             "--permeability) is nearer",
-             speed_of(&p->s));
   if (!mpm_model_summary(a, &r->m, p->s.out, &f)) return false;
   write_settings(&f, p);
   json_number(&f, "depth", pen_reached(r));
@@ -148,8 +217,9 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
     json_number(&f, "n_factor", m[0].force[PEN_TIP] / base_area(p) / p->s.cohesion);
   write_factor(&f, p, &m[0]);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE) {
-    json_number(&f, "force_hertz", m[0].hertz);
-    json_number(&f, "hertz_error", m[0].force[PEN_TOTAL] / m[0].hertz - 1.0);
+    const comparison hertz = compare_hertz(p, &m[0]);
+    json_comparison(&f, "force_hertz", &hertz);
+    json_number(&f, "hertz_error", compare_error(&hertz));
   }
   if (p->runs == 2) {
     json_integer(&f, "axisymmetric_particles", other->particles);
@@ -167,16 +237,20 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 
 /* ---- terminal -------------------------------------------------------------------------------- */
 
-static void tell_factor(pen_factor n) {
+static void tell_factor(const cone_theory *t) {
+  const pen_factor n = t->n;
+  const comparison *const theory[] = {&t->teh_houlsby, &t->lu};
   if (!isfinite(n.n_kt)) return;
   printf("net cone factor N_kt = (q - %.4g kPa)/su = %.4g, su = %.4g kPa in triaxial compression, "
          "Ir = G/su = %.4g",
          1e-3 * n.vertical, n.n_kt, 1e-3 * n.strength, n.rigidity);
-  if (isfinite(n.teh_houlsby))
-    printf("; Teh and Houlsby %.4g, %+.1f %%", n.teh_houlsby,
-           100.0 * (n.n_kt / n.teh_houlsby - 1.0));
-  if (isfinite(n.lu)) printf("; Lu et al. %.4g, %+.1f %%", n.lu, 100.0 * (n.n_kt / n.lu - 1.0));
+  for (int k = 0; k < 2; k++)
+    if (compare_holds(theory[k]))
+      printf("; %s %.4g, %+.1f %%", theory[k]->source, theory[k]->reference,
+             100.0 * compare_error(theory[k]));
   printf("\n");
+  compare_tell(&t->teh_houlsby);
+  compare_tell(&t->lu);
 }
 
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
@@ -187,13 +261,18 @@ static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
            m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], 1e-3 * q);
   if (p->s.cohesion > 0.0 && p->s.law != PEN_SAND && p->s.law != PEN_ELASTIC && isfinite(q))
     printf(" = %.4g c", q / p->s.cohesion);
-  if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE && m->hertz > 0.0)
-    printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * (m->force[PEN_TOTAL] / m->hertz - 1.0));
+  const bool elastic = p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE;
+  const comparison hertz = compare_hertz(p, m);
+  if (elastic && compare_holds(&hertz))
+    printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * compare_error(&hertz));
   printf("\n");
-  tell_factor(pen_factor_of(p, q, m->depth));
+  if (elastic) compare_tell(&hertz);
+  const cone_theory t = find_cone(p, m);
+  tell_factor(&t);
   if (isfinite(r->ratio_min))
     printf("V/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
            (long long)r->inside);
+  if (p->s.law == PEN_SAND) sand_print(&(sand_voids){p->s.e0, p->s.e_max}, p->s.psi);
 }
 
 bool pen_finish(app *a, void *user) {

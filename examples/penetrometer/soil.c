@@ -3,9 +3,10 @@
  */
 #include "penetrometer.h"
 
-#include <mps/geostatic.h>
-#include <mps/pore_water.h>
 #include <mps/soil.h>
+#include <mps/experimental/pore_water.h>
+#include <mps/experimental/domain.h>
+#include <mps/experimental/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,12 +22,12 @@ static double strength_of(const pen_settings *s) {
 
 /* Options of one kind of soil alone. */
 static const char *check_uses(const pen_settings *s, const option *table) {
-  static const char *const clay[] = {"M", "lambda", "kappa", "e0", "ocr", "permeability"};
+  static const char *const clay[] = {"M", "lambda", "kappa", "ocr", "permeability"};
   static const char *const unused[] = {"cohesion", "young", "alpha", "k0", "gravity"};
   const bool mcc = s->law == PEN_CAM_CLAY;
   for (size_t k = 0; k < sizeof clay / sizeof *clay && !mcc; k++)
     if (options_given(table, clay[k]))
-      return "--M, --lambda, --kappa, --e0, --ocr and --permeability are for --law mcc";
+      return "--M, --lambda, --kappa, --ocr and --permeability are for --law mcc";
   for (size_t k = 0; k < sizeof unused / sizeof *unused && mcc; k++)
     if (options_given(table, unused[k]))
       return "--cohesion, --young, --alpha, --k0 and --gravity are not for --law mcc, whose "
@@ -34,6 +35,9 @@ static const char *check_uses(const pen_settings *s, const option *table) {
              "and stiffness follow --surcharge and --ocr in ground without weight";
   if (s->law != PEN_SAND && (options_given(table, "phi") || options_given(table, "psi")))
     return "--phi and --psi are for --law sand";
+  if (s->law != PEN_SAND && options_given(table, "emax")) return "--emax is for --law sand";
+  if (s->law != PEN_SAND && !mcc && options_given(table, "e0"))
+    return "--e0 is for --law mcc and sand";
   if (!isnan(s->ir) && (s->law == PEN_SAND || s->law == PEN_ELASTIC))
     return "--ir is for --law clay, tresca and mcc, which have an undrained strength";
   if (!isnan(s->ir) && options_given(table, "young")) return "--ir and --young exclude each other";
@@ -205,6 +209,7 @@ static mps_status make_sand(mps_context *context, const pen_settings *s, mps_mat
   sand.young = s->young, sand.poisson = s->poisson;
   sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
   sand.cohesion = s->cohesion;
+  sand.void_ratio = s->e0, sand.max_void_ratio = s->e_max;
   return mps_material_create_drucker_prager(context, &sand, out);
 }
 
@@ -336,10 +341,8 @@ pen_factor pen_factor_of(const penetrometer *p, double q, double depth) {
   f.n_kt = (q - f.vertical) / su;
   const double sideways = p->state.sideways + s->k0 * weight;
   f.deviation = (f.vertical - sideways) / (2.0 * su);
-  if (s->tip != PEN_CONE || s->friction > 0.0 || fabs(s->angle - 60.0) > 1e-9) return f;
   const double ln = log(f.rigidity);
-  if (f.rigidity >= 50.0 * (1.0 - 1e-9) && f.rigidity <= 500.0 * (1.0 + 1e-9))
-    f.teh_houlsby = 4.0 / 3.0 * (1.0 + ln) * (1.25 + f.rigidity / 2000.0) - 1.8 * f.deviation;
+  f.teh_houlsby = 4.0 / 3.0 * (1.0 + ln) * (1.25 + f.rigidity / 2000.0) - 1.8 * f.deviation;
   f.lu = 3.4 + 1.6 * ln - 1.9 * f.deviation;
   return f;
 }

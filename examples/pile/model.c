@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
-#include <mps/geostatic.h>
+#include <mps/soil.h>
+#include <mps/mpm.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,6 +50,7 @@ const char *pile_check(pile_settings *s) {
   if (s->k > CHATTER * modulus / ((double)s->ppc * s->courant * s->courant))
     return "--k must be at most 6 (K + 4G/3)/(ppc courant^2), 6 m/dt^2: stiffer contact chatters";
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (sand_check(&s->voids)) return sand_check(&s->voids);
   if (s->density * PILE_GRAVITY * s->height > 0.5 * s->young)
     return "--young must be at least twice the stress at the bottom of the soil, density g height";
   return NULL;
@@ -82,6 +84,7 @@ static mps_status make_soil(mps_context *context, pile *p) {
   law.young = s->young, law.poisson = s->poisson;
   law.friction = s->phi * PILE_PI / 180.0, law.dilation = s->psi * PILE_PI / 180.0;
   law.cohesion = s->cohesion;
+  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   if (status == MPS_OK) status = mps_material_create_drucker_prager(context, &law, &p->m.material);
   return status;
 }

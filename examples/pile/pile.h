@@ -8,6 +8,7 @@
 
 #include "common/mpm_model.h"
 #include "common/resume.h"
+#include "common/sand.h"
 
 #define PILE_GRAVITY 9.81 /* m/s2 */
 #define PILE_PI 3.14159265358979323846
@@ -21,9 +22,10 @@ typedef struct pile_settings {
   const char *soil;               /* "WxH" */
   double width, height;           /* m, what `soil` says */
   double density, young, poisson; /* kg/m3, Pa, 1 */
-  double phi, psi, cohesion, k0;  /* degrees, degrees, Pa; k0 NaN: nu/(1 - nu) */
-  int cone;                       /* see pile_cone */
-  double h, courant, flip_time;   /* m, 1, s */
+  sand_voids voids;
+  double phi, psi, cohesion, k0; /* degrees, degrees, Pa; k0 NaN: nu/(1 - nu) */
+  int cone;                      /* see pile_cone */
+  double h, courant, flip_time;  /* m, 1, s */
   int64_t ppc, frames, threads;
   int spline;                       /* degree of the weights less 2 */
   const char *checkpoint, *restart; /* files, NULL: none */

@@ -89,6 +89,7 @@ static void write_settings(output *f, const pile *p) {
   json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);
   json_number(f, "phi", s->phi);
+  sand_write(f, &s->voids, s->psi);
   json_text(f, "cone", pile_cone_name(s));
   json_number(f, "inner_diameter", s->inner_diameter);
   json_number(f, "wall", s->wall);
@@ -143,6 +144,7 @@ static void tell(const pile *p, const pile_row *end) {
   if (isfinite(p->seen.ratio_min))
     printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
            p->seen.ratio_max, (long long)p->seen.inside);
+  sand_print(&p->s.voids, p->s.psi);
 }
 
 bool pile_finish(app *a, void *user) {

@@ -65,7 +65,8 @@ static bool slide(plate *p, const elastic_method *method, int32_t axis, double a
   hi[axis] = at + 0.25 * p->spacing;
   return app_check(p->a, mps_particles_select_box(p->particles, lo, hi, room, &count, ids)) &&
          elastic_hold(p->a, p->elastic, axis, count, ids, NULL) &&
-         (method->published || app_check(p->a, mps_elastic_cut(p->elastic, axis, -1, count, ids)));
+         (method->published ||
+          app_check(p->a, mps_elastic_cut(p->elastic, mps_side_of(axis, 0), ids, count)));
 }
 
 static mps_status outer_traction(void *user, const double *x, const double *normal,
@@ -83,8 +84,8 @@ static bool pull(plate *p, int32_t axis, int64_t *facets, int64_t room) {
   plate_def copy = *p->def;
   int64_t count;
   lo[axis] = (p->def->hole || axis == 0 ? p->def->side : 0.5 * p->def->side) - 1.5 * p->spacing;
-  return app_check(p->a,
-                   mps_elastic_select_facets(p->elastic, axis, 1, lo, hi, room, &count, facets)) &&
+  return app_check(p->a, mps_elastic_select_facets(p->elastic, mps_side_of(axis, 1), lo, hi, room,
+                                                   &count, facets)) &&
          elastic_pull(p->a, p->elastic, count, facets, outer_traction, &copy);
 }
 

@@ -16,7 +16,7 @@ static mps_status make_soil(app *a, double dt, block *b) {
   if (status == MPS_OK) status = mps_particles_set(b->set, "density", 0, 1600.0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(a->context, 1e6, 0.3, &b->law);
   if (status == MPS_OK) status = mps_mpm_create(a->context, b->set, b->law, &def, &b->soil);
-  return status == MPS_OK ? mps_mpm_set_boundary(b->soil, MPS_MPM_SIDE_Y_LOWER, &floor) : status;
+  return status == MPS_OK ? mps_mpm_set_boundary(b->soil, MPS_SIDE_Y_LOWER, &floor) : status;
 }
 
 static mps_status make_box(app *a, bool free, block *b) {

@@ -29,7 +29,7 @@ static mps_status cut_row(flap *f, const flap_def *def, double y, int32_t side) 
   int64_t count = 0, *ids = malloc((size_t)all * sizeof *ids);
   if (!ids) return MPS_ERROR_MEMORY;
   mps_status status = mps_particles_select_box(f->particles, lo, hi, all, &count, ids);
-  if (status == MPS_OK) status = mps_elastic_cut(f->solver, 1, side, count, ids);
+  if (status == MPS_OK) status = mps_elastic_cut(f->solver, mps_side_of(1, side > 0), ids, count);
   free(ids);
   return status;
 }
@@ -44,11 +44,12 @@ static mps_status hold(flap *f, const flap_def *def) {
 static mps_status choose_facets(flap *f, const flap_def *def) {
   const double lo[2] = {-INFINITY, def->y + 0.125 * def->spacing}, hi[2] = {INFINITY, INFINITY};
   int64_t count = 0;
-  mps_status status = mps_elastic_select_facets(f->solver, 0, 0, lo, hi, 0, &count, NULL);
+  mps_status status = mps_elastic_select_facets(f->solver, MPS_SIDE_ANY, lo, hi, 0, &count, NULL);
   if (status != MPS_OK) return status;
   f->facets = malloc((size_t)(count + 1) * sizeof *f->facets);
   if (!f->facets) return MPS_ERROR_MEMORY;
-  return mps_elastic_select_facets(f->solver, 0, 0, lo, hi, count, &f->facet_count, f->facets);
+  return mps_elastic_select_facets(f->solver, MPS_SIDE_ANY, lo, hi, count, &f->facet_count,
+                                   f->facets);
 }
 
 bool flap_make(app *a, const flap_def *def, flap *out) {

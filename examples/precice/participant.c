@@ -50,7 +50,7 @@ static bool set_traction(participant *p, bool first) {
 static bool prepare(participant *p) {
   const mps_elastic_facet_arrays arrays = {.centre = p->centre, .area = p->area};
   p->dim = mps_particles_dim(mps_elastic_particles(p->solver));
-  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->count, p->facets, &arrays)))
+  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->facets, p->count, &arrays)))
     return false;
   for (int64_t k = 0; k < p->count; k++)
     for (int c = 0; c < p->dim; c++) p->vertex[k * p->dim + c] = p->centre[3 * k + c];
@@ -76,10 +76,10 @@ static bool write_motion(void *self, double *const *written) {
   participant *p = self;
   const mps_elastic_facet_arrays moved = {.displacement = p->values},
                                  moving = {.velocity = p->values};
-  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->count, p->facets, &moved)))
+  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->facets, p->count, &moved)))
     return false;
   copy_out(p, written[0]);
-  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->count, p->facets, &moving)))
+  if (!app_check(p->a, mps_elastic_get_facets(p->solver, p->facets, p->count, &moving)))
     return false;
   copy_out(p, written[1]);
   return true;

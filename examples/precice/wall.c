@@ -1,6 +1,7 @@
 /* wall.c - see wall.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
+#include <mps/experimental/fluid_parts.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +69,8 @@ static bool step(void *self, double dt, double *const *read, double *const *writ
   for (int64_t k = 0; k < w->nodes && !w->def->velocity; k++)
     w->speed[k] = (w->moved[k] - w->now[k]) / dt;
   if (!app_check(w->a, mps_fluid_begin_step(w->fluid, dt)) ||
-      !app_check(w->a, mps_fluid_set_wall_motion(w->fluid, w->def->number, w->moved, w->speed)) ||
+      !app_check(w->a,
+                 mps_fluid_set_boundary_motion(w->fluid, w->def->number, w->moved, w->speed)) ||
       !app_check(w->a, mps_fluid_solve_pressure(w->fluid)) || !write_forces(w, written[0]))
     return false;
   memcpy(w->now, w->moved, (size_t)w->nodes * sizeof *w->now);

@@ -10,6 +10,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include <mps/experimental/fluid_parts.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +24,7 @@ static mps_status look_at_facets(seawall *w, double *displacement, double *veloc
   seawall_both *b = &w->both;
   const mps_elastic_facet_arrays arrays = {.displacement = b->vector,
                                            .velocity = b->vector + 3 * wall->count};
-  const mps_status status = mps_elastic_get_facets(wall->solver, wall->count, wall->facet, &arrays);
+  const mps_status status = mps_elastic_get_facets(wall->solver, wall->facet, wall->count, &arrays);
   for (int64_t k = 0; status == MPS_OK && k < wall->count; k++) {
     displacement[k] = -arrays.displacement[3 * k];
     velocity[k] = -arrays.velocity[3 * k];
@@ -90,7 +91,7 @@ static mps_status ask_water(seawall *w, double dt) {
     b->speed[k] = b->velocity[k] + dt * b->mean[k];
     b->moved[k] = b->displacement[k] - b->rest[k] + 0.5 * dt * (b->velocity[k] + b->speed[k]);
   }
-  mps_status status = mps_fluid_set_wall_motion(w->fluid, SEAWALL_WALL, b->moved, b->speed);
+  mps_status status = mps_fluid_set_boundary_motion(w->fluid, SEAWALL_WALL, b->moved, b->speed);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(w->fluid);
   return status == MPS_OK ? mps_fluid_get_pressure(w->fluid, SEAWALL_WALL, wall->count,
                                                    wall->centre, w->pressure)

@@ -24,7 +24,8 @@ static mps_status make_fluid(app *a, seawall *w) {
   if (status == MPS_OK && s->disturb > 0.0)
     status = waves_disturb(w->water, s->disturb * s->spacing, (uint64_t)s->seed);
   if (status == MPS_OK)
-    status = mps_signal_create_user(context, waves_move_piston, &w->motion, &w->piston);
+    status = mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, waves_move_piston,
+                                    &w->motion, NULL, &w->piston);
   def.domain = a->domain;
   status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
@@ -66,7 +67,6 @@ static mps_status make_records(seawall *w) {
   const size_t n = (size_t)mps_particles_count(w->wall.set);
   w->capacity = (int64_t)ceil(s->duration / s->sample - 1e-9);
   w->room = (int64_t)ceil(16.0 * s->depth / s->spacing) + 16;
-  w->sample = calloc((size_t)w->capacity + 1, sizeof *w->sample);
   w->frame = calloc((size_t)s->frames + 2, sizeof *w->frame);
   w->steps = (int64_t)ceil(s->duration / s->dt) + 8;
   w->force = calloc((size_t)w->steps, sizeof *w->force);
@@ -74,15 +74,24 @@ static mps_status make_records(seawall *w) {
   w->look.pressure = calloc((size_t)w->room, sizeof(double));
   w->look.displacement = calloc(2 * n, sizeof(double));
   w->restarted = NAN;
-  return w->sample && w->frame && w->force && w->look.y && w->look.pressure && w->look.displacement
+  return w->frame && w->force && w->look.y && w->look.pressure && w->look.displacement
              ? MPS_OK
              : MPS_ERROR_MEMORY;
 }
 
+void seawall_rows(seawall *w) {
+  rows_look(&w->rows);
+  w->sample = w->rows.row, w->samples = w->rows.count;
+}
+
 mps_status seawall_build(app *a, seawall *w) {
+  static const rows_column columns[] = {{"force", "N", 0},  {"moment", "N m", 0},
+                                        {"level", "m", 0},  {"deflection", "m", 0},
+                                        {"piston", "m", 0}, {0}};
   mps_status status = app_settle(a, make_wall(a, w));
   if (status == MPS_OK) status = make_fluid(a, w);
   if (status == MPS_OK && w->s.coupled) status = seawall_couple(a->context, w);
+  if (status == MPS_OK) status = rows_begin(&w->rows, mps_fluid_solver(w->fluid), columns);
   return status == MPS_OK ? make_records(w) : status;
 }
 
@@ -96,7 +105,7 @@ void seawall_free(seawall *w) {
   strip_free(&w->wall);
   for (int64_t k = 0; k < w->frames; k++) free(w->frame[k].value);
   free(w->frame);
-  free(w->sample);
+  rows_end(&w->rows);
   free(w->force);
   free(w->pressure);
   free(w->look.y);

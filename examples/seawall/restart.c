@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Header; then the samples, the settings of the pictures, and of each frame its header and values.
+/* Header; then the settings of the pictures, and of each frame its header and values.
  */
 typedef struct notes {
-  int64_t samples, frames, points, forces, learnt;
+  int64_t frames, points, forces, learnt;
   seawall_sample at;
 } notes;
 
@@ -33,17 +33,15 @@ static void pass(void *user, resume_bytes *b) {
   seawall *w = user;
   notes n;
   memset(&n, 0, sizeof n);
-  n.samples = w->samples, n.frames = w->frames, n.points = w->look.points;
+  n.frames = w->frames, n.points = w->look.points;
   n.forces = w->forces, n.learnt = w->both.learnt, n.at = w->look.at;
   resume_pass(b, &n, sizeof n);
-  if (resume_wrong(b, n.samples < 0 || n.samples > w->capacity || n.frames < 0 ||
-                          n.frames > w->s.frames + 1 || n.points < 0 || n.points > w->room ||
-                          n.forces < 0 || n.forces > w->steps || n.learnt < 0 ||
-                          n.learnt > w->both.room))
+  if (resume_wrong(b, n.frames < 0 || n.frames > w->s.frames + 1 || n.points < 0 ||
+                          n.points > w->room || n.forces < 0 || n.forces > w->steps ||
+                          n.learnt < 0 || n.learnt > w->both.room))
     return;
-  w->samples = n.samples, w->look.points = n.points;
+  w->look.points = n.points;
   w->forces = n.forces, w->both.learnt = n.learnt, w->look.at = n.at;
-  resume_pass(b, w->sample, (size_t)w->samples * sizeof *w->sample);
   resume_pass(b, w->force, (size_t)w->forces * sizeof *w->force);
   resume_pass(b, w->look.y, (size_t)w->look.points * sizeof(double));
   resume_pass(b, w->look.pressure, (size_t)w->look.points * sizeof(double));
@@ -58,7 +56,7 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(seawall *w) {
-  return (resume){.key = "mps-seawall 4",
+  return (resume){.key = "mps-seawall 5",
                   .table = w->table,
                   .pass = pass,
                   .user = w,
@@ -115,5 +113,6 @@ mps_status seawall_restore(mps_context *context, seawall *w) {
   const resume r = parts(w);
   const mps_status status = resume_restore(context, &r, w->s.restart);
   w->restarted = mps_fluid_time(w->fluid);
+  seawall_rows(w);
   return status == MPS_OK && w->s.coupled ? restore_wall(w) : status;
 }

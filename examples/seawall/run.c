@@ -30,7 +30,8 @@ static mps_status take_look(seawall *w, const seawall_sample *sample) {
   mps_view u;
   mps_status status = app_settle(w->a, x ? MPS_OK : MPS_ERROR_MEMORY);
   if (status == MPS_OK)
-    status = mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, &look->points, x, look->pressure);
+    status = mps_fluid_get_boundary_points(w->fluid, SEAWALL_WALL, w->room, &look->points, x,
+                                           look->pressure);
   if (look->points > w->room) look->points = w->room;
   for (int64_t k = 0; status == MPS_OK && k < look->points; k++) look->y[k] = x[3 * k + 1];
   if (status == MPS_OK) status = mps_particles_view(w->wall.set, "displacement", &u);
@@ -55,8 +56,10 @@ static mps_status take_sample(seawall *w) {
   sample.moment = r.moment[2];
   sample.level -= w->s.depth;
   sample.piston = motion[0];
-  w->sample[w->samples++] = sample;
-  return sample.t <= SEAWALL_LOOK + 0.5 * w->s.sample ? take_look(w, &sample) : MPS_OK;
+  status = rows_add(&w->rows, &sample);
+  seawall_rows(w);
+  if (status != MPS_OK || sample.t > SEAWALL_LOOK + 0.5 * w->s.sample) return status;
+  return take_look(w, &sample);
 }
 
 /* ---- frames ---------------------------------------------------------------------------------- */

@@ -6,11 +6,13 @@
 #include "common/options.h"
 #include "common/output.h"
 #include "common/resume.h"
+#include "common/rows.h"
 #include "common/strip.h"
 #include "common/waves.h"
 
-#include <mps/couple.h>
+#include <mps/experimental/coupling.h>
 #include <mps/io.h>
+#include <mps/fluid.h>
 
 #define SEAWALL_LOOK 5.16    /* s: the crest of Chikazawa's Figures 12 and 13 */
 #define SEAWALL_IMPULSE 0.05 /* s: the piston starts with a jerk, whose forces are no waves' */
@@ -75,7 +77,8 @@ typedef struct seawall {
   seawall_both both;
   double *pressure; /* Pa, a facet of the wall */
   mps_recorder *series, *wall_series;
-  seawall_sample *sample;
+  result_rows rows;
+  const seawall_sample *sample; /* of `rows` */
   seawall_frame *frame;
   int64_t samples, capacity, frames, room; /* room: points of the look */
   resume_schedule saves;
@@ -91,7 +94,8 @@ typedef struct seawall {
  * and behind the piston, and the wall, down to the lowest layer. */
 int64_t seawall_paper_particles(const seawall_settings *s);
 
-/* model.c */
+/* model.c; seawall_rows sets `sample` from `rows`. */
+void seawall_rows(seawall *w);
 mps_status seawall_build(app *a, seawall *w);
 void seawall_free(seawall *w);
 /* coupled.c */

@@ -10,13 +10,6 @@
 
 #define PI 3.14159265358979323846
 
-bool site_has_exact(const simulation *sim) {
-  bool elastic = sim->s.damping == 0.0;
-  for (int64_t i = 0; i < sim->ground.count; i++)
-    elastic = elastic && sim->ground.layer[i].law == SITE_ELASTIC;
-  return elastic;
-}
-
 double site_exact(const simulation *sim, double frequency) {
   const site_ground *g = &sim->ground;
   double complex up = 1.0, down = 1.0; /* amplitudes at the top of the layer; surface: 2 */

@@ -39,6 +39,8 @@ static const struct {
     {"phi", "degrees", OPTION_FROM_TO(0.0, 60.0), offsetof(site_layer, phi), "--MQ-"},
     {"psi", "degrees", OPTION_FROM_TO(0.0, 60.0), offsetof(site_layer, psi), "--mq-"},
     {"cohesion", "Pa", OPTION_FROM_TO(0.0, 1e11), offsetof(site_layer, cohesion), "--mq-"},
+    {"e0", "1", SAND_RANGE, offsetof(site_layer, e0), "--mq-"},
+    {"emax", "1", SAND_RANGE, offsetof(site_layer, e_max), "--mq-"},
     {"relative-density", "1", OPTION_FROM_TO(0.1, 1.0), offsetof(site_layer, relative_density),
      "---q-"},
     {"blow-count", "1", OPTION_FROM_TO(1.0, 60.0), offsetof(site_layer, blow_count), "---q-"},
@@ -141,6 +143,9 @@ static bool find_law(reading *r, char *const *word, int count) {
 static bool check_friction(const reading *r) {
   site_layer *l = r->layer;
   if (isnan(l->psi)) l->psi = 0.0;
+  if (isnan(l->e0)) l->e0 = SAND_E0;
+  if (isnan(l->e_max)) l->e_max = fmax(l->e0, SAND_E_MAX);
+  if (l->e0 > l->e_max) return REFUSE(r, "e0=%g is above emax=%g", l->e0, l->e_max);
   if (isnan(l->cohesion)) l->cohesion = 0.0;
   if (l->psi > l->phi) return REFUSE(r, "psi=%g is above phi=%g degrees", l->psi, l->phi);
   if (l->phi == 0.0 && l->cohesion == 0.0) return REFUSE(r, "phi and cohesion must not both be 0");
@@ -196,7 +201,8 @@ static int split(char *line, char **word) {
 static bool read_line(mpm_model *m, const char *path, int64_t number, char *line,
                       site_ground *out) {
   char *word[WORDS + 1];
-  const int count = split(line, word);
+  const bool mark = number == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0; /* of UTF-8 */
+  const int count = split(line + (mark ? 3 : 0), word);
   reading r = {m, path, number, false, NULL};
   if (count == 0) return true;
   if (count > WORDS) return REFUSE(&r, "more than %d words", WORDS);

@@ -3,6 +3,7 @@
 #include "site.h"
 
 #include <mps/soil.h>
+#include <mps/experimental/soil.h>
 
 #include <math.h>
 
@@ -23,6 +24,7 @@ static mps_status make_mohr_coulomb(mps_context *c, const site_layer *l, mps_mat
   mps_material_mohr_coulomb_def d = mps_material_mohr_coulomb_defaults();
   d.young = young_of(l), d.poisson = l->poisson;
   d.friction = l->phi * DEGREE, d.dilation = l->psi * DEGREE, d.cohesion = l->cohesion;
+  d.void_ratio = l->e0, d.max_void_ratio = l->e_max;
   return mps_material_create_mohr_coulomb(c, &d, out);
 }
 
@@ -30,6 +32,7 @@ static mps_status make_cyclic_sand(mps_context *c, const site_layer *l, mps_mate
   mps_material_cyclic_sand_def d = mps_material_cyclic_sand_defaults();
   d.young = young_of(l), d.poisson = l->poisson;
   d.friction = l->phi * DEGREE, d.dilation = l->psi * DEGREE, d.cohesion = l->cohesion;
+  d.void_ratio = l->e0, d.max_void_ratio = l->e_max;
   d.relative_density = l->relative_density, d.blow_count = l->blow_count;
   return mps_material_create_cyclic_sand(c, &d, out);
 }

@@ -3,9 +3,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "site.h"
 
-#include <mps/geostatic.h>
-#include <mps/mpm_settle.h>
-#include <mps/pore_water.h>
+#include <mps/soil.h>
+#include <mps/experimental/settle.h>
+#include <mps/experimental/pore_water.h>
 
 #include <math.h>
 #include <stdarg.h>
@@ -107,7 +107,7 @@ static mps_status set_laws(simulation *sim, mps_material *const *law) {
     const double from[2] = {-1.0, surface - bottom}, to[2] = {sim->width + 1.0, surface - top};
     status = mps_particles_select_box(sim->m.particles, from, to, most, &count, ids);
     if (status == MPS_OK && law[i] && count > 0)
-      status = mps_mpm_set_material(sim->m.mpm, law[i], count, ids);
+      status = mps_mpm_set_material(sim->m.mpm, law[i], ids, count);
     top = bottom;
   }
   free(ids);
@@ -149,7 +149,7 @@ static mps_status set_base(simulation *sim, double settle) {
   mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
   base.kind = sim->s.base == SITE_COMPLIANT ? MPS_BOUNDARY_ABSORBING : MPS_BOUNDARY_HELD;
   base.settle = sim->s.base == SITE_COMPLIANT ? settle : 0.0;
-  return mps_mpm_set_boundary(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, &base);
+  return mps_mpm_set_boundary(sim->m.mpm, MPS_SIDE_Y_LOWER, &base);
 }
 
 /* Between rollers, in elastic laws, on a base that is held: the stress of geostatics is not quite
@@ -182,7 +182,7 @@ static double rest_time(const simulation *sim) {
 /* The sides last: their columns are copies of the ground as it is. */
 static mps_status set_sides(simulation *sim) {
   mps_status status = MPS_OK;
-  for (int32_t side = MPS_MPM_SIDE_X_LOWER; side <= MPS_MPM_SIDE_X_UPPER; side++)
+  for (int32_t side = MPS_SIDE_X_LOWER; side <= MPS_SIDE_X_UPPER; side++)
     if (status == MPS_OK) status = mps_mpm_set_side(sim->m.mpm, side, MPS_BOUNDARY_FREE_FIELD, 0.0);
   return status;
 }

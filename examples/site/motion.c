@@ -8,12 +8,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "site.h"
 
+#include "common/record.h"
+
 #include <math.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-static const double unit_factor[] = {1.0, 1.0, 9.80665, 0.01}; /* to m/s2 */
 
 enum { LEAST_SAMPLES = 4 };
 
@@ -31,27 +31,28 @@ static mps_status make_sine(mps_context *context, const settings *s, mps_signal 
   return mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, count, t, a, out);
 }
 
-static mps_status make_record(mps_context *context, const settings *s, mps_signal **out) {
+static mps_status make_record(app *a, const settings *s, mps_signal **out) {
+  mps_context *context = a->context;
   if (strcmp(s->record, "ricker") == 0)
     return mps_signal_create_ricker(context, s->frequency, 1.5 / s->frequency, s->amplitude, out);
   if (strcmp(s->record, "sine") == 0) return make_sine(context, s, out);
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = s->baseline;
-  def.scale = s->scale * unit_factor[s->unit];
-  def.format = s->unit == SITE_UNIT_FILE ? MPS_SIGNAL_RECORD_AUTO : MPS_SIGNAL_RECORD_CSV;
-  return mps_signal_create_record(context, s->record, &def, out);
+  def.scale = s->scale;
+  def.unit = record_units[s->unit];
+  def.step = s->step, def.column = s->column;
+  return record_read(a, "record", s->record, &def, out);
 }
 
 double site_input(const simulation *sim, double t) {
   return t > 0.0 && t <= sim->record_end ? mps_signal_acceleration(sim->motion, t) : 0.0;
 }
 
-/* The frame's acceleration as a signal of loads, whose value is read at the beginning of a step:
+/* The frame's acceleration as a factor on loads, which is read at the beginning of a step:
  * nothing in the first one, from which dashpots take the traction at rest. */
 static mps_status frame(void *user, double t, double motion[3]) {
   const simulation *sim = user;
   motion[0] = -site_input(sim, t - sim->start);
-  motion[1] = motion[2] = 0.0;
   return MPS_OK;
 }
 
@@ -70,12 +71,25 @@ static void check_drift(app *a, const simulation *sim) {
              sim->s.record, left, fastest);
 }
 
+/* Largest |acceleration| (m/s2). It is linear between the samples of a record with one step, which
+ * are among the instants looked at. */
+static double find_peak(const simulation *sim) {
+  mps_signal_record_report r;
+  double peak = 0.0;
+  int64_t looks = 20000;
+  if (mps_signal_get_record(sim->motion, &r) == MPS_OK && r.count > 1) looks = 2 * (r.count - 1);
+  for (int64_t k = 0; k <= looks; k++)
+    peak = fmax(peak, fabs(mps_signal_acceleration(
+                          sim->motion, sim->record_end * (double)k / (double)looks)));
+  return peak;
+}
+
 mps_status site_make_motion(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
-  const mps_status status = make_record(context, s, &sim->motion);
+  const mps_status status = make_record(sim->m.a, s, &sim->motion);
   if (status != MPS_OK) return status;
   mps_signal_span(sim->motion, NULL, &sim->record_end);
-  sim->record_peak = mps_signal_peak_acceleration(sim->motion);
+  sim->record_peak = find_peak(sim);
   bool good = true;
   if (!(sim->record_peak > 0.0))
     good = site_refuse(&sim->m, "%s: the acceleration is 0 m/s2 throughout, must shake the ground",
@@ -85,5 +99,5 @@ mps_status site_make_motion(mps_context *context, simulation *sim) {
                        s->record, sim->record_end, LEAST_SAMPLES, LEAST_SAMPLES * s->sample);
   if (!good) return MPS_ERROR_ARGUMENT;
   check_drift(sim->m.a, sim);
-  return mps_signal_create_user(context, frame, sim, &sim->load);
+  return mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_VALUE, frame, sim, NULL, &sim->load);
 }

@@ -7,13 +7,15 @@
 
 /* Options of the pulses or of a record alone. */
 static const char *check_motion(const settings *s, const option *table) {
-  static const char *const record[] = {"record-unit", "record-scale", "baseline"};
+  static const char *const record[] = {"record-unit", "record-scale", "baseline", "record-step",
+                                       "record-column"};
   static const char *const pulse[] = {"frequency", "amplitude"};
   const bool sine = strcmp(s->record, "sine") == 0;
   const bool file = !sine && strcmp(s->record, "ricker") != 0;
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 5; k++)
     if (!file && options_given(table, record[k]))
-      return "--record-unit, --record-scale and --baseline are for --record FILE";
+      return "--record-unit, --record-scale, --record-step, --record-column and --baseline are for "
+             "--record FILE";
   for (int k = 0; k < 2; k++)
     if (file && options_given(table, pulse[k]))
       return "--frequency and --amplitude are for --record ricker and sine";

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "site.h"
 
+#include "common/record.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +13,8 @@
  * largest is sought, where soil that yields makes harmonics. */
 #define LEAST_INPUT 0.01
 #define STRONG_INPUT 0.1
+#define RESTS 0.01 /* of the peak: motion left at the end of a record that has died out */
+#define LARGE_STRAIN 0.01
 
 /* What is found from the history. */
 typedef struct findings {
@@ -19,7 +23,8 @@ typedef struct findings {
   double period[SITE_PERIODS], surface[SITE_PERIODS], input[SITE_PERIODS]; /* s, m/s2 */
   double peak, peak_time;    /* m/s2, s: of the surface */
   double largest, frequency; /* ratio of Fourier amplitudes, Hz where */
-  double exact_at, error;    /* of elastic layers there; largest difference, relative */
+  double error;              /* largest difference from elastic layers, relative */
+  comparison layers;         /* with elastic layers at `frequency` */
 } findings;
 
 static findings found;
@@ -70,22 +75,67 @@ static bool counts(const findings *f, int64_t k, double least) {
   return f->fourier.input[k] > least * largest_of(f->fourier.input, f->fourier.count);
 }
 
+/* Largest over the last tenth of the record over that of all of it. */
+static double left_of(const double *x, int64_t count) {
+  const int64_t tenth = count / 10;
+  double last = 0.0, most = 0.0;
+  for (int64_t k = 0; k < count; k++) {
+    most = fmax(most, fabs(x[k]));
+    if (k >= count - tenth) last = fmax(last, fabs(x[k]));
+  }
+  return last / most;
+}
+
+static double largest_strain(const simulation *sim) {
+  double most = 0.0;
+  for (int64_t r = 0; r < sim->rows; r++)
+    if (sim->row[r].depth < sim->height) most = fmax(most, sim->row[r].strain);
+  return most;
+}
+
+/* Steady waves in elastic layers. Spectra of a record have their ratio only where the motion is
+ * over at its end, which undamped layers on a rigid base never are. */
+static comparison compare_layers(const simulation *sim, const findings *f) {
+  comparison c = compare_with("elastic layers", f->largest, site_exact(sim, f->frequency));
+  bool elastic = true;
+  for (int64_t i = 0; i < sim->ground.count; i++)
+    elastic = elastic && sim->ground.layer[i].law == SITE_ELASTIC;
+  const double left = left_of(f->series.surface, f->series.count);
+  compare_require(&c, elastic, "a layer is not linear elastic");
+  compare_require(&c, sim->s.damping == 0.0, "--damping is not that of elastic layers");
+  compare_require(&c, sim->s.base == SITE_COMPLIANT,
+                  "on a rigid base undamped layers swing without end, and have no spectrum");
+  compare_require(&c, !isnan(f->largest), "the input has too little motion up to --max-frequency");
+  compare_require(&c, left <= RESTS,
+                  "at the end the surface still moves at %.0f %% of its peak: the spectrum is cut "
+                  "off, take a longer --duration",
+                  100.0 * left);
+  compare_require(&c, largest_strain(sim) <= LARGE_STRAIN,
+                  "shear strains reach %.2g: layers of small strains are not those of large ones",
+                  largest_strain(sim));
+  return c;
+}
+
 static void find_amplification(const simulation *sim, findings *f) {
-  const bool exact = site_has_exact(sim);
   site_transform(&f->series, sim->s.highest, &f->fourier);
   for (int64_t k = 0; k < f->fourier.count; k++)
-    f->fourier.exact[k] = exact ? site_exact(sim, (double)(k + 1) * f->fourier.step) : NAN;
+    f->fourier.exact[k] = site_exact(sim, (double)(k + 1) * f->fourier.step);
   site_smooth(&f->fourier);
-  f->largest = f->frequency = f->exact_at = f->error = NAN;
+  double exact_at = NAN;
+  f->largest = f->frequency = f->error = NAN;
   for (int64_t k = 0; k < f->fourier.count; k++) {
     const double ratio = f->fourier.surface[k] / f->fourier.input[k];
     if (!counts(f, k, LEAST_INPUT)) continue;
     f->error = fmax(isnan(f->error) ? 0.0 : f->error, fabs(ratio / f->fourier.exact[k] - 1.0));
     if (ratio <= f->largest || !counts(f, k, STRONG_INPUT)) continue;
     f->largest = ratio, f->frequency = (double)(k + 1) * f->fourier.step;
-    f->exact_at = f->fourier.exact[k];
+    exact_at = f->fourier.exact[k]; /* smoothed, as the ratio is */
   }
-  if (!exact) f->error = NAN;
+  f->layers = compare_layers(sim, f);
+  f->layers.reference = exact_at;
+  if (compare_holds(&f->layers)) return;
+  f->error = NAN;
+  for (int64_t k = 0; k < f->fourier.count; k++) f->fourier.exact[k] = NAN;
 }
 
 static void find_peak(const simulation *sim, findings *f) {
@@ -182,12 +232,10 @@ static double largest_ru(const simulation *sim) {
   return most;
 }
 
-static double largest_strain(const simulation *sim) {
-  double most = 0.0;
-  for (int64_t r = 0; r < sim->rows; r++)
-    if (sim->row[r].depth < sim->height) most = fmax(most, sim->row[r].strain);
-  return most;
-}
+/* Saturated sand that has lost its stress rises by some millimetres by itself, more than water
+ * leaves through it: its settlement is no measure of that. */
+static bool has_liquefied(const simulation *sim) { return sim->wet && largest_ru(sim) >= 0.95; }
+#define LIQUEFIED "liquefied sand, whose place is uncertain by some millimetres"
 
 static bool write_summary(app *a, const simulation *sim, const findings *f) {
   const site_row *top = &sim->row[sim->rows - 1];
@@ -199,6 +247,7 @@ static bool write_summary(app *a, const simulation *sim, const findings *f) {
   json_number(&file, "flip_time_used", sim->flip_time);
   json_number(&file, "travel_time", site_travel_time(&sim->ground));
   json_number(&file, "record_duration", sim->record_end);
+  record_json(&file, sim->motion);
   json_number(&file, "input_peak_acceleration", sim->record_peak);
   json_number(&file, "peak_acceleration", f->peak);
   json_number(&file, "peak_time", f->peak_time);
@@ -207,11 +256,12 @@ static bool write_summary(app *a, const simulation *sim, const findings *f) {
               largest_of(f->surface, SITE_PERIODS) / largest_of(f->input, SITE_PERIODS));
   json_number(&file, "amplification", f->largest);
   json_number(&file, "amplification_frequency", f->frequency);
-  json_number(&file, "amplification_exact", f->exact_at);
+  json_comparison(&file, "amplification_exact", &f->layers);
   json_number(&file, "amplification_error", f->error);
   json_number(&file, "shear_strain", largest_strain(sim));
   json_number_if(&file, sim->wet, "ru", largest_ru(sim));
   json_number(&file, "settlement", top->settlement);
+  if (has_liquefied(sim)) json_text(&file, "settlement_reason", LIQUEFIED);
   json_number(&file, "last_displacement", top->last_displacement);
   json_end(&file);
   return output_close(&file);
@@ -223,12 +273,15 @@ static void report(const simulation *sim, const findings *f) {
   if (!isnan(f->largest)) {
     printf("largest amplification %.3f at %.3g Hz", f->largest, f->frequency);
     if (!isnan(f->error))
-      printf(" (exact %.3f; all frequencies within %.1f %%)", f->exact_at, 100.0 * f->error);
+      printf(" (exact %.3f; all frequencies within %.1f %%)", f->layers.reference,
+             100.0 * f->error);
     printf("\n");
   }
+  compare_tell(&f->layers);
   printf("largest shear strain %.3g", largest_strain(sim));
   if (sim->wet) printf(", r_u %.3f", largest_ru(sim));
-  printf(", settlement %.3g mm\n", 1e3 * sim->row[sim->rows - 1].settlement);
+  printf(", settlement %.3g mm%s\n", 1e3 * sim->row[sim->rows - 1].settlement,
+         has_liquefied(sim) ? " (" LIQUEFIED ")" : "");
 }
 
 bool site_finish(app *a, void *user) {
@@ -241,7 +294,7 @@ bool site_finish(app *a, void *user) {
     find_peak(sim, f);
     ok = write_surface(a, sim, f) && write_spectrum(a, sim, f) && write_amplification(a, sim, f) &&
          write_profile(a, sim) && write_loop(a, sim) && write_summary(a, sim, f) &&
-         site_draw(a, sim, site_has_exact(sim));
+         site_draw(a, sim, compare_holds(&f->layers));
   }
   if (ok) app_tell_results(a, sim->s.out);
   if (ok) report(sim, f);

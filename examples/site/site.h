@@ -5,14 +5,15 @@
 #ifndef EXAMPLES_SITE_H
 #define EXAMPLES_SITE_H
 
+#include "common/compare.h"
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
+#include "common/sand.h"
 
 #include <mps/signal.h>
 
 enum { SITE_ELASTIC, SITE_SMALL_STRAIN, SITE_MOHR_COULOMB, SITE_CYCLIC_SAND, SITE_LAWS };
 enum { SITE_COMPLIANT, SITE_RIGID };
-enum { SITE_UNIT_FILE, SITE_UNIT_SI, SITE_UNIT_G, SITE_UNIT_GAL };
 enum { SITE_LAYERS = 100, SITE_ROWS = 4000, SITE_SAMPLES = 400000, SITE_CELLS = 4 };
 enum { SITE_PERIODS = 100, SITE_FREQUENCIES = 1000, SITE_PER_WAVE = 20 };
 #define SITE_GRAVITY 9.81 /* m/s2 */
@@ -26,6 +27,7 @@ typedef struct site_layer {
   double permeability, porosity; /* m/s, 1 */
   double reference_strain, curvature, strength;
   double phi, psi, cohesion; /* degrees, degrees, Pa */
+  double e0, e_max;
   double relative_density, blow_count;
   int64_t law;
   int64_t line; /* of the file */
@@ -39,8 +41,9 @@ typedef struct site_ground {
 
 typedef struct settings {
   const char *layers, *record, *out;
+  const char *column;                           /* of a record; NULL: the only one */
   int unit, baseline, base, volumetric, spline; /* spline: degree - 2 */
-  double scale, frequency, amplitude, cycles;
+  double scale, step, frequency, amplitude, cycles;
   double h, highest, flip_time; /* m, Hz, s */
   double sample, duration;      /* s */
   double damping;               /* 1/s, viscous */
@@ -143,7 +146,6 @@ void site_transform(const site_series *s, double highest, site_fourier *out);
 void site_smooth(site_fourier *f);
 
 /* exact.c: the surface over the input of elastic layers, at a frequency. */
-bool site_has_exact(const simulation *sim);
 double site_exact(const simulation *sim, double frequency);
 
 bool site_finish(app *a, void *user);

@@ -6,8 +6,9 @@
  * than a share of its height no longer. SPDX-License-Identifier: BSD-3-Clause */
 #include "slope.h"
 
-#include <mps/geostatic.h>
 #include <mps/soil.h>
+#include <mps/experimental/soil.h>
+#include <mps/mpm.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -67,6 +68,7 @@ static mps_status make_law(simulation *sim) {
   law.friction = atan(tan(s->phi * DEGREE) / factor);
   law.dilation = fmin(s->psi * DEGREE, law.friction);
   law.cohesion = largest / factor;
+  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   if (s->runout) {
     law.residual_friction = atan(tan(s->residual_phi * DEGREE) / factor);
     law.residual_cohesion = s->residual_cohesion / factor;
@@ -117,8 +119,7 @@ mps_status slope_build_trial(simulation *sim) {
   def.lower[0] = def.lower[1] = 0.0;
   if (s->base > 0.0) def.upper[0] = s->crest + s->slope * s->height + s->toe;
   status = mpm_model_create(m, sim->context, status, &def);
-  if (status == MPS_OK)
-    status = mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  if (status == MPS_OK) status = mps_mpm_set_side(m->mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return status == MPS_OK ? note_start(sim) : status;
 }
 

@@ -1,4 +1,5 @@
 /* results.c - tables and pictures of mps-slope. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/area.h"
 #include "common/plot.h"
 #include "slope.h"
@@ -30,10 +31,13 @@ static double found_factor(const simulation *sim) {
   return sqrt(stands * fails);
 }
 
-/* Of slip circles; NaN in a run-out, whose strength softens, and where there is none. */
-static double circles_factor(const settings *s, slope_circle *circle) {
-  const double factor = s->runout ? NAN : slope_circles(s, circle);
-  return isinf(factor) ? NAN : factor;
+/* Of slip circles, along which the ground has its strength everywhere at once. */
+static comparison compare_circles(const simulation *sim, slope_circle *circle) {
+  const double factor = sim->s.runout ? NAN : slope_circles(&sim->s, circle);
+  comparison c = compare_with("slip circles", found_factor(sim), factor);
+  compare_require(&c, !sim->s.runout, "in a run-out the strength softens");
+  compare_require(&c, isfinite(factor), "no circle fails in this ground");
+  return c;
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -80,6 +84,7 @@ static bool write_summary(app *a, const simulation *sim) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   slope_bracket(sim, ended(sim), &stands, &fails);
   json_number(&f, "h", s->h);
+  sand_write(&f, &s->voids, s->psi);
   json_number(&f, "c_over_gamma_H", s->cohesion / (s->density * s->gravity * s->height));
   json_integer(&f, "trials", ended(sim));
   json_number(&f, "factor_of_safety", factor);
@@ -88,11 +93,12 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number(&f, "stability_number", stability_number(s, factor));
   json_number_if(&f, slope_pool(s) > 0.0, "pool", slope_pool(s));
   slope_circle circle;
-  const double circles = circles_factor(s, &circle);
-  json_number(&f, "slip_circles", circles);
-  json_number_if(&f, !isnan(circles), "circle_x", circle.x + s->crest);
-  json_number_if(&f, !isnan(circles), "circle_y", circle.y + s->base);
-  json_number_if(&f, !isnan(circles), "circle_radius", circle.radius);
+  const comparison circles = compare_circles(sim, &circle);
+  const bool fails_so = compare_holds(&circles);
+  json_comparison(&f, "slip_circles", &circles);
+  json_number_if(&f, fails_so, "circle_x", circle.x + s->crest);
+  json_number_if(&f, fails_so, "circle_y", circle.y + s->base);
+  json_number_if(&f, fails_so, "circle_radius", circle.radius);
   json_number_if(&f, s->runout && ended(sim) > 0, "runout", sim->front);
   json_number_if(&f, s->runout && ended(sim) > 0, "lost_behind_crest", sim->lost);
   json_end(&f);
@@ -202,8 +208,11 @@ static void print(const simulation *sim) {
            found_factor(sim), stands, fails);
   if (slope_pool(s) > 0.0) printf("a pool stands %.4g m above the toe\n", slope_pool(s));
   slope_circle circle;
-  const double circles = circles_factor(s, &circle);
-  if (!isnan(circles)) printf("slip circles (Bishop's simplified method): %.3f\n", circles);
+  const comparison circles = compare_circles(sim, &circle);
+  if (compare_holds(&circles))
+    printf("slip circles (Bishop's simplified method): %.3f\n", circles.reference);
+  compare_tell(&circles);
+  sand_print(&s->voids, s->psi);
 }
 
 /* The first stress is no equilibrium: ground that stands moves, in proportion to 1/E, until it has

@@ -7,6 +7,7 @@
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
+#include "common/sand.h"
 #include "common/units.h"
 
 enum { SLOPE_SAMPLES = 40, SLOPE_TRIALS = 24, SLOPE_POINTS = 64 };
@@ -14,7 +15,8 @@ enum { FLOW_NONE, FLOW_ALONG };
 #define WATER 1000.0 /* kg/m3 */
 
 typedef struct settings {
-  double height, slope, base, crest, toe;    /* m; slope: horizontal per vertical */
+  double height, slope, base, crest, toe; /* m; slope: horizontal per vertical */
+  sand_voids voids;
   double phi, psi, cohesion;                 /* degrees, degrees, Pa */
   double gradient;                           /* Pa/m, growth of the cohesion below the crest */
   double residual_phi, residual_cohesion;    /* NaN: as phi and cohesion */

@@ -1,15 +1,18 @@
 /* breakwater.c - a caisson on sand under waves: water (mps_fluid), sand (mps_mpm, Drucker-Prager)
  * and a free rigid body between them, loaded by both. The caisson's front is the tank's right wall.
  * In every step of the water the steps of sand and body are rolled back and repeated, until the
- * accelerations given to the water are those of body and sand under its pressures (mps/couple.h).
+ * accelerations given to the water are those of body and sand under its pressures
+ * (mps/experimental/coupling.h).
  *
  * Ends with 0 where they agreed in every step, the caisson slid by less than a hundredth of a
  * spacing of the water, and the friction of the sand balanced the force of the water.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include <mps/couple.h>
+#define MPS_EXPERIMENTAL 1
+#include <mps/experimental/coupling.h>
 #include <mps/fluid.h>
-#include <mps/geostatic.h>
+#include <mps/soil.h>
 #include <mps/mpm.h>
+#include <mps/experimental/fluid_parts.h>
 
 #include <math.h>
 #include <stdbool.h>
@@ -101,7 +104,9 @@ static mps_status make_water(mps_context *context, sea *s) {
   mps_status status = mps_particles_create(context, &set, &s->water);
   if (status == MPS_OK) status = mps_particles_fill_box(s->water, lo, hi, NULL);
   if (status == MPS_OK) status = mps_fluid_create(context, s->water, &def, &s->fluid);
-  if (status == MPS_OK) status = mps_signal_create_sine(context, 1.0, 0.01, 0.0, &s->piston);
+  if (status == MPS_OK)
+    status = mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.01, 0.0,
+                                    &s->piston);
   if (status == MPS_OK) status = add_wall(s, 0.0, 0.0, 1.0);
   if (status == MPS_OK) status = add_wall(s, 0.0, 1.0, 0.0);
   if (status == MPS_OK) status = add_wall(s, LENGTH, -1.0, 0.0);
@@ -151,7 +156,7 @@ static mps_status answer(sea *s, const double *d, const double *v, const double 
     speed[k] = v[k] + DT * mean[k];
     moved[k] = d[k] + 0.5 * DT * (v[k] + speed[k]);
   }
-  mps_status status = mps_fluid_set_wall_motion(s->fluid, FRONT, moved, speed);
+  mps_status status = mps_fluid_set_boundary_motion(s->fluid, FRONT, moved, speed);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(s->fluid);
   if (status == MPS_OK) status = mps_fluid_get_reaction(s->fluid, FRONT, &r);
   if (status == MPS_OK) status = mps_mpm_rollback(s->mpm, s->before);

@@ -4,7 +4,7 @@
 
 The water is libmps'; the wall, 10 kg on a spring of 211.8 kN/m, stands for a code of yours, which needs no libmps. It is
 released 1 mm off its rest. In every step the water sends its force on the wall and receives the wall's mean acceleration,
-until both agree (mps/couple.h, the program of docs/coupling.md). The wall prints its angular frequency beside that of
+until both agree (mps/experimental/coupling.h, the program of docs/coupling.md). The wall prints its angular frequency beside that of
 potential flow. SPDX-License-Identifier: BSD-3-Clause
 """
 import math
@@ -66,7 +66,7 @@ def run_water():
         both.begin(None, mean)
         done = False
         while not done:
-            fluid.set_wall_motion(wall, None, [velocity + DT * mean[0]])
+            fluid.set_boundary_motion(wall, None, [velocity + DT * mean[0]])
             fluid.solve_pressure()
             other.send("force", [TRY, -fluid.get_reaction(wall).force[0]])
             done = both.next(other.receive("acceleration"), mean)

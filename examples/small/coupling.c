@@ -36,10 +36,10 @@ static mps_status make_bar(mps_context *context, double more, double force, bar 
   if (status == MPS_OK) status = mps_particles_select_box(b->set, end, hi, 2, &count, b->ends);
   mps_material *stuff = NULL, *heavy = NULL;
   if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, 0.0, &stuff);
-  if (status == MPS_OK) status = mps_particles_set_material(b->set, stuff, density, 0, NULL);
+  if (status == MPS_OK) status = mps_particles_set_material(b->set, stuff, density, NULL, 0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, 0.0, &heavy);
   if (status == MPS_OK)
-    status = mps_particles_set_material(b->set, heavy, density + more, count, b->ends);
+    status = mps_particles_set_material(b->set, heavy, density + more, b->ends, count);
   mps_material_destroy(&stuff);
   mps_material_destroy(&heavy);
   if (status == MPS_OK) status = mps_elastic_create(context, b->set, NULL, &b->solver);

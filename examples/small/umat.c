@@ -5,7 +5,9 @@
  * In pure shear strain e (exx = e, eyy = -e) the plastic strain is
  *   p = (2 sqrt(3) G e - yield) / (3 G + H),   sxx = (yield + H p) / sqrt(3).
  * SPDX-License-Identifier: BSD-3-Clause */
+#define MPS_EXPERIMENTAL 1
 #include <mps/mpm.h>
+#include <mps/experimental/material_point.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -79,7 +81,9 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   if (status == MPS_OK) status = mps_mpm_create(context, set, law, &def, &mpm);
   if (status == MPS_OK) status = mps_mpm_run(mpm, 5e-3, 1, NULL, NULL);
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(set, mps_material_history_field(law, 0), &kept);
+  char field[100]; /* of the first history column */
+  snprintf(field, sizeof field, "%s.%s", mps_material_name(law), mps_material_history_name(law, 0));
+  if (status == MPS_OK) status = mps_particles_view(set, field, &kept);
   *length = *plastic = 0.0;
   for (int64_t k = 0; status == MPS_OK && k < kept.shape[0]; k++) {
     *length = fmax(*length, *mps_view_f64(&x, k, 0));

@@ -4,7 +4,9 @@
  * The shear stress tau at a constant shear strain obeys dtau/dt = -G B tau^n, so that
  *   tau(t) = (tau0^(1 - n) + (n - 1) G B t)^(-1/(n - 1)).
  * SPDX-License-Identifier: BSD-3-Clause */
+#define MPS_EXPERIMENTAL 1
 #include <mps/material.h>
+#include <mps/experimental/material_point.h>
 
 #include <math.h>
 #include <stdio.h>

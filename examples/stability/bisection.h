@@ -3,7 +3,7 @@
 #ifndef EXAMPLES_STABILITY_BISECTION_H
 #define EXAMPLES_STABILITY_BISECTION_H
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/dynamics.h>
 
 #include <math.h>

@@ -6,7 +6,8 @@
 #include "common/column.h"
 #include "regression.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
+#include <mps/experimental/domain.h>
 
 #include <math.h>
 #include <stdio.h>

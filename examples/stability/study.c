@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "study.h"
 
+#include <mps/experimental/dynamics_predict.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>

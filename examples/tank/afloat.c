@@ -34,7 +34,7 @@ mps_status tank_make_box(mps_context *context, tank_model *m) {
 mps_status tank_launch(tank_model *m) {
   const double load[3] = {0.0, -m->s.amplitude * tank_float_stiffness(&m->s), 0.0};
   mps_fluid_contact_def def = mps_fluid_contact_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER, def.floats = 1;
+  def.kind = MPS_BOUNDARY_ROLLER;
   const mps_status status = mps_fluid_add_contact(m->fluid, m->box, &def, NULL);
   return status == MPS_OK ? mps_body_set_load(m->box, load, NULL) : status;
 }

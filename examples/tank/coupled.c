@@ -3,12 +3,13 @@
  * spring has one, a plate six), moved by the generalised-alpha method.
  *
  * In a step the pressures of the water are computed under a guess of the accelerations, and the
- * accelerations of the structure under these pressures; mps/couple.h finds the common solution. The
- * pressures are those of the middle of the step; the structure's balance is that of alpha_f before
- * its end, and its forces are interpolated linearly there.
+ * accelerations of the structure under these pressures; mps/experimental/coupling.h finds the
+ * common solution. The pressures are those of the middle of the step; the structure's balance is
+ * that of alpha_f before its end, and its forces are interpolated linearly there.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
+#include <mps/experimental/fluid_parts.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,7 +126,7 @@ static mps_status move_wall(tank_model *m, const double *mean, double dt) {
   if (!p->points) {
     const tank_motion next = go_on(p, 0, mean[0], dt);
     const double d = next.d - p->start;
-    return mps_fluid_set_wall_motion(m->fluid, p->wall, &d, &next.v);
+    return mps_fluid_set_boundary_motion(m->fluid, p->wall, &d, &next.v);
   }
   memset(p->displacement, 0, 2 * (size_t)p->points * sizeof *p->displacement);
   for (int k = 0; k < p->shapes; k++) {
@@ -135,7 +136,7 @@ static mps_status move_wall(tank_model *m, const double *mean, double dt) {
       p->velocity[i] += next.v * p->shape[k * p->points + i];
     }
   }
-  return mps_fluid_set_wall_motion(m->fluid, p->wall, p->displacement, p->velocity);
+  return mps_fluid_set_boundary_motion(m->fluid, p->wall, p->displacement, p->velocity);
 }
 
 /* Force (N) of the water and of all else on each shape. */

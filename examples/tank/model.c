@@ -4,7 +4,7 @@
 
 #include "common/frame.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -76,7 +76,8 @@ static mps_status add_walls(mps_context *context, tank_model *m) {
   mps_status status = MPS_OK;
   m->motion = (waves_piston){m->s.amplitude, m->s.period, m->s.ramp};
   if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
-    status = mps_signal_create_user(context, waves_move_piston, &m->motion, &m->piston);
+    status = mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, waves_move_piston,
+                                    &m->motion, NULL, &m->piston);
   if (tank_is_coupled(&m->s)) status = tank_make_structure(context, m);
   status = app_settle(m->a, status);
   if (status == MPS_OK) status = add_bed(m);
@@ -88,6 +89,16 @@ static mps_status add_walls(mps_context *context, tank_model *m) {
 mps_status tank_build(app *a, tank_model *m) {
   mps_context *context = a->context;
   const tank_settings *s = &m->s;
+  static const rows_column columns[] = {{"left", "N", 0},
+                                        {"right", "N", 0},
+                                        {"level", "m", TANK_GAUGES + 1},
+                                        {"a", "m", 0},
+                                        {"b", "m", 0},
+                                        {"centre", "Pa", 0},
+                                        {"kinetic", "J", 0},
+                                        {"potential", "J", 0},
+                                        {"deflection", "m", 0},
+                                        {0}};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   set.spacing = s->spacing;
@@ -114,8 +125,7 @@ mps_status tank_build(app *a, tank_model *m) {
   if (status == MPS_OK && s->kind == TANK_FLOAT) status = tank_launch(m);
   m->restarted = NAN;
   m->capacity = (int64_t)ceil(s->duration / s->sample - 1e-9);
-  m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
-  return status == MPS_OK && !m->sample ? MPS_ERROR_MEMORY : status;
+  return status == MPS_OK ? rows_begin(&m->rows, mps_fluid_solver(m->fluid), columns) : status;
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */
@@ -166,6 +176,11 @@ static mps_status measure_tank(tank_model *m, tank_sample *sample) {
   return MPS_OK;
 }
 
+void tank_look(tank_model *m) {
+  rows_look(&m->rows);
+  m->sample = m->rows.row, m->samples = m->rows.count;
+}
+
 static mps_status take_sample(tank_model *m) {
   tank_sample sample = {.t = mps_fluid_time(m->fluid)};
   mps_totals sum;
@@ -174,8 +189,9 @@ static mps_status take_sample(tank_model *m) {
   if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
   if (status != MPS_OK) return status;
   sample.kinetic = sum.kinetic, sample.potential = sum.strain;
-  m->sample[m->samples++] = sample;
-  return MPS_OK;
+  status = rows_add(&m->rows, &sample);
+  tank_look(m);
+  return status;
 }
 
 /* Frames are spread over the samples; the first is the start. */
@@ -217,6 +233,6 @@ void tank_free(tank_model *m) {
   mps_body_destroy(&m->box);
   mps_signal_destroy(&m->piston);
   mps_particles_destroy(&m->water);
-  free(m->sample);
+  rows_end(&m->rows);
   free(m->linear);
 }

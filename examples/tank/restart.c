@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-/* Header; then the samples and the memory of the coupling. */
+/* Header; then the memory of the coupling. */
 typedef struct notes {
-  int64_t samples, learnt;
+  int64_t learnt;
   mps_fluid_report report;
   tank_motion at[TANK_SHAPES];
   double force[TANK_SHAPES];
@@ -17,22 +17,19 @@ static void pass(void *user, resume_bytes *b) {
   tank_structure *p = &m->structure;
   notes n;
   memset(&n, 0, sizeof n);
-  n.samples = m->samples, n.learnt = p->learnt, n.report = m->report;
+  n.learnt = p->learnt, n.report = m->report;
   memcpy(n.at, p->at, sizeof n.at);
   memcpy(n.force, p->force, sizeof n.force);
   resume_pass(b, &n, sizeof n);
-  if (resume_wrong(b,
-                   n.samples < 0 || n.samples > m->capacity || n.learnt < 0 || n.learnt > p->room))
-    return;
-  m->samples = n.samples, p->learnt = n.learnt, m->report = n.report;
+  if (resume_wrong(b, n.learnt < 0 || n.learnt > p->room)) return;
+  p->learnt = n.learnt, m->report = n.report;
   memcpy(p->at, n.at, sizeof n.at);
   memcpy(p->force, n.force, sizeof n.force);
-  resume_pass(b, m->sample, (size_t)m->samples * sizeof *m->sample);
   resume_pass(b, p->memory, (size_t)p->learnt * sizeof *p->memory);
 }
 
 static resume parts(tank_model *m) {
-  return resume_of_fluid("mps-tank 3", m->table, pass, m, m->fluid, m->a);
+  return resume_of_fluid("mps-tank 4", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status tank_save(void *user) {
@@ -50,5 +47,6 @@ mps_status tank_peek(mps_context *context, tank_model *m) {
 mps_status tank_restore(mps_context *context, tank_model *m) {
   const resume r = parts(m);
   const mps_status status = resume_go_on(context, &r, m->s.restart, &m->restarted, &m->saves);
+  tank_look(m);
   return status == MPS_OK ? tank_recall(&m->structure) : status;
 }

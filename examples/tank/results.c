@@ -3,6 +3,7 @@
 #include "tank.h"
 
 #include "common/area.h"
+#include "common/compare.h"
 #include "common/plot.h"
 #include "common/series.h"
 
@@ -374,6 +375,40 @@ static bool draw_structure(app *a, const tank_model *m) {
   return plot_close(&f, m->s.out, "structure");
 }
 
+/* ---- theory ---------------------------------------------------------------------------------- */
+
+#define STEEP                                                                                      \
+  0.2 /* k a: amplitudes of waves up to which linear theory holds within some percent              \
+       */
+#define SHALLOW 0.2   /* of the depth */
+#define CREEPING 1e-2 /* nu k^2/omega: waves that viscosity damps within some periods */
+#define UPRIGHT 0.05  /* rad */
+#define THIN 0.3      /* of a plate's thickness: deflections without tension */
+
+/* Largest |deflection| of the run, m. */
+static double most_deflection(const tank_model *m) {
+  double most = 0.0;
+  for (int64_t k = 0; k < m->samples; k++) most = fmax(most, fabs(m->sample[k].deflection));
+  return most;
+}
+
+/* Small motion (amplitude a at wave number k) of water without viscosity. */
+static comparison compare_linear(const tank_model *m, const char *source, double value,
+                                 double reference, double a, double k) {
+  const tank_settings *s = &m->s;
+  const double omega = sqrt(WAVES_G * k * tanh(k * s->depth));
+  comparison c = compare_with(source, value, reference);
+  compare_require(&c, isfinite(a), "the window has no whole period of the run");
+  compare_require(&c, a <= SHALLOW * s->depth,
+                  "it is of small motion, and the amplitude is %.2g of the depth", a / s->depth);
+  compare_require(&c, k * a <= STEEP,
+                  "it is of small motion, and the steepness k a of these waves is %.2g", k * a);
+  compare_require(&c, s->viscosity * k * k <= CREEPING * omega,
+                  "it is of water without viscosity, and nu k^2 is %.2g times the frequency",
+                  s->viscosity * k * k / omega);
+  return c;
+}
+
 /* ---- summary --------------------------------------------------------------------------------- */
 
 static void summarise_waves(output *f, const tank_model *m, const figures *g) {
@@ -382,23 +417,29 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   const double havelock = 2.0 * s->amplitude * waves_havelock(k, s->depth);
   const double H = harmonic(m, m->sample, TANK_GAUGES, NULL);
   const double gauge = gauges_of(m) ? 2.0 * harmonic(m, m->sample, 0, NULL) : NAN;
+  const double wall = harmonic(m, m->linear, TANK_GAUGES, NULL);
+  const comparison level =
+      compare_linear(m, "linear potential flow", gauge,
+                     gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN, 0.5 * wall, k);
   json_number(f, "wave_number", k);
   json_number(f, "havelock_height", havelock);
   json_number(f, "gauge_height", gauge);
-  json_number(f, "gauge_height_linear", gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN);
+  json_comparison(f, "gauge_height_linear", &level);
   json_number(f, "wall_harmonic", H);
-  json_number(f, "wall_harmonic_linear", harmonic(m, m->linear, TANK_GAUGES, NULL));
+  const bool linear = !level.reason[0];
+  json_number_if(f, linear, "wall_harmonic_linear", wall);
   json_number(f, "force_harmonic", harmonic(m, m->sample, FORCE, NULL));
-  json_number(f, "force_harmonic_linear", harmonic(m, m->linear, FORCE, NULL));
+  json_number_if(f, linear, "force_harmonic_linear", harmonic(m, m->linear, FORCE, NULL));
   json_number(f, "crest_force", g->most);
   json_number(f, "trough_force", g->least);
   json_number(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
   json_number(f, "sainflou_trough", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, -1));
-  if (!isnan(gauge))
-    printf(
-        "wave height at the gauge %.4f m, linear potential flow in this tank %.4f m, Havelock for "
-        "an endless flume %.4f m\n",
-        gauge, 2.0 * harmonic(m, m->linear, 0, NULL), havelock);
+  if (!isnan(gauge)) printf("wave height at the gauge %.4f m", gauge);
+  if (!isnan(gauge) && compare_holds(&level))
+    printf(", linear potential flow in this tank %.4f m, Havelock for an endless flume %.4f m",
+           level.reference, havelock);
+  if (!isnan(gauge)) printf("\n");
+  if (level.reason[0]) compare_tell(&level);
   if (!isnan(H) && !isnan(g->most))
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
            g->most, waves_sainflou(k, s->depth, H, 1), g->least,
@@ -423,17 +464,23 @@ static void summarise_resonance(output *f, const tank_model *m) {
   json_number(f, "stiffness", s->stiffness);
   json_number(f, "added_mass", flume.added_mass);
   json_number(f, "radiation_damping", flume.damping);
+  comparison c = compare_linear(m, "linear potential flow", wall, exact, fmax(wall, s->amplitude),
+                                waves_number(s->period, s->depth));
   json_number(f, "deflection", wall);
-  json_number(f, "deflection_exact", exact);
+  json_comparison(f, "deflection_exact", &c);
   json_number(f, "deflection_flume", flume.amplitude);
   json_number(f, "phase", degrees(WAVES_PI - phase));
-  json_number(f, "phase_exact", degrees(WAVES_PI - linear));
+  json_number_if(f, compare_holds(&c), "phase_exact", degrees(WAVES_PI - linear));
   json_number(f, "lag_flume", degrees(flume.lag));
   if (isnan(wall)) return;
-  printf("wall %.3f mm, linear potential flow in this tank %.3f mm (%+.2f %%), phase %+.1f degrees "
-         "from it; in an endless flume %.3f mm\n",
-         1e3 * wall, 1e3 * exact, 100.0 * (wall / exact - 1.0), degrees(phase - linear),
-         1e3 * flume.amplitude);
+  printf("wall %.3f mm", 1e3 * wall);
+  if (compare_holds(&c))
+    printf(
+        ", linear potential flow in this tank %.3f mm (%+.2f %%), phase %+.1f degrees from it; in "
+        "an endless flume %.3f mm",
+        1e3 * exact, 100.0 * compare_error(&c), degrees(phase - linear), 1e3 * flume.amplitude);
+  printf("\n");
+  compare_tell(&c);
 }
 
 static void summarise_structure(output *f, const tank_model *m, const figures *g) {
@@ -444,34 +491,58 @@ static void summarise_structure(output *f, const tank_model *m, const figures *g
   if (mps_coupling_get_report(m->structure.coupling, &report) == MPS_OK)
     json_number(f, "solutions_a_step",
                 (double)report.all_repeats / fmax((double)report.steps, 1.0));
+  const double most = most_deflection(m), size = plate ? s->plate_thickness : s->depth;
+  const double small = plate ? THIN : SHALLOW;
+  comparison omega = compare_with("potential flow", 2.0 * WAVES_PI / g->period, exact);
+  comparison rest = compare_with("a plate at rest", g->deflection, tank_plate_deflection(s));
+  comparison *const both[] = {&omega, &rest};
+  for (int k = 0; k < 2; k++)
+    compare_require(both[k], most <= small * size,
+                    "it is of small motion, and the %s moves by %.2g of %s",
+                    plate ? "plate" : "wall", most / size, plate ? "its thickness" : "the depth");
   json_number(f, "omega", 2.0 * WAVES_PI / g->period);
-  json_number(f, "omega_exact", exact);
+  json_comparison(f, "omega_exact", &omega);
   json_number(f, "decay", g->decay);
   json_number(f, "deflection", g->deflection);
-  json_number(f, "deflection_exact", plate ? tank_plate_deflection(s) : 0.0);
-  if (!isnan(g->period))
-    printf("omega %.3f rad/s, potential flow %.3f (%+.2f %%), decay %.3f 1/s\n",
-           2.0 * WAVES_PI / g->period, exact, 100.0 * (2.0 * WAVES_PI / g->period / exact - 1.0),
-           g->decay);
-  if (plate && !isnan(g->deflection))
+  if (plate)
+    json_comparison(f, "deflection_exact", &rest);
+  else
+    json_number(f, "deflection_exact", 0.0);
+  if (!isnan(g->period)) {
+    printf("omega %.3f rad/s", 2.0 * WAVES_PI / g->period);
+    if (compare_holds(&omega))
+      printf(", potential flow %.3f (%+.2f %%)", exact, 100.0 * compare_error(&omega));
+    printf(", decay %.3f 1/s\n", g->decay);
+  }
+  if (plate && !isnan(g->deflection) && compare_holds(&rest))
     printf("mean deflection %.4g m, at rest %.4g m (%+.2f %%)\n", g->deflection,
-           tank_plate_deflection(s), 100.0 * (g->deflection / tank_plate_deflection(s) - 1.0));
+           tank_plate_deflection(s), 100.0 * compare_error(&rest));
+  compare_tell(&omega);
 }
 
 static void summarise_box(output *f, const tank_model *m, const figures *g) {
   const double exact = tank_float_period(&m->s);
+  comparison c = compare_with("potential flow", g->period, exact);
+  compare_require(&c, m->roll <= UPRIGHT,
+                  "it is of a box that stays upright, and this one rolls by up to %.1f degrees",
+                  degrees(m->roll));
+  compare_require(&c, m->s.amplitude <= SHALLOW * m->s.draft,
+                  "it is of small motion, and the box is let go %.2g of its draft from rest",
+                  m->s.amplitude / m->s.draft);
   json_number(f, "period", g->period);
-  json_number(f, "period_exact", exact);
+  json_comparison(f, "period_exact", &c);
   json_number(f, "decay", g->decay);
   json_number(f, "deflection", g->deflection);
   json_number(f, "deflection_exact", 0.0 - m->s.amplitude);
   json_number(f, "roll_max", m->roll);
-  if (!isnan(g->period))
-    printf(
-        "heave: period %.4f s, potential flow %.4f s (%+.2f %%), decay %.3f 1/s; mean %.3f mm, at "
-        "rest %.3f mm\n",
-        g->period, exact, 100.0 * (g->period / exact - 1.0), g->decay, 1e3 * g->deflection,
-        -1e3 * m->s.amplitude);
+  if (!isnan(g->period)) {
+    printf("heave: period %.4f s", g->period);
+    if (compare_holds(&c))
+      printf(", potential flow %.4f s (%+.2f %%)", exact, 100.0 * compare_error(&c));
+    printf(", decay %.3f 1/s; mean %.3f mm, at rest %.3f mm\n", g->decay, 1e3 * g->deflection,
+           -1e3 * m->s.amplitude);
+  }
+  compare_tell(&c);
 }
 
 /* The largest relative difference of the pressure in the middle, but of the first samples: the
@@ -491,16 +562,24 @@ static void summarise_drop(output *f, const tank_model *m) {
   const tank_sample *last = &m->sample[m->samples - 1];
   double a, b, centre;
   tank_drop(m->s.depth, last->t, &a, &b, &centre);
+  const double creep = m->s.viscosity / (m->s.depth * m->s.depth); /* over the rate of 1/s */
+  comparison c = compare_with("a drop without viscosity", last->a, a);
+  compare_require(&c, creep <= CREEPING, "nu over the square of the radius is %.2g times its rate",
+                  creep);
+  const bool holds = compare_holds(&c);
   json_number(f, "a", last->a);
-  json_number(f, "a_exact", a);
+  json_comparison(f, "a_exact", &c);
   json_number(f, "b", last->b);
-  json_number(f, "b_exact", b);
+  json_number_if(f, holds, "b_exact", b);
   json_number(f, "p_c", last->centre);
-  json_number(f, "p_c_exact", centre);
-  json_number(f, "p_c_error_max", drop_error(m));
-  printf(
-      "semi-axes %.4f and %.4f m, theory %.4f and %.4f m; pressure in the middle within %.1f %%\n",
-      last->a, last->b, a, b, 100.0 * drop_error(m));
+  json_number_if(f, holds, "p_c_exact", centre);
+  json_number_if(f, holds, "p_c_error_max", drop_error(m));
+  printf("semi-axes %.4f and %.4f m", last->a, last->b);
+  if (holds)
+    printf(", theory %.4f and %.4f m; pressure in the middle within %.1f %%", a, b,
+           100.0 * drop_error(m));
+  printf("\n");
+  compare_tell(&c);
 }
 
 /* 1/s. Crests of the force also hold its second harmonic, which oscillates with another mode: two
@@ -526,12 +605,16 @@ static void summarise_tank(output *f, const tank_model *m) {
   if (s->kind == TANK_SLOSHING) {
     const double exact = waves_sloshing_period(s->length, s->depth);
     const double decay = sloshing_decay(m, g.period);
+    const comparison c =
+        compare_linear(m, "linear theory", g.period, exact, s->amplitude, WAVES_PI / s->length);
     json_number(f, "period", g.period);
-    json_number(f, "period_exact", exact);
+    json_comparison(f, "period_exact", &c);
     json_number(f, "decay", decay);
-    if (!isnan(g.period))
-      printf("period %.5f s, theory %.5f s (%+.2f %%)\n", g.period, exact,
-             100.0 * (g.period / exact - 1.0));
+    if (!isnan(g.period)) printf("period %.5f s", g.period);
+    if (!isnan(g.period) && compare_holds(&c))
+      printf(", theory %.5f s (%+.2f %%)", exact, 100.0 * compare_error(&c));
+    if (!isnan(g.period)) printf("\n");
+    compare_tell(&c);
     if (!isnan(decay)) printf("the amplitude decays with %.4f 1/s\n", decay);
   }
   if (s->kind == TANK_FLOAT) summarise_box(f, m, &g);
@@ -577,7 +660,8 @@ bool tank_write(app *a, tank_model *m) {
   if (m->linear && !write_linear(a, m)) return false;
   if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;
   if (!write_particles(a, m) || !write_summary(a, m) || !draw_water(a, m) ||
-      (!drop && !draw_force(a, m)) || (tank_swings(&m->s) && !draw_structure(a, m)))
+      (!drop && !draw_force(a, m)) || (tank_swings(&m->s) && !draw_structure(a, m)) ||
+      !tank_write_density(a, m))
     return false;
   app_tell_results(a, m->s.out);
   return true;

@@ -5,10 +5,11 @@
 
 #include "common/output.h"
 #include "common/resume.h"
+#include "common/rows.h"
 #include "common/waves.h"
 
 #include <mps/body.h>
-#include <mps/couple.h>
+#include <mps/experimental/coupling.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
 
@@ -37,6 +38,7 @@ typedef struct tank_settings {
   double plate_length, plate_thickness, young, poisson, plate_density;
   double gauge[TANK_GAUGES]; /* m, NaN where there is none */
   double window[2];          /* s: of the harmonics and means */
+  double density_at;         /* m: x of a vertical line; NaN: none */
   int64_t threads, frames;
   double every_checkpoint; /* s */
   const char *out, *checkpoint, *restart;
@@ -82,7 +84,8 @@ typedef struct tank_model {
   mps_body *box;
   tank_structure structure;
   mps_recorder *series;
-  tank_sample *sample;
+  result_rows rows;
+  const tank_sample *sample; /* of `rows` */
   int64_t samples, capacity;
   double roll;         /* rad: of the box, the largest since the start or restart */
   tank_sample *linear; /* tank_linear at the samples, NULL where there is no piston */
@@ -103,7 +106,8 @@ static inline bool tank_swings(const tank_settings *s) {
   return tank_is_coupled(s) || s->kind == TANK_FLOAT;
 }
 
-/* model.c: water, walls, fluid; a run that fills `sample`. */
+/* model.c: water, walls, fluid; a run that fills `sample`; tank_look sets it from `rows`. */
+void tank_look(tank_model *m);
 mps_status tank_build(app *a, tank_model *m);
 mps_status tank_run(app *a, tank_model *m);
 void tank_free(tank_model *m);
@@ -161,6 +165,10 @@ double tank_resonant_stiffness(const tank_settings *s, double ratio);
 mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample *sample,
                        tank_sample *out);
 
+/* density.c: how far the line must be from the walls (m); its table and picture, nothing without
+ * one. */
+double tank_density_reach(const tank_settings *s);
+bool tank_write_density(app *a, const tank_model *m);
 /* results.c: tables, summary, pictures, the last lines on stdout. */
 bool tank_write(app *a, tank_model *m);
 /* theory.c: warns of motions beyond the range of model and theory. */

@@ -8,7 +8,8 @@
 #include "common/table.h"
 #include "wall.h"
 
-#include <mps/geostatic.h>
+#include <mps/soil.h>
+#include <mps/mpm.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,19 +50,21 @@ static void weigh(const settings *s, double from, double to, double *total, doub
 /* ---- options --------------------------------------------------------------------------------- */
 
 static const char *fault(const double *row) {
-  if (!(row[0] > 0.0 && row[0] <= 1e6)) return "thickness_m must be above 0, at most 1e6";
-  if (!(row[1] >= 0.0 && row[1] <= 50.0)) return "phi_degrees must be in [0, 50]";
-  if (!(row[2] >= 0.0 && row[2] <= row[1])) return "psi_degrees must be at least 0, at most phi";
-  if (!(row[3] >= 0.0 && row[3] <= 1e11)) return "cohesion_Pa must be in [0, 1e11]";
+  if (!(row[2] <= row[1])) return "psi_degrees must be at most phi_degrees";
   if (row[1] == 0.0 && row[3] == 0.0) return "phi_degrees and cohesion_Pa must not both be 0";
-  if (!(row[4] >= 1e-3 && row[4] <= 1e5)) return "density_kg_m3 must be in [1e-3, 1e5]";
   return NULL;
 }
 
 static const char *read_layers(settings *s) {
-  static const table_def def = {"layer",
-                                "thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3",
-                                5, WALL_LAYERS, fault};
+  static const table_def def = {.row = "layer",
+                                .column = {{"thickness", "m", "m", 0.0, 1e4, true},
+                                           {"phi", "degrees", "degrees", 0.0, 50.0, false},
+                                           {"psi", "degrees", "degrees", 0.0, 50.0, false},
+                                           {"cohesion", "Pa", "Pa", 0.0, 1e9, false},
+                                           {"density", "kg/m3", "kg/m3", 500.0, 5000.0, false}},
+                                .count = 5,
+                                .most = WALL_LAYERS,
+                                .fault = fault};
   static char why[600];
   double rows[5 * WALL_LAYERS];
   int64_t count = 0;
@@ -132,6 +135,7 @@ mps_status wall_make_law(mps_context *context, const settings *s, int k, mps_mat
   mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
   law.young = s->young, law.poisson = s->poisson;
   law.friction = l->phi * DEGREE, law.dilation = l->psi * DEGREE, law.cohesion = l->cohesion;
+  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   return mps_material_create_mohr_coulomb(context, &law, out);
 }
 
@@ -151,7 +155,7 @@ mps_status wall_set_laws(mps_context *context, const settings *s, mpm_model *m) 
     int64_t all = count;
     status = wall_make_law(context, s, k, &law);
     if (status == MPS_OK) status = mpm_model_sum(m, &all);
-    if (status == MPS_OK && all > 0) status = mps_mpm_set_material(m->mpm, law, count, ids);
+    if (status == MPS_OK && all > 0) status = mps_mpm_set_material(m->mpm, law, ids, count);
     mps_material_destroy(&law);
   }
   free(ids);

@@ -6,7 +6,8 @@
  * in front upwards. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
-#include <mps/geostatic.h>
+#include <mps/soil.h>
+#include <mps/mpm.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -125,45 +126,31 @@ static mps_status make_wall(mps_context *context, simulation *sim) {
 /* ---- the model ------------------------------------------------------------------------------- */
 
 /* The layers stand in a file, and must be those of the start. */
-static bool pass_layers(simulation *sim, resume_bytes *b) {
-  const settings *s = &sim->s;
-  if (!s->layers_file) return true;
-  const bool same = resume_same(b, &s->layers, sizeof s->layers) &&
-                    resume_same(b, s->layer, (size_t)s->layers * sizeof *s->layer);
-  if (mpm_course_same(&sim->course, b, same, "the layers have")) return true;
-  sim->rows = 0;
-  return false;
-}
-
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
-  resume_pass(b, &sim->rows, sizeof sim->rows);
-  if (resume_wrong(b, sim->rows < 0 || sim->rows > WALL_SAMPLES)) {
-    sim->rows = 0;
-    return;
-  }
-  if (!pass_layers(sim, b)) return;
-  const size_t bytes = (size_t)sim->rows * sizeof *sim->path;
-  resume_pass(b, &sim->last_time, sizeof sim->last_time);
-  resume_pass(b, sim->last, sizeof sim->last);
-  resume_pass(b, sim->path, bytes);
-  resume_pass(b, sim->across, bytes);
-  resume_pass(b, sim->along, bytes);
-  resume_pass(b, sim->moment, bytes);
+  const settings *s = &sim->s;
+  if (!s->layers_file) return;
+  const bool same = resume_same(b, &s->layers, sizeof s->layers) &&
+                    resume_same(b, s->layer, (size_t)s->layers * sizeof *s->layer);
+  mpm_course_same(&sim->course, b, same, "the layers have");
 }
 
 mps_status wall_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  static const rows_column columns[] = {{"path", "m", 0},      {"across", "N/m", 0},
+                                        {"along", "N/m", 0},   {"moment", "N", 0},
+                                        {"impulse", "N s", 3}, {0}};
   sim->course = (mpm_course){.options = &s->course,
                              .m = &sim->m,
                              .directory = s->out,
                              .what = "ground",
                              .duration = s->path / s->rate,
-                             .key = "mps-wall 1",
+                             .key = "mps-wall 2",
                              .table = options_read(),
                              .pass = pass,
-                             .user = sim};
+                             .user = sim,
+                             .columns = columns};
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_ground(context, &sim->s, &sim->m);
   if (status == MPS_OK) status = wall_make_law(context, s, 0, &sim->m.material);
@@ -178,7 +165,7 @@ mps_status wall_build(mps_context *context, void *user) {
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->layers > 1) status = wall_set_laws(context, s, &sim->m);
   if (status == MPS_OK && s->base > 0.0)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK && s->surcharge > 0.0) status = press(s, &sim->m);
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->friction;
@@ -201,31 +188,31 @@ static mps_status take_sample(simulation *sim) {
   mps_status status = mps_body_get_reaction(sim->m.body[0], sim->face, &r);
   if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &now);
   if (status != MPS_OK) return status;
-  const double t = mps_mpm_time(sim->m.mpm), span = t - sim->last_time;
-  const double sums[3] = {r.impulse[0], r.impulse[1], r.moment_impulse[2]};
-  sim->path[sim->rows] = moved(sim, &now);
-  sim->across[sim->rows] = -(sums[0] - sim->last[0]) / span;
-  sim->along[sim->rows] = (sums[1] - sim->last[1]) / span;
-  sim->moment[sim->rows++] = (sums[2] - sim->last[2]) / span;
-  for (int c = 0; c < 3; c++) sim->last[c] = sums[c];
-  sim->last_time = t;
-  sim->m.samples = sim->rows;
-  return MPS_OK;
+  const int rows = wall_rows(sim);
+  const wall_row last = rows > 0 ? *wall_row_of(sim, rows - 1) : (wall_row){0};
+  wall_row row = {.t = mps_mpm_time(sim->m.mpm),
+                  .path = moved(sim, &now),
+                  .sums = {r.impulse[0], r.impulse[1], r.moment_impulse[2]}};
+  const double span = row.t - last.t;
+  row.across = -(row.sums[0] - last.sums[0]) / span;
+  row.along = (row.sums[1] - last.sums[1]) / span;
+  row.moment = (row.sums[2] - last.sums[2]) / span;
+  return mpm_course_add(&sim->course, &row);
 }
 
 mps_status wall_march(void *user) {
   simulation *sim = user;
   mps_status status = MPS_OK;
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->t_end);
-  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, WALL_SAMPLES);
-  while (sim->rows < WALL_SAMPLES && status == MPS_OK) {
-    const double t = sim->t_end * (sim->rows + 1) / WALL_SAMPLES;
+  if (wall_rows(sim) == 0) status = mpm_course_sample(&sim->course, 0, WALL_SAMPLES);
+  while (wall_rows(sim) < WALL_SAMPLES && status == MPS_OK) {
+    const double t = sim->t_end * (wall_rows(sim) + 1) / WALL_SAMPLES;
     status = mpm_model_advance(&sim->m, t, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = take_sample(sim);
-    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, WALL_SAMPLES);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, wall_rows(sim), WALL_SAMPLES);
   }
-  const mps_status taken = sim->rows > 0 ? mpm_snapshot_take(&sim->m, mps_mpm_time(sim->m.mpm),
-                                                             "plastic_strain", &sim->shot)
-                                         : MPS_OK;
+  const mps_status taken = wall_rows(sim) > 0 ? mpm_snapshot_take(&sim->m, mps_mpm_time(sim->m.mpm),
+                                                                  "plastic_strain", &sim->shot)
+                                              : MPS_OK;
   return mpm_course_end(&sim->course, status == MPS_OK ? taken : status);
 }

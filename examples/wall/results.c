@@ -1,6 +1,7 @@
 /* results.c - coefficients of earth pressure, tables and pictures of mps-wall.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/area.h"
+#include "common/compare.h"
 #include "common/plot.h"
 #include "wall.h"
 
@@ -8,14 +9,25 @@
 #include <stdio.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
+#define GROWTH 0.1 /* of the force, over the last half of the path: more is no limit state */
+#define FASTEST                                                                                    \
+  0.05 /* of (g H)^1/2: the speed of a wall beside whose pressure inertia is little                \
+        */
 
 /* Forces over rho g H^2/2. */
 typedef struct pressure {
   double across, along, height; /* height: of the force across over H above the toe */
-  double theory;                /* Rankine, of a smooth wall; Coulomb, active and rough; NaN */
+  comparison theory;            /* Rankine, of a smooth wall; Coulomb, active and rough */
   double cracked;               /* Rankine below a tension crack: active, smooth, cohesive; NaN */
   double reduced;               /* Rankine with Davis' strength: active, smooth, psi < phi; NaN */
 } pressure;
+
+/* Of the layers, degrees. */
+static double largest_dilation(const settings *s) {
+  double most = 0.0;
+  for (int k = 0; k < s->layers; k++) most = fmax(most, s->layer[k].psi);
+  return most;
+}
 
 /* Rankine's coefficient without cohesion. */
 static double rankine(const settings *s, const wall_layer *l) {
@@ -44,14 +56,59 @@ static double most_cohesion(const settings *s) {
   return most;
 }
 
+static bool is_associated(const settings *s) {
+  for (int k = 0; k < s->layers; k++)
+    if (s->layer[k].psi < s->layer[k].phi) return false;
+  return true;
+}
+
+/* Of the wedge that fails, along the surface, m. */
+static double reach(const settings *s) {
+  const double side = s->pressure == ACTIVE ? -1.0 : 1.0;
+  double most = 0.0;
+  for (int k = 0; k < s->layers; k++)
+    most = fmax(most, tan((45.0 + side * 0.5 * s->layer[k].phi) * DEGREE));
+  return most * s->height;
+}
+
+/* How much the force changes over the last half of the path, of its mean over the last fifth. */
+static double late_change(const simulation *sim, double across) {
+  const double half = wall_row_of(sim, wall_rows(sim) / 2)->across,
+               last = wall_row_of(sim, wall_rows(sim) - 1)->across;
+  return fabs(last - half) / (fabs(across) * wall_unit(&sim->s));
+}
+
 /* Rankine: K (rho g H^2/2 + q H) -+ 2 c sqrt(K) H, layer by layer. Coulomb's wedge on a vertical
  * wall whose friction is at most that of the ground: within some percent of the exact one in the
  * active case, not in the passive one, nor on a smooth bed, on which the ground at the toe slides
- * along with the wall. */
-static double find_theory(const settings *s) {
-  if (s->friction == 0.0) return wall_theory(s, rankine, false) / wall_unit(s);
-  if (s->pressure == PASSIVE || most_cohesion(s) > 0.0 || s->base == 0.0) return NAN;
-  return wall_theory(s, coulomb, false) / wall_unit(s);
+ * along with the wall. Both are of a wall that has moved far enough for the ground to yield. */
+static comparison find_theory(const simulation *sim, double across) {
+  const settings *s = &sim->s;
+  const bool smooth = s->friction == 0.0;
+  const double force = wall_theory(s, smooth ? rankine : coulomb, false);
+  comparison c = compare_with(smooth ? "Rankine" : "Coulomb", across, force / wall_unit(s));
+  compare_require(
+      &c, smooth || s->pressure == ACTIVE,
+      "Coulomb's plane wedge is far above the force of a rough wall in the passive case");
+  compare_require(&c, smooth || most_cohesion(s) == 0.0,
+                  "the coefficient is that of ground without cohesion");
+  compare_require(&c, smooth || s->base > 0.0,
+                  "on the smooth bed of --base 0 the ground at the toe slides along with the wall");
+  compare_require(&c, s->motion != TURNS_ABOUT_TOP,
+                  "the wall turns about its top, where the ground arches: the theory is of ground "
+                  "that yields everywhere");
+  compare_require(&c, force > 0.0, "the ground stands without the wall");
+  compare_require(&c, (smooth && s->base == 0.0) || is_associated(s),
+                  "with psi below phi the ground mobilises less than its strength");
+  compare_require(&c, s->length >= reach(s),
+                  "the ground is %.3g m long, its wedge would reach %.3g m", s->length, reach(s));
+  compare_require(&c, s->rate <= FASTEST * sqrt(s->gravity * s->height),
+                  "the wall moves at %.3g m/s, %.2g times (g H)^1/2: inertia counts", s->rate,
+                  s->rate / sqrt(s->gravity * s->height));
+  compare_require(&c, isnan(across) || !(late_change(sim, across) > GROWTH),
+                  "the force still changes by %.0f %% over the last half of the path",
+                  100.0 * late_change(sim, across));
+  return c;
 }
 
 /* A wall cannot pull: Rankine's stress where it is a pressure, below 2 c/(rho g sqrt(K)). It is in
@@ -68,10 +125,8 @@ static double find_cracked(const settings *s) {
  * between Rankine's of phi and of phi*. On a smooth bed the ground is free to take planes of phi.
  */
 static double find_reduced(const settings *s) {
-  bool less = false;
-  for (int k = 0; k < s->layers; k++) less = less || s->layer[k].psi < s->layer[k].phi;
   if (s->pressure == PASSIVE || s->friction > 0.0 || most_cohesion(s) > 0.0 || s->base == 0.0 ||
-      !less)
+      s->motion == TURNS_ABOUT_TOP || is_associated(s))
     return NAN;
   return wall_theory(s, davis, false) / wall_unit(s);
 }
@@ -82,20 +137,21 @@ static pressure measure(const simulation *sim) {
   pressure p = {.across = NAN,
                 .along = NAN,
                 .height = NAN,
-                .theory = find_theory(s),
                 .cracked = find_cracked(s),
                 .reduced = find_reduced(s)};
-  if (sim->rows < WALL_SAMPLES) return p;
+  p.theory = find_theory(sim, NAN);
+  if (wall_rows(sim) < WALL_SAMPLES) return p;
   const int n = WALL_SAMPLES / 5;
   double moment = 0.0;
   p.across = p.along = 0.0;
-  for (int k = sim->rows - n; k < sim->rows; k++) {
-    p.across += sim->across[k] / n / wall_unit(s);
-    p.along += sim->along[k] / n / wall_unit(s);
-    moment += sim->moment[k] / n;
+  for (int k = wall_rows(sim) - n; k < wall_rows(sim); k++) {
+    p.across += wall_row_of(sim, k)->across / n / wall_unit(s);
+    p.along += wall_row_of(sim, k)->along / n / wall_unit(s);
+    moment += wall_row_of(sim, k)->moment / n;
   }
   p.height = moment / (p.across * wall_unit(s) * s->height);
   if (s->motion == TURNS_ABOUT_TOP) p.height += 1.0;
+  p.theory = find_theory(sim, p.across);
   return p;
 }
 
@@ -106,9 +162,10 @@ static bool write_pressure(app *a, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
   csv_header(&f, "path_over_height,force_kN_m,K,K_along");
-  for (int k = 0; k < sim->rows; k++) {
-    const double row[] = {sim->path[k] / s->height, 1e-3 * sim->across[k],
-                          sim->across[k] / wall_unit(s), sim->along[k] / wall_unit(s)};
+  for (int k = 0; k < wall_rows(sim); k++) {
+    const double row[] = {wall_row_of(sim, k)->path / s->height, 1e-3 * wall_row_of(sim, k)->across,
+                          wall_row_of(sim, k)->across / wall_unit(s),
+                          wall_row_of(sim, k)->along / wall_unit(s)};
     csv_row(&f, 4, row);
   }
   return output_close(&f);
@@ -119,12 +176,13 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
+  sand_write(&f, &s->voids, largest_dilation(s));
   json_number(&f, "flip_time", s->flip_time);
   json_number(&f, "K", p->across);
   json_number(&f, "K_along", p->along);
   json_number(&f, "K_resultant", hypot(p->across, p->along));
   json_number(&f, "force_height", p->height);
-  json_number(&f, "K_theory", p->theory);
+  json_comparison(&f, "K_theory", &p->theory);
   json_number(&f, "K_cracked", p->cracked);
   json_number(&f, "K_reduced", p->reduced);
   json_number(&f, "force", p->across * wall_unit(s));
@@ -165,9 +223,9 @@ static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
               s->height / s->h,
               wall_is_plain(s) ? "{/Symbol g}H^2/2" : "the weight above, summed over H",
               s->pressure == ACTIVE ? "top" : "bottom");
-  if (!isnan(p->theory))
-    output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'", p->theory,
-                s->friction == 0.0 ? "Rankine" : "Coulomb");
+  if (compare_holds(&p->theory))
+    output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'",
+                p->theory.reference, p->theory.source);
   if (!isnan(p->cracked))
     output_text(&f,
                 ", \\\n  %.9g dashtype '.' linecolor rgb '#c0392b' title 'Rankine with a tension "
@@ -205,7 +263,8 @@ static bool draw_ground(app *a, const simulation *sim) {
               "set palette defined (0 '#f3e3bd', 0.3 '#c98f4a', 1 '#5b2c12')\n"
               "set xrange [%.9g:%.9g]\nset yrange [0:%.9g]\n",
               def.lower[0], wide, high);
-  const double path = (s->pressure == ACTIVE ? -1.0 : 1.0) * sim->path[sim->rows - 1];
+  const double path =
+      (s->pressure == ACTIVE ? -1.0 : 1.0) * wall_row_of(sim, wall_rows(sim) - 1)->path;
   const double foot = s->motion == TURNS_ABOUT_TOE ? 0.0 : path;
   const double toe = s->base - s->sheet; /* m; where ground lies before it, as thick as it is */
   const double thick = s->sheet > 0.0 ? wall_thickness(s) : 0.1 * s->height;
@@ -236,11 +295,11 @@ static void print(const settings *s, const pressure *p) {
   printf("%s earth pressure K %.4f across the wall, %.4f in all, at %.3f H",
          s->pressure == ACTIVE ? "active" : "passive", p->across, hypot(p->across, p->along),
          p->height);
-  if (!isnan(p->cracked))
-    printf(" (Rankine %.4f, with a tension crack %.4f)", p->theory, p->cracked);
-  else if (!isnan(p->theory))
-    printf(" (%s %.4f, %+.1f %%)", s->friction == 0.0 ? "Rankine" : "Coulomb", p->theory,
-           100.0 * (p->across / p->theory - 1.0));
+  if (compare_holds(&p->theory) && !isnan(p->cracked))
+    printf(" (Rankine %.4f, with a tension crack %.4f)", p->theory.reference, p->cracked);
+  else if (compare_holds(&p->theory))
+    printf(" (%s %.4f, %+.1f %%)", p->theory.source, p->theory.reference,
+           100.0 * compare_error(&p->theory));
   if (!isnan(p->reduced))
     printf(", %.4f with the strength that Davis takes for psi < phi", p->reduced);
   if (!wall_is_plain(s)) printf(", %.4g kN/m", 1e-3 * p->across * wall_unit(s));
@@ -248,6 +307,8 @@ static void print(const settings *s, const pressure *p) {
     printf(", besides %.4g kN/m of water at %.3f H", 1e-3 * wall_water(s),
            (s->height - s->water) / (3.0 * s->height));
   printf("\n");
+  compare_tell(&p->theory);
+  sand_print(&s->voids, largest_dilation(s));
 }
 
 bool wall_finish(app *a, void *user) {

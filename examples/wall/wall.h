@@ -7,6 +7,7 @@
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
+#include "common/sand.h"
 
 enum { WALL_SAMPLES = 80, WALL_LAYERS = 16 };
 enum { ACTIVE = 0, PASSIVE = 1 };
@@ -19,8 +20,9 @@ typedef struct wall_layer {
 } wall_layer;
 
 typedef struct settings {
-  int pressure, motion;                    /* ACTIVE or PASSIVE; TRANSLATES ... */
-  double height, base, length, front;      /* m */
+  int pressure, motion;               /* ACTIVE or PASSIVE; TRANSLATES ... */
+  double height, base, length, front; /* m */
+  sand_voids voids;
   double phi, psi, cohesion, k0;           /* degrees, degrees, Pa, - */
   double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
   double friction, corner, path, rate, h;  /* -, cells, m, m/s, m */
@@ -38,19 +40,25 @@ typedef struct settings {
   const char *out;
 } settings;
 
+typedef struct wall_row {
+  double t, path, across, along, moment; /* s, m; N/m, of the ground on the wall, across it and
+                                            upwards along it; N, about its reference point */
+  double sums[3];                        /* N s/m, N s/m, N s: on the wall so far */
+} wall_row;
+
 typedef struct simulation {
   settings s;
   mpm_model m;
   int32_t face;       /* part of the wall's surface in contact with the ground behind it */
   double ramp, t_end; /* s */
-  double path[WALL_SAMPLES + 1]; /* m */
-  double across[WALL_SAMPLES + 1], along[WALL_SAMPLES + 1], moment[WALL_SAMPLES + 1];
-  /* N/m, of the ground on the wall, across it and upwards along it; N, about its reference point */
-  int rows;
-  double last_time, last[3]; /* s; N s and N m s: impulses at the last sample */
-  mpm_snapshot shot;         /* plastic strain at the last sample */
+  mpm_snapshot shot;  /* plastic strain at the last sample */
   mpm_course course;
 } simulation;
+
+static inline int wall_rows(const simulation *sim) { return (int)sim->course.rows.count; }
+static inline const wall_row *wall_row_of(const simulation *sim, int k) {
+  return (const wall_row *)sim->course.rows.row + k;
+}
 
 /* ground.c */
 const char *wall_settle_ground(settings *s, const option *table);

@@ -31,7 +31,7 @@ bool files_peek(app *a, settings *s) {
 
 mps_status files_gather(files *f, mps_particles **whole) {
   mps_status status = MPS_OK;
-  if (f->domain) status = mps_domain_gather(f->domain, f->particles, &f->whole);
+  if (f->domain) status = mps_domain_gather_fields(f->domain, f->particles, 0, NULL, &f->whole);
   *whole = f->domain ? f->whole : f->particles;
   return status;
 }

@@ -8,20 +8,21 @@
 #include "common/resume.h"
 
 #include <mps/io.h>
+#include <mps/dynamics.h>
 
 typedef struct files {
-  mps_particles *particles;       /* borrowed; of several ranks this one's share */
-  mps_domain *domain;             /* borrowed; NULL: one process */
-  mps_particles *whole;           /* rank 0 of several: all ranks' particles, to write */
-  mps_recorder *recorder;         /* NULL: no frames */
-  char *series;                   /* its file */
-  double frame_every;             /* s, between frames; 0: no frames */
-  int64_t next_frame;             /* due at next_frame * frame_every; the first at once */
-  resume_schedule saves;          /* checkpoints */
-  mps_dynamics *dynamics;         /* borrowed */
-  app *a;                         /* borrowed */
-  bool failed;                    /* files_record, which ended the run */
-  results_so_far *so_far;         /* borrowed: results in a checkpoint */
+  mps_particles *particles; /* borrowed; of several ranks this one's share */
+  mps_domain *domain;       /* borrowed; NULL: one process */
+  mps_particles *whole;     /* rank 0 of several: all ranks' particles, to write */
+  mps_recorder *recorder;   /* NULL: no frames */
+  char *series;             /* its file */
+  double frame_every;       /* s, between frames; 0: no frames */
+  int64_t next_frame;       /* due at next_frame * frame_every; the first at once */
+  resume_schedule saves;    /* checkpoints */
+  mps_dynamics *dynamics;   /* borrowed */
+  app *a;                   /* borrowed */
+  bool failed;              /* files_record, which ended the run */
+  results_so_far *so_far;   /* borrowed: results in a checkpoint */
 } files;
 
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */

@@ -87,11 +87,21 @@ static double *next_row(receivers *r) {
   return r->row + r->rows * width;
 }
 
-static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
+#define LITTLE 1e-4 /* of the energy of all ground at the input's speed: where a motion begins */
+#define MOST_GROWTH 2.0 /* energy over the most that loads and boundaries have put in */
+
+static mps_status record_energy(receivers *r, mps_dynamics *dynamics, bool drift) {
   mps_totals totals;
   const mps_status status = mps_dynamics_get_totals(dynamics, &totals);
   if (status != MPS_OK) return status;
   const double e = totals.kinetic + totals.strain;
+  r->given = fmax(r->given, totals.work_loads + totals.work_boundaries);
+  if (r->watch &&
+      !(e <= MOST_GROWTH * r->given + 0.5 * LITTLE * totals.mass * r->speed * r->speed)) {
+    r->grown = e;
+    return MPS_ERROR_CANCELLED;
+  }
+  if (!drift) return MPS_OK;
   if (r->energies++ == 0) r->energy_least = r->energy_most = e;
   r->energy_least = fmin(r->energy_least, e);
   r->energy_most = fmax(r->energy_most, e);
@@ -124,7 +134,8 @@ mps_status receivers_record(receivers *r, mps_dynamics *dynamics, mps_domain *do
   memcpy(row + 1, r->now, (size_t)r->count * sizeof *row);
   r->rows++;
   /* The energy needs a pass over all particles: every tenth row is enough for its drift. */
-  if (r->energy && t > r->energy_from && r->rows % 10 == 0) status = record_energy(r, dynamics);
+  const bool drift = r->energy && t > r->energy_from;
+  if ((drift || r->watch) && r->rows % 10 == 0) status = record_energy(r, dynamics, drift);
   return status;
 }
 

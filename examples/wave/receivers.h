@@ -22,6 +22,9 @@ typedef struct receivers {
   bool energy;        /* record the total energy too */
   double energy_from; /* s: after this time */
   double energy_least, energy_most, energy_sum;
+  bool watch;          /* stop where the energy grows beyond what has been put in: `grown` */
+  double speed;        /* m/s, of the input, the largest */
+  double given, grown; /* J: most that was put in so far; energy above it, 0: not so */
   int64_t energies;
   int64_t rows, capacity;
   double *row; /* rows x (1 + count): time (s), accelerations (m/s2) */

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 
+#include "common/record.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,24 +67,64 @@ static bool find_travel_time(app *a, const receivers *r, const mps_signal *signa
   return ok || app_no_memory(a);
 }
 
+/* The surface doubles an incoming pulse; that is the peak until the wave comes back from a base. */
+static comparison compare_peak(const settings *s, const results *x) {
+  const layer *l = &s->ground.layer[0];
+  const double length = 1.5 / s->frequency; /* s, of a Ricker pulse */
+  comparison c = compare_with("a doubled pulse", x->surface_peak, 2.0 * fabs(s->amplitude));
+  compare_require(&c, s->ricker, "the input is a record");
+  compare_require(&c, !s->sloped, "the ground is not level");
+  compare_require(&c, s->ground.count == 1, "the ground has layers");
+  compare_require(&c, l->damping == 0.0, "the ground is damped");
+  compare_require(&c,
+                  s->base == BASE_RIGID ||
+                      (s->half_space.vs == l->vs && s->half_space.vp == l->vp &&
+                       s->half_space.unit_weight == l->unit_weight),
+                  "the half space is of other ground");
+  compare_require(&c, s->base != BASE_RIGID || length <= 2.0 * x->travel_exact,
+                  "the pulse lasts %.3g s, and its reflection from the base arrives after %.3g s",
+                  length, 2.0 * x->travel_exact);
+  return c;
+}
+
+/* The lag of the surface behind the base is the time of travel where one pulse has arrived before
+ * the next. A record correlates with its own later waves too. */
+static comparison compare_travel(const settings *s, const results *x) {
+  comparison c =
+      compare_with("the travel time through the layers", x->travel_time, x->travel_exact);
+  compare_require(
+      &c, s->ricker,
+      "the input is a record, whose correlation with the surface need not be highest at "
+      "the first arrival");
+  compare_require(&c, !s->sloped, "the ground is not level");
+  compare_require(&c, 1.0 / s->frequency <= 4.0 * x->travel_exact,
+                  "the pulse of %.3g Hz is longer than two ways through the ground, %.3g s",
+                  s->frequency, 4.0 * x->travel_exact);
+  return c;
+}
+
 bool results_find(app *a, const settings *s, const column *c, const receivers *r,
                   const mps_signal *signal, results *x) {
   const receiver *base = &r->list[r->column - 1];
   /* The surface is the face of its particles, the base the centre of its row. */
   x->travel_exact = layers_travel_time(&s->ground, settings_wave(s), c->height - 0.5 * c->spacing,
                                        c->height - 0.5 * c->spacing - base->depth);
-  x->surface_theory = settings_doubles(s) ? 2.0 * fabs(s->amplitude) : NAN;
   x->surface_peak = x->surface_peak_edge = x->travel_time = x->energy_drift = NAN;
-  if (x->end == OUTCOME_DIVERGED || r->rows == 0) return true;
-  x->surface_peak = receivers_peak(r, 0);
-  x->surface_peak_edge = receivers_peak(r, r->column);
-  x->energy_drift = receivers_energy_drift(r);
-  return find_travel_time(a, r, signal, x);
+  bool ok = true;
+  if (x->end != OUTCOME_DIVERGED && r->rows > 0) {
+    x->surface_peak = receivers_peak(r, 0);
+    x->surface_peak_edge = receivers_peak(r, r->column);
+    x->energy_drift = receivers_energy_drift(r);
+    ok = find_travel_time(a, r, signal, x);
+  }
+  x->peak = compare_peak(s, x);
+  x->travel = compare_travel(s, x);
+  return ok;
 }
 
 /* ---- files and lines ------------------------------------------------------------------------- */
 
-bool results_write(app *a, const settings *s, const results *x) {
+bool results_write(app *a, const settings *s, const results *x, const mps_signal *signal) {
   static const char *const bases[] = {"rigid", "viscous"};
   static const char *const sides[] = {"roller", "periodic", "freefield"};
   const char wave[2] = {settings_wave(s), '\0'};
@@ -95,6 +137,7 @@ bool results_write(app *a, const settings *s, const results *x) {
   json_text(&file, "base", bases[s->base]);
   json_text(&file, "sides", sides[s->sides]);
   json_text(&file, "input", s->input);
+  if (!s->ricker) record_json(&file, signal);
   json_number(&file, "radius", s->radius);
   json_integer(&file, "particles", x->particles);
   json_integer(&file, "steps", x->steps);
@@ -102,9 +145,9 @@ bool results_write(app *a, const settings *s, const results *x) {
   json_number(&file, "dt_limit_linear", x->dt_limit);
   json_number(&file, "surface_peak", x->surface_peak);
   json_number(&file, "surface_peak_edge", x->surface_peak_edge);
-  json_number(&file, "surface_peak_theory", x->surface_theory);
+  json_comparison(&file, "surface_peak_theory", &x->peak);
   json_number(&file, "travel_time", x->travel_time);
-  json_number(&file, "travel_time_exact", x->travel_exact);
+  json_comparison(&file, "travel_time_exact", &x->travel);
   json_number(&file, "energy_drift", x->energy_drift);
   json_end(&file);
   return output_close(&file);
@@ -115,13 +158,16 @@ void results_print(const app *a, const settings *s, const results *x) {
   app_tell_results(a, s->out);
   if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);
-  if (isnan(x->travel_time)) {
+  if (isnan(x->travel_time) && s->ricker) {
     printf(", the wave has not reached the surface (that takes %.3f s)\n", x->travel_exact);
     return;
   }
-  if (!isnan(x->surface_theory))
-    printf(" (theory %.3f, %+.1f %%)", x->surface_theory,
-           100.0 * (x->surface_peak / x->surface_theory - 1.0));
-  printf(", travel time %.3f s (exact %.3f, %+.1f %%)\n", x->travel_time, x->travel_exact,
-         100.0 * (x->travel_time / x->travel_exact - 1.0));
+  if (compare_holds(&x->peak))
+    printf(" (theory %.3f, %+.1f %%)", x->peak.reference, 100.0 * compare_error(&x->peak));
+  if (compare_holds(&x->travel))
+    printf(", travel time %.3f s (exact %.3f, %+.1f %%)", x->travel_time, x->travel.reference,
+           100.0 * compare_error(&x->travel));
+  printf("\n");
+  compare_tell(&x->peak);
+  compare_tell(&x->travel);
 }

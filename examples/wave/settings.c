@@ -3,14 +3,12 @@
 #include "settings.h"
 
 #include "common/options.h"
+#include "common/record.h"
 #include "common/resume.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { UNIT_FILE, UNIT_SI, UNIT_G, UNIT_GAL };
-static const double unit_factor[] = {1.0, 1.0, 9.80665, 0.01}; /* to m/s2 */
 
 static const settings defaults = {
     .radius = 0.5,
@@ -27,6 +25,7 @@ static const settings defaults = {
     .peak_time = 0.25,
     .amplitude = 1.0,
     .scale = 1.0,
+    .step = NAN,
     .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .half_space = {.vs = NAN, .vp = NAN, .unit_weight = NAN},
     .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
@@ -72,10 +71,11 @@ static int check_ground(const options_program *program, settings *s) {
 static int check_rest(const options_program *program, settings *s) {
   const option *table = program->table;
   char text[256];
-  static const char *const record[] = {"input-scale", "input-unit", "baseline"};
+  static const char *const record[] = {"input-scale", "input-unit", "baseline", "input-step",
+                                       "input-column"};
   static const char *const pulse[] = {"ricker-frequency", "ricker-time", "amplitude"};
   s->ricker = strcmp(s->input, "ricker") == 0;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < (s->ricker ? 5 : 3); i++) {
     const char *name = s->ricker ? record[i] : pulse[i];
     if (!options_given(table, name)) continue;
     snprintf(text, sizeof text, "--%s is for %s only", name,
@@ -114,8 +114,8 @@ int settings_parse(settings *s, int argc, char **argv) {
       COMMON_NUMBER("f1", &s->f1, NULL),
       COMMON_NUMBER("f2", &s->f2, NULL),
       OPTION_TEXT("layers", "FILE", &s->layers_file,
-                  "horizontal layers from the surface down, CSV: thickness_m, vs_m_s, vp_m_s, "
-                  "unit_weight_kN_m3, damping_ratio"),
+                  "horizontal layers from the surface down, CSV whose header has, in any order and "
+                  "unit, thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio"),
       {.name = "slope",
        .unit = "m",
        .range = OPTION_LENGTH,
@@ -127,8 +127,7 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Input motion"),
       COMMON_CHOICE("wave", &s->wave, NULL),
       OPTION_TEXT("input", "ricker|FILE", &s->input,
-                  "Ricker pulse, or a recorded acceleration: .AT2, K-NET, or CSV of time (s) and "
-                  "value"),
+                  "Ricker pulse, or a recorded acceleration: " RECORD_FILES),
       OPTION_NUMBER("ricker-frequency", "Hz", OPTION_FREQUENCY, &s->frequency,
                     "central frequency fc of the pulse"),
       OPTION_NUMBER("ricker-time", "s", OPTION_FROM_TO(0.0, 1e6), &s->peak_time,
@@ -136,8 +135,11 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("amplitude", "m/s2", OPTION_ACCELERATION, &s->amplitude,
                     "its peak acceleration"),
       OPTION_NUMBER("input-scale", "1", OPTION_FROM_TO(-1e6, 1e6), &s->scale, "factor on a record"),
-      OPTION_CHOICE("input-unit", "file|m/s2|g|gal", &s->unit,
-                    "unit of a CSV record; file: m/s2 of a CSV, what they say of the others"),
+      OPTION_CHOICE("input-unit", RECORD_UNITS, &s->unit,
+                    "unit of a record; file: what it says, m/s2 where it names none"),
+      OPTION_NUMBER("input-step", "s", OPTION_DURATION, &s->step,
+                    "between the values of a record without times; default by its header"),
+      OPTION_TEXT("input-column", "NAME", &s->column, "of a record with several in its header"),
       OPTION_CHOICE("baseline", "linear|none|mean|quadratic|cubic", &s->baseline,
                     "baseline correction of a record"),
       OPTION_HEADING("Boundaries"),
@@ -202,7 +204,14 @@ bool settings_ground(app *a, settings *s) {
     g->layer[0] = (layer){s->height, s->vs, s->vp, s->unit_weight, s->damping};
   } else {
     if (!layers_read(a, s->layers_file, g)) return false;
-    const double sum = layers_thickness(g);
+    const double sum = layers_thickness(g), spacing = 2.0 * s->radius;
+    const int64_t thin = layers_thin(g, spacing);
+    if (thin >= 0)
+      app_warn(a,
+               "layer %lld of %s is %g m thick, thinner than the particles, %g m: the row or rows "
+               "that it lies in have the mean stiffness; --radius %g or less resolves it",
+               (long long)thin + 1, s->layers_file, g->layer[thin].thickness, spacing,
+               0.25 * g->layer[thin].thickness);
     if (isnan(s->height)) s->height = sum;
     if (fabs(sum - s->height) > s->radius)
       return app_error(a,
@@ -223,9 +232,10 @@ bool settings_signal(app *a, const settings *s, mps_signal **out) {
         a, mps_signal_create_ricker(a->context, s->frequency, s->peak_time, s->amplitude, out));
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = s->baseline;
-  def.scale = s->scale * unit_factor[s->unit];
-  def.format = s->unit == UNIT_FILE ? MPS_SIGNAL_RECORD_AUTO : MPS_SIGNAL_RECORD_CSV;
-  return app_check(a, mps_signal_create_record(a->context, s->input, &def, out));
+  def.scale = s->scale;
+  def.unit = record_units[s->unit];
+  def.step = s->step, def.column = s->column;
+  return app_check(a, record_read(a, "input", s->input, &def, out));
 }
 
 mps_dynamics_def settings_dynamics(const settings *s, double width) {
@@ -241,10 +251,3 @@ mps_dynamics_def settings_dynamics(const settings *s, double width) {
 }
 
 char settings_wave(const settings *s) { return s->wave == WAVE_S ? 'S' : 'P'; }
-
-bool settings_doubles(const settings *s) {
-  const layer *l = &s->ground.layer[0];
-  if (!s->ricker || s->sloped || s->ground.count > 1 || l->damping > 0.0) return false;
-  return s->base == BASE_RIGID || (s->half_space.vs == l->vs && s->half_space.vp == l->vp &&
-                                   s->half_space.unit_weight == l->unit_weight);
-}

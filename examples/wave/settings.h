@@ -19,6 +19,8 @@ typedef struct settings {
   const char *input;
   double frequency, peak_time, amplitude, scale;
   int unit, baseline;
+  double step;        /* s, of a record without times; NaN: by the file */
+  const char *column; /* of a record; NULL: the only one */
   /* boundaries */
   int base, sides;
   layer half_space; /* members NaN: those of the lowest layer */
@@ -44,7 +46,5 @@ bool settings_signal(app *a, const settings *s, mps_signal **out);
 /* Definition of the solver; `width` (m) of the lattice is the period of periodic sides. */
 mps_dynamics_def settings_dynamics(const settings *s, double width);
 char settings_wave(const settings *s); /* 'S' or 'P' */
-/* Uniform undamped ground: the free surface doubles the input. */
-bool settings_doubles(const settings *s);
 
 #endif

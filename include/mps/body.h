@@ -10,12 +10,13 @@
  * where mass and inertia are doubled too. A body in several solvers receives the sum of their
  * forces, each over its own measure.
  *
- * A prescribed body follows signals, or the motion of mps_body_set_motion; a free body moves by the
- * forces on it. Solvers exert forces on it by contacts (mps/contact.h) and as a fluid around it
- * (mps_fluid_add_contact). In axisymmetry (mps/mpm.h) a free body moves along y, its axis, alone:
- * radial forces cancel around the ring, as do moments. At most one solver advances the body;
- * otherwise the caller does, by mps_body_advance. Thread rule: one thread at a time per body (and
- * context). SPDX-License-Identifier: BSD-3-Clause */
+ * A driven (prescribed) body follows signals, or the motion of mps_body_set_motion, whatever the
+ * forces on it; without either it is at rest. A free body moves by the forces on it. Solvers exert
+ * forces on it by contacts (mps/contact.h) and as a fluid around it (mps_fluid_add_contact). In
+ * axisymmetry (mps/mpm.h) a free body moves along y, its axis, alone: radial forces cancel around
+ * the ring, as do moments. At most one solver advances the body; otherwise the caller does, by
+ * mps_body_advance. Thread rule: one thread at a time per body (and context).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
 #define LIBMPS_BODY_H
 
@@ -51,13 +52,10 @@ typedef struct mps_body_def {
                          only */
 } mps_body_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_body_def_init(mps_body_def *def, size_t size);
 static inline mps_body_def mps_body_defaults(void) {
   mps_body_def def;
   memset(&def, 0, sizeof def);
-  if (mps_body_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_BODY, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -119,7 +117,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_revolution(mps_context *context
 /** Closed mesh of `triangles` (4 to 20 million) triangles over `vertices` points xyz[3 * i], ...
  *  (m, in the body's frame): triangle k has the corners corner[3 * k], ..., anticlockwise seen from
  *  outside (if all are clockwise they are reversed). Each edge must belong to two triangles, in
- *  opposite directions; coinciding points are one. MPS_ERROR_ARGUMENT: triangles with no area,
+ *  opposite directions; coinciding points are one, and where holes would be left, points up to 1e-6
+ *  of the longest side of the box apart. MPS_ERROR_ARGUMENT: triangles with no area,
  *  holes, edges of three or more triangles, and volumes that are zero; the message names the
  *  triangle. Surfaces that intersect are not detected. Face k is triangle k. The data are copied.
  *  Needs Embree: MPS_ERROR_UNSUPPORTED in a libmps without (CMake option MPS_EMBREE); Embree's own
@@ -129,10 +128,9 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_mesh(mps_context *context, cons
                                                       int64_t triangles, const int32_t *corner,
                                                       mps_body **out);
 /** As mps_body_create_mesh from an STL file, binary or ASCII, one solid; its coordinates times
- *  `scale` (> 0; 0.001 for a file in mm) are m. Corners are joined where they are the same numbers;
- *  the normals in the file are not used. MPS_ERROR_IO when it cannot be read, MPS_ERROR_FORMAT when
- *  it is not a whole STL file: the message has path and line (ASCII) or byte (binary, as
- *  `path:@byte`). Other errors as mps_body_create_mesh. */
+ *  `scale` (> 0; 0.001 for a file in mm) are m; the normals in the file are not used. MPS_ERROR_IO
+ * when it cannot be read, MPS_ERROR_FORMAT when it is not a whole STL file: the message has path
+ * and line (ASCII) or byte (binary, as `path:@byte`). Other errors as mps_body_create_mesh. */
 MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def,
                                                      const char *path, double scale,
                                                      mps_body **out);
@@ -141,6 +139,13 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const
 MPS_API void mps_body_destroy(mps_body **body);
 /** Dimension of the shape, 2 or 3; 0 for NULL. */
 MPS_API int32_t mps_body_dim(const mps_body *body);
+/** The definition that the body was made from: `position` and its like are those of time 0.
+ * MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
+MPS_API MPS_NODISCARD mps_status mps_body_get_def_sized(const mps_body *body, mps_body_def *out,
+                                                        size_t size);
+static inline mps_status mps_body_get_def(const mps_body *body, mps_body_def *out) {
+  return mps_body_get_def_sized(body, out, sizeof *out);
+}
 
 /* ---- motion ---------------------------------------------------------------------------------- */
 
@@ -149,14 +154,14 @@ MPS_API int32_t mps_body_dim(const mps_body *body);
  *  factor * displacement of `signal`; the orientation is the exponential of the whole rotation
  *  vector, the spin its rate. Replaces an earlier signal; NULL holds the component. The signal is
  *  kept alive. From now on the body follows its signals, also after mps_body_set_motion.
- *  MPS_ERROR_ARGUMENT: `component` or `factor` out of range; MPS_ERROR_STATE: a free body, or a
+ *  MPS_ERROR_ARGUMENT: `component` or `factor` out of range, or a place or rate beyond 1e9 m, rad
+ *  (per s), which ends a later step too; MPS_ERROR_STATE: a free body, or a
  *  solver's callback is running. */
 MPS_API MPS_NODISCARD mps_status mps_body_drive(mps_body *body, int32_t component,
                                                 mps_signal *signal, double factor);
 
-/** Present position and velocity of a body, to be set; always start from mps_body_motion_init or
- *  mps_body_motion_defaults. In 2D position[2], rotation[0] and [1] are NaN or 0, velocity[2],
- *  spin[0] and [1] are 0. */
+/** Present position and velocity of a body, to be set; always start from mps_body_motion_defaults.
+ * In 2D position[2], rotation[0] and [1] are NaN or 0, velocity[2], spin[0] and [1] are 0. */
 typedef struct mps_body_motion {
   uint32_t struct_size;
   int32_t reserved;
@@ -165,13 +170,10 @@ typedef struct mps_body_motion {
   double velocity[3]; /* m/s, default 0 */
   double spin[3];     /* rad/s, in space, default 0 */
 } mps_body_motion;
-/** Fills `motion` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown
- *  to this library. */
-MPS_API mps_status mps_body_motion_init(mps_body_motion *motion, size_t size);
 static inline mps_body_motion mps_body_motion_defaults(void) {
   mps_body_motion motion;
   memset(&motion, 0, sizeof motion);
-  if (mps_body_motion_init(&motion, sizeof motion) != MPS_OK) motion.struct_size = 0;
+  if (mps_def_init(MPS_DEF_BODY_MOTION, &motion, sizeof motion) != MPS_OK) motion.struct_size = 0;
   return motion;
 }
 /** Sets the motion of the body between steps, as for another code, or a servo controlled by the
@@ -251,15 +253,13 @@ MPS_API MPS_NODISCARD mps_status mps_body_distance(const mps_body *body, int64_t
  *  MPS_ERROR_MEMORY: nothing is changed. */
 MPS_API MPS_NODISCARD mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first,
                                                     int64_t count, int32_t *part);
-/** Number of parts of the surface, "rest" included; 0 for NULL. */
-MPS_API int32_t mps_body_part_count(const mps_body *body);
 /** Number of the part `name`, or -1. */
 MPS_API int32_t mps_body_find_part(const mps_body *body, const char *name);
 
 /** Reaction of all solvers on one part of the body, or on the whole body (`part` -1): the sum of
  *  their contacts and of the water around it; `count` is the number of particles in contact, and of
- *  wetted points (mps_fluid_get_wall). MPS_ERROR_ARGUMENT: no part of that number, NULL, or a
- *  `size` unknown to this library. */
+ *  wetted points (mps_fluid_get_boundary_points). MPS_ERROR_ARGUMENT: no part of that number, NULL,
+ * or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part,
                                                              mps_reaction *out, size_t size);
 static inline mps_status mps_body_get_reaction(const mps_body *body, int32_t part,

@@ -13,12 +13,13 @@
 #define LIBMPS_CONTACT_H
 
 #include "body.h"
+#include "signal.h"
 
 MPS_EXTERN_C_BEGIN
 
 typedef struct mps_contact mps_contact;
 
-/** Which object advances the body. */
+/** Which object moves the body: of all solvers. */
 typedef enum mps_contact_mover {
   MPS_CONTACT_MOVER_SOLVER = 0, /* this solver, at the end of each of its steps */
   MPS_CONTACT_MOVER_OTHER = 1   /* another solver, or the caller by mps_body_advance */
@@ -43,11 +44,12 @@ typedef enum mps_contact_method {
 
 typedef struct mps_contact_def {
   uint32_t struct_size;
-  int32_t mover;   /* mps_contact_mover, default SOLVER */
-  int32_t method;  /* mps_contact_method, default IMPULSE */
-  int32_t sweeps;  /* Gauss-Seidel sweeps over the contacts of a step, 1 to 1000, by METHOD_IMPULSE;
-                      0 (default): 10, with a tolerance at most 30. Each step is warm-started from
-                      the last impulses; the solver makes the largest number of all its contacts */
+  int32_t mover;  /* mps_contact_mover, default SOLVER */
+  int32_t method; /* mps_contact_method, default IMPULSE */
+  int32_t
+      sweeps; /* Gauss-Seidel sweeps over the contacts of a step, 1 to 100000, by METHOD_IMPULSE;
+                 0 (default): 10, with a tolerance at most 30. Each step is warm-started from
+                 the last impulses; the solver makes the largest number of all its contacts */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
                       thickness; in axisymmetry per m of radius and rad, times the particle's
@@ -67,30 +69,30 @@ typedef struct mps_contact_def {
                     0 (default): MPS_ERROR_ARGUMENT; 1: allowed, with a warning. With METHOD_IMPULSE
                     such a body separates its sides, unless the solver has a penalty contact too */
   int32_t inside;   /* mps_contact_inside, default REFUSE */
-  double adhesion;  /* Pa, >= 0: shear strength of the surface besides friction times the pressure,
-                       where it is under pressure; default 0 */
+  double adhesion;  /* Pa, a >= 0: the shear limit is a + mu p where the pressure p is above 0;
+                       default 0 */
   double strength;  /* Pa, > 0: upper bound of its shear stress, such as alpha times the undrained
                        strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE, over the
-                       area that soil covers, within 3 %; on curved surfaces with a spacing of more
-                       than half a cell the area is a fifth short, with a warning */
+                       area that soil covers, which on curved surfaces is short where the spacing is
+                       more than half a cell, with a warning (docs/limits.md) */
   double corner;    /* m, >= 0: radius by which edges and corners of the body are rounded for the
                        particles, so that the grid resolves the flow of soil around them; less than
                        half of the body's thinnest wall. 0 (default): not at all. Not for
                        METHOD_PENALTY */
-  double tolerance; /* in [0, 1): sweeps end before `sweeps` once one changes the impulses by less
-                       than this part of them (of the block of cells with the largest, roots of sums
-                       of squares; looked at after 10, 14, 18, ... sweeps: on ranks a reduction each
-                       time). 0, NaN (default): all sweeps are made. The solver uses the least of
-                       its contacts; mps_mpm_get_usage reports the change of the last sweep */
+  double tolerance; /* in [0, 1): sweeps end once the relative l2 change of the impulses, the
+                       maximum over blocks of cells, is below this; tested after sweeps 10, 14, 18,
+                       ... (one reduction each on ranks). 0, NaN (default): all sweeps are made. The
+                       solver uses the least of its contacts; mps_mpm_get_report reports the change
+                       of the last sweep */
+  mps_signal *friction_factor; /* times `friction` at the beginning of each step, kept alive: a
+                                  number in time (MPS_SIGNAL_QUANTITY_VALUE), >= 0, or the step
+                                  is MPS_ERROR_ARGUMENT. NULL (default): 1 */
 } mps_contact_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);
 static inline mps_contact_def mps_contact_defaults(void) {
   mps_contact_def def;
   memset(&def, 0, sizeof def);
-  if (mps_contact_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_CONTACT, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -99,9 +101,12 @@ static inline mps_contact_def mps_contact_defaults(void) {
  *  in the water until that step is ended or abandoned. */
 MPS_API void mps_contact_destroy(mps_contact **contact);
 
-/** The body; NULL for NULL. Lives at least as long as the contact. */
-MPS_API mps_body *mps_contact_body(const mps_contact *contact);
-
+/** The definition in use, to `out` of `size` bytes, of `kind`: MPS_DEF_CONTACT in WLS-MPM, with
+ *  members that were NaN or 0 as completed, MPS_DEF_FLUID_CONTACT in a fluid. MPS_ERROR_ARGUMENT:
+ *  NULL, the kind of another solver, a `size` unknown to this library; MPS_ERROR_STATE: a fluid's
+ *  contact that has ended. */
+MPS_API MPS_NODISCARD mps_status mps_contact_get_def(const mps_contact *contact, int32_t kind,
+                                                     void *out, size_t size);
 /** Reaction of the particles of this solver on part `part` of the body (mps_body_find_part), or on
  *  all of it (-1); `work` is that of the body's surface on the particles. MPS_ERROR_ARGUMENT: no
  *  part of that number, NULL, or a `size` unknown to this library. */

@@ -8,6 +8,9 @@
  * neighbours (docs/fluid.md has the equations).
  *
  * The set's spacing l0 is the particles' distance: each stands for l0^2 times `measure` of water.
+ * The radius re, `radius_ratio` times l0, is how far a particle sees its neighbours. A step is open
+ * between the calls of mps/experimental/fluid_parts.h that begin and end it; programs that do not
+ * use that header have no open steps.
  * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
  * before are then stale (their epoch). It reads `velocity` at creation where the set has it,
  * `external_force` (N) at every step if the set has it by then, and writes `position`, `velocity`,
@@ -16,20 +19,19 @@
  * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
  * removed (not the last one), and pass open sides; the energy that they add or remove is no work.
  *
- * Ranks (mps/domain.h; docs/cluster.md) each make the same whole fluid, with the same boundaries,
- * bodies, loads and edits, and keep all of it; the work of a step on each particle is divided among
- * them. All functions are collective except the queries limit, dt, time, steps, particles,
- * definition, totals, report and reactions, and set_wall_motion, whose values steps compare. Rank 0
- * writes files.
+ * Ranks (mps/experimental/domain.h; docs/cluster.md) each make the same whole fluid, with the same
+ * boundaries, bodies, loads and edits, and keep all of it; the work of a step on each particle is
+ * divided among them. All functions are collective except the queries limit, dt, time, steps,
+ * particles, definition, totals, report and reactions, and set_boundary_motion, whose values steps
+ * compare. Rank 0 writes files.
  *
  * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up
  * to a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or
  * bodies change the volume of that space, or leave less of it than there is fluid, return
  * MPS_ERROR_STATE.
  *
- * Resolution: at least 5 spacings of water and 3 of wave height. Water that strikes water or a wall
- * keeps its energy to 3 % of pressure-impulse theory with 15 spacings or more across the striking
- * water, with 10 spacings to 6 %.
+ * Resolution: at least 5 spacings of water and 3 of wave height, and 15 spacings across water that
+ * strikes water or a wall. docs/limits.md says how large the errors are.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads and ranks.
@@ -38,7 +40,6 @@
 #define LIBMPS_FLUID_H
 
 #include "contact.h"
-#include "domain.h"
 #include "io.h"
 #include "kernel.h"
 #include "material.h"
@@ -49,6 +50,9 @@
 MPS_EXTERN_C_BEGIN
 
 typedef struct mps_fluid mps_fluid;
+/** The solver as one of all kinds (mps/solver.h), for the functions that all have; NULL for NULL.
+ * It is the same object: `fluid` or this is destroyed, not both. */
+MPS_API mps_solver *mps_fluid_solver(const mps_fluid *fluid);
 
 typedef struct mps_fluid_def {
   uint32_t struct_size;
@@ -75,13 +79,10 @@ typedef struct mps_fluid_def {
                              mps_fluid_get_def gives the viscosity, and NULL here */
 } mps_fluid_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size);
 static inline mps_fluid_def mps_fluid_defaults(void) {
   mps_fluid_def def;
   memset(&def, 0, sizeof def);
-  if (mps_fluid_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_FLUID, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -92,95 +93,89 @@ static inline mps_fluid_def mps_fluid_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
                                                   const mps_fluid_def *def, mps_fluid **out);
 /** Destroys and nulls; accepts NULL. Releases the set, bodies and signals. */
-MPS_API void mps_fluid_destroy(mps_fluid **fluid);
+static inline void mps_fluid_destroy(mps_fluid **fluid) {
+  mps_solver *solver = fluid ? mps_fluid_solver(*fluid) : NULL;
+  mps_solver_destroy(&solver);
+  if (fluid && !solver) *fluid = NULL;
+}
 
 /** The definition of the solver, with the computed level and the present dt. MPS_ERROR_ARGUMENT:
  *  NULL, or a `size` unknown to this library. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_def_sized(const mps_fluid *fluid, mps_fluid_def *out,
-                                                         size_t size);
 static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def *out) {
-  return mps_fluid_get_def_sized(fluid, out, sizeof *out);
+  return mps_solver_get_def(mps_fluid_solver(fluid), MPS_DEF_FLUID, out, sizeof *out);
 }
-
-/** Sets the viscosity, from the next step on, to that of a Newtonian `material`, as the member of
- *  the definition does. All particles have the same: `ids` NULL with `count` 0, or a list of all.
- *  The density stays that of creation. MPS_ERROR_UNSUPPORTED: another law, or a list of some of the
- *  particles; MPS_ERROR_ARGUMENT: no material, a viscosity beyond 1e6 Pa s, an id that the set
- *  lacks; MPS_ERROR_STATE: not between steps. On an error nothing has changed.
- */
-MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
-                                                        const mps_material *material, int64_t count,
-                                                        const int64_t *ids);
 
 /* ---- running --------------------------------------------------------------------------------- */
 
 /** Takes `count` (>= 0) steps. A step that fails is undone: MPS_ERROR_NUMERIC, the pressure
- *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity
- *  exceeds 1e100 m/s, a boundary or body moves more than 1.5 l0 in the step or a boundary bends to
+ *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall, its velocity
+ *  exceeds 1e100 m/s, all have more kinetic energy than gravity, walls and loads have given, or
+ *  one of connected fluid moves more than l0/2 besides the walls'
+ *  displacement, a boundary or body moves more than 1.5 l0 in the step or a boundary bends to
  *  a slope of more than 1 (a warning is logged above l0/2 and a slope of .1, once), or the
  *  library's step would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid
  *  without a free surface, or a body comes nearer than re to a polyline; MPS_ERROR_CANCELLED. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
-
-/* A step in parts, for two-way coupling of the water and another system:
- *
- *   mps_fluid_begin_step(fluid, dt);                  neighbour lists, matrix of the pressure
- *                                                     equation and its preconditioner, which stay
- *   do {
- *     mps_fluid_set_wall_motion(fluid, wall, s, v);   at the end of the step: a guess
- *     mps_fluid_solve_pressure(fluid);                only the right side changes
- *     mps_fluid_get_reaction(fluid, wall, &reaction); forces and pressures at mid step
- *   } while (v does not agree with these forces);
- *   mps_fluid_end_step(fluid);                        velocities and positions
- *
- * The pressure acts throughout the step: it is to be used as that at its middle. With one solution
- * a step in parts is mps_fluid_step bit for bit. In between, the set's fields and the time are
- * those before the step, and only mps_fluid_set_wall_motion and queries may be called: other
- * functions return MPS_ERROR_STATE, as do the parts in another order. */
-
-/** Begins a step of `dt` (s; NaN: mps_fluid_dt). After an error no step is open.
- *  MPS_ERROR_ARGUMENT: `dt` out of range; MPS_ERROR_STATE: a step is open, a field is being edited,
- *  or the classical scheme; MPS_ERROR_DIVERGED, MPS_ERROR_NUMERIC, MPS_ERROR_CANCELLED and
- *  MPS_ERROR_MEMORY as mps_fluid_step. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_begin_step(mps_fluid *fluid, double dt);
-/** Solves for the pressure with the walls' present motions; MPS_ERROR_NUMERIC: it did not converge;
- *  the step stays open. MPS_ERROR_STATE: no step is open. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_solve_pressure(mps_fluid *fluid);
-/** Ends the step with the last solution. A motion set since the last solution has to be solved for
- *  first (MPS_ERROR_STATE). After MPS_ERROR_DIVERGED or MPS_ERROR_MEMORY the step is undone and no
- *  step is open. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_end_step(mps_fluid *fluid);
-/** Discards the open step: the state is that before it. MPS_ERROR_STATE: no step is open. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_abandon_step(mps_fluid *fluid);
+MPS_NODISCARD static inline mps_status mps_fluid_step(mps_fluid *fluid, int64_t count) {
+  return mps_solver_step(mps_fluid_solver(fluid), count);
+}
 
 /** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK
  *  ends the run, which returns it. It may query the solver, not step or destroy it. */
 typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
+/* A run's callback with its solver, as mps_solver_run calls it. */
+typedef struct mps_fluid_call {
+  mps_fluid *solver;
+  mps_fluid_fn callback;
+  void *user;
+} mps_fluid_call;
+static inline mps_status mps_fluid_call_back(void *user, mps_solver *solver) {
+  const mps_fluid_call *call = (const mps_fluid_call *)user;
+  (void)solver;
+  return call->callback(call->user, call->solver);
+}
 
 /** Steps to t_end (s, not before the present time); the last 32 steps, or all of fewer, are equal
  *  and slightly shorter to end there. MPS_ERROR_ARGUMENT: `t_end` or `every` out of range;
  *  otherwise errors as mps_fluid_step, or the status of `callback`. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
-                                               mps_fluid_fn callback, void *user);
+MPS_NODISCARD static inline mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
+                                                     mps_fluid_fn callback, void *user) {
+  mps_fluid_call call = {fluid, callback, user};
+  return mps_solver_run(mps_fluid_solver(fluid), t_end, every,
+                        callback ? mps_fluid_call_back : NULL, &call);
+}
 
 /* Queries; 0 or NULL for NULL. */
 
 /** Time (s). */
-MPS_API double mps_fluid_time(const mps_fluid *fluid);
+static inline double mps_fluid_time(const mps_fluid *fluid) {
+  return mps_solver_time(mps_fluid_solver(fluid));
+}
 /** Number of steps taken. */
-MPS_API int64_t mps_fluid_steps(const mps_fluid *fluid);
+static inline int64_t mps_fluid_steps(const mps_fluid *fluid) {
+  return mps_solver_steps(mps_fluid_solver(fluid));
+}
 /** Size (s) of the next step. */
-MPS_API double mps_fluid_dt(const mps_fluid *fluid);
+static inline double mps_fluid_dt(const mps_fluid *fluid) {
+  return mps_solver_dt(mps_fluid_solver(fluid));
+}
 /** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|). */
-MPS_API double mps_fluid_limit(const mps_fluid *fluid);
+static inline double mps_fluid_limit(const mps_fluid *fluid) {
+  return mps_solver_limit(mps_fluid_solver(fluid));
+}
 /** Sets `dt` of the definition (s; NaN: each step by mps_fluid_limit). MPS_ERROR_ARGUMENT: out of
  *  range; MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_set_dt(mps_fluid *fluid, double dt);
+MPS_NODISCARD static inline mps_status mps_fluid_set_dt(mps_fluid *fluid, double dt) {
+  return mps_solver_set_dt(mps_fluid_solver(fluid), dt);
+}
 
 /** The set of the solver; lent. */
-MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
+static inline mps_particles *mps_fluid_particles(const mps_fluid *fluid) {
+  return mps_solver_particles(mps_fluid_solver(fluid));
+}
 /** The context of the solver; lent. */
-MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
+static inline mps_context *mps_fluid_context(const mps_fluid *fluid) {
+  return mps_solver_context(mps_fluid_solver(fluid));
+}
 
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
  *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
@@ -200,13 +195,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, in
  *  to round-off, with mps_fluid_get_reaction and mps_contact_get_reaction. impulse_scheme is the
  *  momentum error of the scheme: pressures along walls are fits, which differ slightly from the sum
  *  of the gradients that move the particles; smoothing is symmetric in a pair where the flow is
- *  steep, and shifts, limited velocities and smoothing of gentle flow are not. It is some
- *  hundredths of the terms (5 % in a dam break with 15 particles over the height of the column, 1.5
- *  % with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
-                                                            size_t size);
+ *  steep, and shifts, limited velocities and smoothing of gentle flow are not. docs/limits.md says
+ *  how large it is. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {
-  return mps_fluid_get_totals_sized(fluid, out, sizeof *out);
+  return mps_solver_get_totals(mps_fluid_solver(fluid), out);
 }
 
 /** Statistics of the steps; counts since creation. */
@@ -232,26 +224,276 @@ static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_
 
 /** Keeps the state of the solver and its set in memory, as mps_mpm_snapshot. MPS_ERROR_ARGUMENT: a
  *  snapshot of another solver; MPS_ERROR_STATE: a step is open or running; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_snapshot(mps_fluid *fluid, mps_snapshot **snapshot);
+MPS_NODISCARD static inline mps_status mps_fluid_snapshot(mps_fluid *fluid,
+                                                          mps_snapshot **snapshot) {
+  return mps_solver_snapshot(mps_fluid_solver(fluid), snapshot);
+}
 /** Restores a snapshot, bit for bit, as mps_mpm_rollback. Walls must be those of the snapshot
  *  (MPS_ERROR_STATE); dt, viscosity, loads and signals are not in it. MPS_ERROR_ARGUMENT: a
  *  snapshot of another solver. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_rollback(mps_fluid *fluid, const mps_snapshot *snapshot);
+MPS_NODISCARD static inline mps_status mps_fluid_rollback(mps_fluid *fluid,
+                                                          const mps_snapshot *snapshot) {
+  return mps_solver_rollback(mps_fluid_solver(fluid), snapshot);
+}
 /** Writes the state to a file, as mps_mpm_save. MPS_ERROR_IO: the file cannot be written;
  *  MPS_ERROR_STATE: a step is open or running; MPS_ERROR_UNSUPPORTED: no HDF5. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_save(mps_fluid *fluid, const char *path,
-                                                const mps_checkpoint *info);
+MPS_NODISCARD static inline mps_status mps_fluid_save(mps_fluid *fluid, const char *path,
+                                                      const mps_checkpoint *info) {
+  return mps_solver_save(mps_fluid_solver(fluid), path, info);
+}
 /** Restores a file of mps_fluid_save, as mps_mpm_restore, into a fluid with the same particles,
  *  density, level and walls. MPS_ERROR_IO: cannot be read; MPS_ERROR_FORMAT: no checkpoint of a
  *  fluid; MPS_ERROR_ARGUMENT: of a fluid that was built in another way; MPS_ERROR_STATE: a step is
  *  open. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_restore(mps_fluid *fluid, const char *path,
-                                                   mps_checkpoint *info);
+MPS_NODISCARD static inline mps_status mps_fluid_restore(mps_fluid *fluid, const char *path,
+                                                         mps_checkpoint *info) {
+  return mps_solver_restore(mps_fluid_solver(fluid), path, info);
+}
+
+/* ---- boundaries ------------------------------------------------------------------------------ */
+
+/* Kinds (mps_boundary_kind) of a wall and of a body's surface:
+ *
+ *   HELD    no flow across; no slip where the fluid has a viscosity; the wall does not move along
+ *           itself
+ *   DRIVEN  the same, moved along the normal by a signal
+ *   ROLLER  no flow across, no shear: slip; at rest or moved along the normal by a signal
+ *   OPEN    no wall: particles that have passed it are removed at the end of a step and counted in
+ *           its reaction; the pressure there is that of the air, as where water falls over an edge.
+ *           It does not move */
+
+#define MPS_FLUID_MAX_BOUNDARIES 10000 /* of a fluid */
+
+/** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
+ *  as prescribed by mps_fluid_set_boundary_motion; then it may bend slightly: a displacement along
+ * the normal at each of its nodes, linear between them, with local mirror images. The fluid's angle
+ *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first.
+ *
+ *  Or a polyline at rest, HELD or ROLLER: segments of at least l0 with 15 to 345 degrees of fluid
+ *  at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
+ *  An open one continues straight beyond its first and last corner without limit. Where it passes a
+ *  plane wall (a piston) it does so at a right angle, with corners at least re away. It has one
+ *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep re
+ *  away from it: one that is nearer is refused, and so is a step in which one comes nearer. */
+typedef struct mps_fluid_boundary_def {
+  uint32_t struct_size;
+  int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
+  double point[3];    /* m, of the wall at time 0; its pressures are sampled from here on, every
+                         l0: choose the corner */
+  double normal[3];   /* into the fluid, any length > 0; [2] must be 0; no default */
+  mps_signal *signal; /* displacement along the normal: factor times that of the signal, from its
+                         value at the time when the boundary is added; NULL (default): at rest.
+                         Not of HELD. Kept alive */
+  double factor;      /* default 1 */
+  const double
+      *nodes; /* of a bending wall: points along it (3 values each, m, in any order; projected onto
+                 the plane), copied; NULL (default): it stays plane, and moves as one node */
+  int64_t node_count;    /* default 0; at most 1 with a signal */
+  const double *corners; /* of a polyline: its corners in order, the fluid to the left of the way
+                            along them (3 values each, m, z 0), copied; NULL (default): a plane
+                            wall. `point`, `normal` and `factor` are not read then */
+  int64_t corner_count;  /* 2 to 10000, default 0. The first again as the last: it is closed */
+} mps_fluid_boundary_def;
+
+static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
+  mps_fluid_boundary_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_FLUID_BOUNDARY, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a particle lies outside or closer than .3 l0
+ *  to it; two walls that enclose less than 90 degrees, unless that corner lies more than re behind
+ *  a third one; a polyline that crosses itself, joins a plane wall otherwise than above, or is
+ *  nearer than re to a body; more than MPS_FLUID_MAX_BOUNDARIES.
+ * MPS_ERROR_STATE: a step is open, or a callback of the solver is running. MPS_ERROR_MEMORY. */
+MPS_NODISCARD static inline mps_status
+mps_fluid_add_boundary(mps_fluid *fluid, const mps_fluid_boundary_def *def, int32_t *number) {
+  return mps_solver_add(mps_fluid_solver(fluid), MPS_DEF_FLUID_BOUNDARY, def, number);
+}
+/** Gives a wall another definition: its present position is `point`, its velocity is kept, and so
+ *  are its impulse and work. MPS_ERROR_ARGUMENT: no wall `number`; otherwise errors as
+ *  mps_fluid_add_boundary. On an error it is unchanged. */
+MPS_NODISCARD static inline mps_status mps_fluid_set_boundary(mps_fluid *fluid, int32_t number,
+                                                              const mps_fluid_boundary_def *def) {
+  return mps_solver_set(mps_fluid_solver(fluid), MPS_DEF_FLUID_BOUNDARY, number, def);
+}
+/** Removes a wall: the fluid may flow out there. MPS_ERROR_ARGUMENT: no wall `number`;
+ *  MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
+MPS_NODISCARD static inline mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number) {
+  return mps_solver_remove(mps_fluid_solver(fluid), MPS_DEF_FLUID_BOUNDARY, number);
+}
+/** The definition of boundary `number`, with what it selected as `ids`: mps_solver_get. */
+static inline mps_status mps_fluid_get_boundary(const mps_fluid *fluid, int32_t number,
+                                                mps_fluid_boundary_def *out) {
+  return mps_solver_get(mps_fluid_solver(fluid), MPS_DEF_FLUID_BOUNDARY, number, out, sizeof *out);
+}
+
+/** Motion of a wall without a signal: `velocity` (m/s) at the end of the next step, or of the open
+ *  one, and `displacement` (m) there from where the wall was added, both along the normal (into the
+ *  fluid), one value a node (mps_fluid_boundary_def.nodes; else one). `displacement` NULL: the mean
+ *  of the velocities before and after takes it there. It is used for one step; afterwards the wall
+ *  continues at its velocity. The acceleration of the wall is the change of velocity over dt.
+ *  MPS_ERROR_ARGUMENT: no wall `number`, one with a signal, or a value beyond 1e6 m/s or 1e12 m;
+ *  MPS_ERROR_STATE: a callback of the solver is running. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary_motion(mps_fluid *fluid, int32_t number,
+                                                               const double *displacement,
+                                                               const double *velocity);
+
+/** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
+ *  summed over the points of mps_fluid_get_boundary_points. Impulse, moment_impulse and work
+ * include collisions with the wall and the smoothing of velocities at it. MPS_ERROR_ARGUMENT: no
+ * wall `number`, NULL, or a `size` unknown to this library. */
+static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
+                                                mps_reaction *out) {
+  return mps_solver_get_reaction(mps_fluid_solver(fluid), number, out);
+}
+
+/** Pressure along a wall after the last step (within an open step: of the last solution), at its
+ *  wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
+ *  `pressure` (Pa), each may be NULL; `count` receives their number. Each point has the area l0
+ *  times `measure`. MPS_ERROR_ARGUMENT: no wall `number`, or `capacity` below 0; MPS_ERROR_STATE:
+ *  the open step's pressure has not been solved; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_boundary_points(const mps_fluid *fluid,
+                                                               int32_t number, int64_t capacity,
+                                                               int64_t *count, double *x,
+                                                               double *pressure);
+/** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, within 0.01 l0 of the
+ *  wall's present or initial position; 0 where there is no water. MPS_ERROR_ARGUMENT: no wall
+ *  `number`, `count` below 0, or a point off the wall; MPS_ERROR_STATE: the open step's pressure
+ *  has not been solved; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(const mps_fluid *fluid, int32_t number,
+                                                        int64_t count, const double *x,
+                                                        double *pressure);
+/** Forces on the fluid by the segments of a polyline (N, 3 values each), in the order of its
+ * corners, and their moments about the origin (N m, one value each), as in its reaction: writes at
+ * most `capacity` segments, either may be NULL; `count` receives their number. MPS_ERROR_ARGUMENT:
+ * no polyline `number`, `count` NULL, or `capacity` below 0. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_segments(const mps_fluid *fluid, int32_t number,
+                                                        int64_t capacity, int64_t *count,
+                                                        double *force, double *moment);
+
+/* ---- rigid bodies ---------------------------------------------------------------------------- */
+
+typedef struct mps_fluid_contact_def {
+  uint32_t struct_size;
+  int32_t kind;  /* mps_boundary_kind of the body's surface: HELD (no slip, default) or ROLLER */
+  int32_t mover; /* mps_contact_mover of a free body, default SOLVER: the fluid moves it */
+  int32_t reserved;
+} mps_fluid_contact_def;
+
+static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
+  mps_fluid_contact_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_FLUID_CONTACT, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
+ *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
+ *  together may have 50 000 edges. Bodies side by side make a face of several parts, with concave
+ * corners between them too. `def` NULL: the defaults. At the end of each step it receives
+ *  the water's forces (mps_body_get_reaction), in addition to those of
+ * other solvers that it is in contact with. It is kept alive.
+ *
+ *  A free body with the mover SOLVER floats: in each step the water's pressure, the body's mass,
+ *  gravity and load (mps_body_set_load), and the impulses of other solvers since its last step are
+ *  in balance, however light it is. No boundary acts on it: keep it off the ground. With OTHER, and
+ *  a body that is not free, the caller (mps_body_advance, mps_body_set_motion) or another solver
+ *  moves it: its pose and velocity when a step is made, or solved for in parts, are those of the
+ * end of that step. By the forces of the last step that is unstable where a free body is lighter
+ * than the water that it accelerates.
+ *
+ *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
+ *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the
+ * water's action on it, by parts, in an open step of the last solution: moments about its reference
+ * point, moment_impulse about its present position; `count` is that of wetted points. Force and
+ * moment are those of the pressures, impulses include collisions and smoothing, as those of
+ * mps_body_get_reaction; they act on a floating body one step later. mps_contact_get_particles is
+ * MPS_ERROR_UNSUPPORTED.
+ *
+ *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
+ *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a
+ *  warning in the log, once); nearer than re to a polyline; too many edges. MPS_ERROR_STATE: the
+ * fluid has the body already, or another solver moves it and `mover` is SOLVER. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_add_contact(mps_fluid *fluid, mps_body *body,
+                                                       const mps_fluid_contact_def *def,
+                                                       mps_contact **out);
+/** Pressure (Pa) at `count` points of a body (3 values each, m), within 0.01 l0 of its present
+ *  surface, as mps_fluid_get_pressure. MPS_ERROR_ARGUMENT: the contact is none of this fluid's,
+ *  `count` below 0, or a point off the body; MPS_ERROR_STATE: the open step's pressure has not been
+ *  solved; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_pressure(const mps_fluid *fluid,
+                                                             const mps_contact *contact,
+                                                             int64_t count, const double *x,
+                                                             double *pressure);
+
+/* ---- loads ----------------------------------------------------------------------------------- */
+
+typedef enum mps_fluid_load_kind {
+  MPS_FLUID_LOAD_BODY = 0,     /* `acceleration` on the particles chosen: a shaken tank, wind */
+  MPS_FLUID_LOAD_PRESSURE = 1, /* `pressure` on the free surface that the chosen particles make: a
+                                 squall, the air in a chamber. Not with the classical scheme */
+  MPS_FLUID_LOAD_DAMPING = 2   /* -`rate` u: a zone in which waves fade */
+} mps_fluid_load_kind;
+
+/** A load, times factor times signal in each component, on the particles of a list, those in a box
+ *  at the beginning of each step (none at present is allowed), or all (mps/solver.h). Loads add up.
+ *  Forces that another code computes go into the field `external_force` instead. */
+typedef struct mps_fluid_load_def {
+  uint32_t struct_size;
+  int32_t kind;       /* mps_fluid_load_kind, default BODY */
+  const int64_t *ids; /* copied; ids that are not in the set are ignored, one at least is in it */
+  int64_t id_count;
+  double lower[3], upper[3]; /* m, bounds included; NaN (default): no bound */
+  double acceleration[3];    /* m/s2, |a| at most 1e6; [2] must be 0; default 0 */
+  double pressure;           /* Pa, |p| at most 1e12, above the air's elsewhere; default 0. Where it
+                                is negative the water below may have as much suction: let the box
+                                reach three spacings into it */
+  mps_signal *signal[3];     /* of PRESSURE [0]: a number in time (mps/signal.h), at the time
+                                that a step begins with; NULL (default): 1. Kept alive */
+  double factor[3];          /* finite; of PRESSURE and DAMPING [0]; default 1 */
+  double rate;  /* 1/s, DAMPING: 0 to 1e6, where factor and signal are 1; more than 1/dt counts
+                   as that; default 0. A zone in which waves of the period T fade is one wave length
+                   long, with a rate that rises to 10/T (docs/waves.md) */
+  int32_t rise; /* DAMPING: 1: the rate rises from 0 at lower[0] with the square of the distance to
+                   `rate` at upper[0], -1: from 0 at upper[0]; both are finite then. 0 (default):
+                   it is the same in all the box */
+  int32_t all;  /* 1: all particles; default 0 */
+} mps_fluid_load_def;
+
+static inline mps_fluid_load_def mps_fluid_load_defaults(void) {
+  mps_fluid_load_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_FLUID_LOAD, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Adds a load, between steps; `number` (may be NULL) receives the lowest free number, from 0.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range, or too many loads; MPS_ERROR_STATE: a step
+ *  is open, or a callback of the solver is running; MPS_ERROR_UNSUPPORTED: a pressure with the
+ *  classical scheme; MPS_ERROR_MEMORY. */
+MPS_NODISCARD static inline mps_status
+mps_fluid_add_load(mps_fluid *fluid, const mps_fluid_load_def *def, int32_t *number) {
+  return mps_solver_add(mps_fluid_solver(fluid), MPS_DEF_FLUID_LOAD, def, number);
+}
+/** Gives load `number` another definition. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors
+ *  as mps_fluid_add_load. */
+MPS_NODISCARD static inline mps_status mps_fluid_set_load(mps_fluid *fluid, int32_t number,
+                                                          const mps_fluid_load_def *def) {
+  return mps_solver_set(mps_fluid_solver(fluid), MPS_DEF_FLUID_LOAD, number, def);
+}
+/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: a step is
+ *  open, or a callback of the solver is running. */
+MPS_NODISCARD static inline mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t number) {
+  return mps_solver_remove(mps_fluid_solver(fluid), MPS_DEF_FLUID_LOAD, number);
+}
+/** The definition of load `number`, with what it selected as `ids`: mps_solver_get. */
+static inline mps_status mps_fluid_get_load(const mps_fluid *fluid, int32_t number,
+                                            mps_fluid_load_def *out) {
+  return mps_solver_get(mps_fluid_solver(fluid), MPS_DEF_FLUID_LOAD, number, out, sizeof *out);
+}
 
 MPS_EXTERN_C_END
-
-#include "fluid_boundary.h"
-#include "fluid_contact.h"
-#include "fluid_load.h"
-
 #endif

@@ -1,5 +1,5 @@
-/* mps/grid.h - the grid of a WLS-MPM solver, for reading between steps: its nodes as arrays or as a
- * set that a recorder writes, and the fields of the particles at any points (probes, gauges,
+/* mps/grid.h - the grid of a WLS-MPM solver, for reading between steps: its nodes as arrays,
+ * and the fields of the particles at any points (probes, gauges,
  * sections).
  *
  * The handle is lent: it lives as long as its solver. All values are of the present state, so that
@@ -38,8 +38,8 @@ static inline mps_status mps_grid_get_info(const mps_grid *grid, mps_grid_info *
  *  forces of the next step) and `force` (N, 3 values a node: of stresses, gravity, loads and
  *  springs of contacts, not what boundaries, friction and contacts by impulses add in a step).
  *  Where bodies or edges cut supports a node's mass can be a little below 0. Nodes near a mirrored
- *  side (mps_mpm_walls) include the contributions of the images beyond it: their masses add up as
- *  before, momenta and forces across it do not. It costs about half a step. The particles are
+ *  side (mps_mpm_edge) include the contributions of the images beyond it: their masses add up as
+ *  before, momenta and forces across it do not. The particles are
  *  sorted if the next step would sort them: views are then stale. On several ranks (collective)
  *  each gets nodes of its own blocks, every node on one rank; all together they are those of one
  *  rank. MPS_ERROR_ARGUMENT: `capacity` below 0; MPS_ERROR_STATE: a step has failed, a field is
@@ -47,15 +47,6 @@ static inline mps_status mps_grid_get_info(const mps_grid *grid, mps_grid_info *
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
                                                     double *velocity, double *force);
-
-/** Fills `set` with the active nodes, for a recorder that writes them beside the particles:
- *  positions and the fields `mass`, `velocity` and `force` (as above, `force` with as many
- *  components as dimensions), which are added. `set` has the solver's dimension and no solver; a
- *  recorder may hold it. Particles are added or removed as there are more or fewer nodes: ids do
- *  not follow nodes. MPS_ERROR_ARGUMENT: a set of another context or dimension; MPS_ERROR_FIELD: a
- *  field of these names has another shape; MPS_ERROR_STATE: a solver holds the set, or as
- *  mps_grid_get_nodes; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_grid_fill(mps_grid *grid, mps_particles *set);
 
 typedef enum mps_grid_point {
   MPS_GRID_POINT_INSIDE = 0,

@@ -33,13 +33,10 @@ typedef struct mps_recorder_def {
   int32_t reserved;
 } mps_recorder_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_recorder_def_init(mps_recorder_def *def, size_t size);
 static inline mps_recorder_def mps_recorder_defaults(void) {
   mps_recorder_def def;
   memset(&def, 0, sizeof def);
-  if (mps_recorder_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_RECORDER, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -60,9 +57,6 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_p
  *  MPS_ERROR_UNSUPPORTED: no HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_write(mps_recorder *recorder, double time);
 
-/** Number of frames in the file; 0 for NULL. */
-MPS_API int64_t mps_recorder_frames(const mps_recorder *recorder);
-
 /** Closes the file, has the disk confirm it, destroys and nulls, even on error; accepts NULL.
  *  MPS_ERROR_IO: something of the series did not reach the disk. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
@@ -70,8 +64,8 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
 MPS_API void mps_recorder_destroy(mps_recorder **recorder);
 
 /* ---- checkpoints -----------------------------------------------------------------------------
- * Of a set alone. The state of a solver is more than the fields: mps_S_save and mps_S_restore of
- * its own header, which take a mps_checkpoint too, save and restore it with its set. */
+ * mps_solver_save writes one, mps_solver_restore continues from it (mps/solver.h); here are its
+ * description, and its particles without the solver. */
 
 /** Data of a checkpoint besides the fields. */
 typedef struct mps_checkpoint {
@@ -88,24 +82,12 @@ typedef struct mps_checkpoint {
   int64_t user_bytes; /* >= 0; reading writes how many the file has */
 } mps_checkpoint;
 
-/** Fills `info` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_checkpoint_init(mps_checkpoint *info, size_t size);
 static inline mps_checkpoint mps_checkpoint_defaults(void) {
   mps_checkpoint info;
   memset(&info, 0, sizeof info);
-  if (mps_checkpoint_init(&info, sizeof info) != MPS_OK) info.struct_size = 0;
+  if (mps_def_init(MPS_DEF_CHECKPOINT, &info, sizeof info) != MPS_OK) info.struct_size = 0;
   return info;
 }
-
-/** Writes every field of the set, and `info`, to the file `path`. The file appears whole or not at
- *  all: it is written as "<path>.part", confirmed by the disk and then renamed, so that a crash or
- *  a full disk (MPS_ERROR_IO) never costs the former checkpoint. `path` is a new name, or that of
- *  an empty file or of an earlier checkpoint: a directory, a device or any other file is refused
- *  (MPS_ERROR_IO) and stays. mps_S_save of the solvers does the same. MPS_ERROR_UNSUPPORTED: no
- *  HDF5. */
-MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
-                                                      const mps_checkpoint *info);
 
 /** Reads `info` only (start from mps_checkpoint_defaults()), such as the dt of the solver to
  *  create. A user_key given there that is not "" must equal that of the file (MPS_ERROR_ARGUMENT).

@@ -1,6 +1,8 @@
 /* mps/kernel.h - weight functions of the particle methods.
  *
- * A kernel is immutable after creation: it may be shared by objects, contexts and threads.
+ * Each solver has a weight function of its own, so that programs need no kernel: one is for another
+ * radius or shape, given to a solver's definition, and for evaluations by the caller. A kernel is
+ * immutable after creation: it may be shared by objects, contexts and threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_KERNEL_H
 #define LIBMPS_KERNEL_H
@@ -38,18 +40,6 @@ MPS_API double mps_kernel_radius(const mps_kernel *kernel);
 MPS_API double mps_kernel_weight(const mps_kernel *kernel, double r);
 /** dw/dr (1/m). Zero where the weight is. */
 MPS_API double mps_kernel_derivative(const mps_kernel *kernel, double r);
-/** Moment of the weight over the whole space of `dim` (1, 2, 3) dimensions: the integral of
- *  w(|x|) |x|^order dV (m^(dim + order)), order 0 to 4. That of re/r - 1 over a line diverges with
- *  order 0: MPS_ERROR_ARGUMENT. */
-MPS_API MPS_NODISCARD mps_status mps_kernel_moment(mps_context *context, const mps_kernel *kernel,
-                                                   int32_t dim, int32_t order, double *out);
-/** Interior particle number density n0 = sum over j != i of w(r0_ij) of the infinite square (dim 2)
- *  or cubic (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. With
- *  `dim` 3 the context's cancel hook is called (MPS_ERROR_CANCELLED): of the 4 (re/spacing)^3 terms
- *  at most 4e9, which take half a minute. MPS_ERROR_ARGUMENT: `dim` or `spacing` out of range, or
- *  too many terms. */
-MPS_API MPS_NODISCARD mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel,
-                                                    int32_t dim, double spacing, double *out);
 
 MPS_EXTERN_C_END
 #endif

@@ -7,7 +7,12 @@
  * Signs and components: tension is positive. Tensors of two indices are stored by 3 i + j with
  * x, y, z = 0, 1, 2; in 2D only xx, xy, yx, yy (0, 1, 3, 4) and zz (8) are used, zz being the
  * direction out of the plane or the hoop. Stress is stored as xx, yy, zz, xy, zx, yz; in 2D the
- * first four. Angles are in radians.
+ * first four. Angles are in radians. With pore water (mps/experimental/pore_water.h) the stress is
+ * the effective one, else the total one: undrained clay is von Mises or Tresca in total stress.
+ *
+ * I1 is the trace of the stress, J2 half the sum of the squares of its deviator, s1 >= s2 >= s3 its
+ * principal values; d is the rate of deformation, F the deformation gradient, J = V/V0 its
+ * determinant, and dev the part without trace.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MATERIAL_H
 #define LIBMPS_MATERIAL_H
@@ -78,7 +83,9 @@ typedef struct mps_material_drucker_prager_def {
   double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0. Associated: phi */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
-  double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
+  double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex of the
+                      cone, c/tan(phi) */
+  double void_ratio, max_void_ratio; /* end of dilation, as in Mohr-Coulomb; NaN (default) */
 } mps_material_drucker_prager_def;
 
 /** How the strength falls with the plastic strain. */
@@ -108,50 +115,54 @@ typedef struct mps_material_mohr_coulomb_def {
   double rate_reference;    /* 1/s, > 0; default 3e-6 */
   int32_t softening;        /* mps_material_softening; default MPS_MATERIAL_SOFTENING_EXPONENTIAL */
   int32_t reserved_2;
+  /** Dilation ends where the sand, without its stress, would have the largest void ratio: at e_max
+   *  less the elastic compression, for which (1 + e)/(1 + void_ratio) is V/V0. So e is at most
+   *  max_void_ratio in compression, whatever the path. Both or neither. */
+  double void_ratio;     /* e at the start, 0.001 to 100; NaN (default): dilation does not end */
+  double max_void_ratio; /* e_max, void_ratio to 100; NaN (default) */
 } mps_material_mohr_coulomb_def;
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
 typedef enum mps_material_state_equation {
-  MPS_MATERIAL_STATE_LINEAR = 1, /* p = K (r - 1) */
-  MPS_MATERIAL_STATE_TAIT = 0    /* p = K/7 (r^7 - 1) */
+  MPS_MATERIAL_STATE_EQUATION_LINEAR = 1, /* p = K (r - 1) */
+  MPS_MATERIAL_STATE_EQUATION_TAIT = 0    /* p = K/7 (r^7 - 1) */
 } mps_material_state_equation;
 
 /** Weakly compressible Newtonian fluid: sigma = -p 1 + 2 viscosity dev(d). */
 typedef struct mps_material_newtonian_def {
   uint32_t struct_size;
-  int32_t state;       /* mps_material_state_equation, default MPS_MATERIAL_STATE_TAIT */
+  int32_t state;       /* mps_material_state_equation, default MPS_MATERIAL_STATE_EQUATION_TAIT */
   double bulk_modulus; /* Pa, K = rho0 c^2 > 0; no default */
   double viscosity;    /* Pa s, >= 0; default 0 */
   int32_t no_tension;  /* 1: p >= 0, and the volume does not grow beyond V0; default 0 */
   int32_t reserved;
 } mps_material_newtonian_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_von_mises_def_init(mps_material_von_mises_def *def, size_t size);
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_drucker_prager_def_init(mps_material_drucker_prager_def *def,
-                                                        size_t size);
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_mohr_coulomb_def_init(mps_material_mohr_coulomb_def *def,
-                                                      size_t size);
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_newtonian_def_init(mps_material_newtonian_def *def, size_t size);
-
-#define MPS_MATERIAL_DEFAULTS(law)                                                                 \
-  static inline mps_material_##law##_def mps_material_##law##_defaults(void) {                     \
-    mps_material_##law##_def def;                                                                  \
-    memset(&def, 0, sizeof def);                                                                   \
-    if (mps_material_##law##_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;            \
-    return def;                                                                                    \
-  }
-MPS_MATERIAL_DEFAULTS(von_mises)
-MPS_MATERIAL_DEFAULTS(drucker_prager)
-MPS_MATERIAL_DEFAULTS(mohr_coulomb)
-MPS_MATERIAL_DEFAULTS(newtonian)
+static inline mps_material_von_mises_def mps_material_von_mises_defaults(void) {
+  mps_material_von_mises_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_MATERIAL_VON_MISES, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+static inline mps_material_drucker_prager_def mps_material_drucker_prager_defaults(void) {
+  mps_material_drucker_prager_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_MATERIAL_DRUCKER_PRAGER, &def, sizeof def) != MPS_OK)
+    def.struct_size = 0;
+  return def;
+}
+static inline mps_material_mohr_coulomb_def mps_material_mohr_coulomb_defaults(void) {
+  mps_material_mohr_coulomb_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_MATERIAL_MOHR_COULOMB, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+static inline mps_material_newtonian_def mps_material_newtonian_defaults(void) {
+  mps_material_newtonian_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_MATERIAL_NEWTONIAN, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
 
 /** von Mises plasticity. Constants are copied. MPS_ERROR_ARGUMENT: a constant out of range, which
  *  the message names; MPS_ERROR_MEMORY. */
@@ -178,18 +189,14 @@ MPS_API void mps_material_destroy(mps_material **material);
 MPS_API const char *mps_material_name(const mps_material *material);
 /** K + 4G/3 at zero strain (Pa): the P wave velocity is its square root over the density's. */
 MPS_API double mps_material_wave_modulus(const mps_material *material);
-/** Non-zero: the law works on the deformation gradient, not on the rate. */
-MPS_API int32_t mps_material_needs_deformation(const mps_material *material);
 /** Number of history columns of the law; 0 for NULL. */
 MPS_API int32_t mps_material_history_count(const mps_material *material);
-/** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
+/** Name of a history column, NULL outside 0..count-1; the field of the set that holds it has the
+ *  same name under the library's laws, "<material>.<column>" under a user's law or UMAT. Laws of
+ * the same name share fields, since a particle obeys one law. `plastic_strain` is the sum of
  *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments, `opening` (frictional laws) the
  *  volume strain of the gap that compression closes before the mean stress falls below 0. */
 MPS_API const char *mps_material_history_name(const mps_material *material, int32_t index);
-/** Name of the field of a particle set that holds the column: the column's own name for the
- *  library's laws, "<material>.<column>" for a user's law or UMAT, a form that no other field can
- *  have. Laws of the same name share fields, since a particle obeys one law. */
-MPS_API const char *mps_material_history_field(const mps_material *material, int32_t index);
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
 
@@ -245,8 +252,8 @@ static inline mps_status mps_material_get_moduli(const mps_material *material, d
  *  that the set lacks. Nothing has changed on an error. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_material(mps_particles *particles,
                                                             const mps_material *material,
-                                                            double density, int64_t count,
-                                                            const int64_t *ids);
+                                                            double density, const int64_t *ids,
+                                                            int64_t count);
 
 MPS_EXTERN_C_END
 

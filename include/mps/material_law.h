@@ -25,8 +25,7 @@ typedef struct mps_material_block {
   /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
   const double *gradient[9];
   /** In, out: deformation gradient, updated by Nakamura (44) before a user's law is called. All the
-   *  components of `dim` (in 2D also zz), or all NULL for a law that does not need it
-   *  (mps_material_needs_deformation). */
+   *  components of `dim` (in 2D also zz), or all NULL for a law that does not need it. */
   double *deformation[9];
   /** In, out: V/V0. A user's law receives its value at the end of the step: the library has
    *  multiplied it by 1 + dt tr(d), or set it to det F. Such a law does not change it, unless part
@@ -34,7 +33,8 @@ typedef struct mps_material_block {
    *  the grains, without the gaps between them. */
   double *volume_ratio;
   double *stress[6]; /* In, out: Cauchy stress, Pa. */
-  /** In, out: history_count columns, at least mps_material_history_count; NULL for none. */
+  /** In, out: history_count columns, at least mps_material_history_count; NULL for none. Column h
+   * of particle i is history[h][i]. */
   double *const *history;
   int32_t history_count;
   int32_t message_size; /* bytes of `message` */
@@ -48,13 +48,10 @@ typedef struct mps_material_block {
   int64_t *refused; /* index within the block of the particle at which it fails; -1 on entry */
 } mps_material_block;
 
-/** Fills `block` (of `size` bytes) with NULL, 0 and dim 2. MPS_ERROR_ARGUMENT: NULL, or a size
- *  unknown to this library. */
-MPS_API mps_status mps_material_block_init(mps_material_block *block, size_t size);
 static inline mps_material_block mps_material_block_defaults(void) {
   mps_material_block block;
   memset(&block, 0, sizeof block);
-  if (mps_material_block_init(&block, sizeof block) != MPS_OK) block.struct_size = 0;
+  if (mps_def_init(MPS_DEF_MATERIAL_BLOCK, &block, sizeof block) != MPS_OK) block.struct_size = 0;
   return block;
 }
 
@@ -79,7 +76,8 @@ typedef struct mps_material_user_def {
   uint32_t struct_size;
   int32_t history_count;      /* 0..1024; default 0 */
   mps_material_fn update;     /* no default */
-  void *user;                 /* passed to `update`; must outlive the material */
+  void *user;                 /* passed to `update` and `moduli` */
+  mps_release_fn release;     /* of `user`, once no solver has the law */
   const char *name;           /* copied, at most 47 characters; default "user" */
   const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
                                  set the column is the field "<name>.<history>" */
@@ -148,8 +146,11 @@ typedef void (*mps_material_umat_fn)(
 
 typedef struct mps_material_umat_def {
   uint32_t struct_size;
-  int32_t statev_count;            /* NSTATV: 0 (default) to 1000 */
-  mps_material_umat_fn umat;       /* no default */
+  int32_t statev_count;      /* NSTATV: 0 (default) to 1000 */
+  mps_material_umat_fn umat; /* no default */
+  void *user; /* what `umat` needs to exist, such as its code; Abaqus' arguments have no place for
+                 it */
+  mps_release_fn release;          /* of `user`, once no solver has the law */
   const char *name;                /* CMNAME, as of a user's law; default "umat" */
   const double *props;             /* PROPS, copied, finite */
   int32_t props_count;             /* NPROPS, >= 0; default 0 */
@@ -165,22 +166,16 @@ typedef struct mps_material_umat_def {
   double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default NaN, NaN */
 } mps_material_umat_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_user_def_init(mps_material_user_def *def, size_t size);
 static inline mps_material_user_def mps_material_user_defaults(void) {
   mps_material_user_def def;
   memset(&def, 0, sizeof def);
-  if (mps_material_user_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_MATERIAL_USER, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size);
 static inline mps_material_umat_def mps_material_umat_defaults(void) {
   mps_material_umat_def def;
   memset(&def, 0, sizeof def);
-  if (mps_material_umat_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_MATERIAL_UMAT, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -198,44 +193,6 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_user(mps_context *context,
 MPS_API MPS_NODISCARD mps_status mps_material_create_umat(mps_context *context,
                                                           const mps_material_umat_def *def,
                                                           mps_material **out);
-
-/* ---- use without a solver -------------------------------------------------------------------- */
-
-/** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed), or
- *  the status of a user's law that fails, MPS_ERROR_NUMERIC where it leaves a value that is not
- *  finite; values of other laws are not checked: a NaN stays in its particle. Errors go to
- *  `context`, which need not be the material's: threads that update concurrently use a context
- *  each. No allocation. */
-MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
-                                                     const mps_material *material,
-                                                     const mps_material_block *block);
-
-#define MPS_MATERIAL_POINT_HISTORY 1024
-
-/** One particle with its state, to drive a law along a strain path. The history has room for every
- *  law: none has more than MPS_MATERIAL_POINT_HISTORY columns. Frozen layout. */
-typedef struct mps_material_point {
-  double stress[6];      /* Pa; may be set before the first step */
-  double deformation[9]; /* starts as the unit tensor */
-  double volume_ratio;   /* starts as 1 */
-  double history[MPS_MATERIAL_POINT_HISTORY];
-  int64_t flags; /* of the last step */
-  double time;   /* s */
-} mps_material_point;
-
-/** Sets the state before the first step. MPS_ERROR_ARGUMENT: `material` or `point` is NULL. */
-MPS_API MPS_NODISCARD mps_status mps_material_point_init(mps_context *context,
-                                                         const mps_material *material,
-                                                         mps_material_point *point);
-/** `steps` (>= 1) steps of dt = duration/steps (s, > 0) with the constant velocity gradient[3 i +
- *  j] (1/s, finite), always in three dimensions. MPS_ERROR_ARGUMENT: `steps`, `duration` or
- *  `gradient` out of range; MPS_ERROR_NUMERIC: a user's law leaves a value that is not finite; or
- *  the status of that law. */
-MPS_API MPS_NODISCARD mps_status mps_material_point_drive(mps_context *context,
-                                                          const mps_material *material,
-                                                          mps_material_point *point,
-                                                          const double gradient[9], double duration,
-                                                          int64_t steps);
 
 MPS_EXTERN_C_END
 #endif

@@ -14,18 +14,22 @@
  *   for (double vx : mps::view(sand, "velocity").column(0)) ...
  *   for (auto x : mps::view(sand, "position").rows()) std::hypot(x[0], x[1]) ...
  *
- * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::bind, mps::keep
- * or mps::callback. A function that is given to C without it must not throw: C has no way to unwind
- * a step.
+ * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::bound,
+ * mps::create_signal, mps::set_hook or mps::callback. A function that is given to C without it must
+ * not throw: C has no way to unwind a step.
  *
  * Arguments are those of the C function, with a struct in place of a pointer to it and a handle in
  * place of its object. The context must outlive the handles that were made from it, as it does when
- * it is declared first. Thread rules are those of the C functions.
+ * it is declared first. Thread rules are those of the C functions. Names in mps and their meaning
+ * are kept through 1.x, detail excepted; binaries are not: this header is part of each program.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MPS_HPP
 #define LIBMPS_MPS_HPP
 
 #include "mps.h"
+#ifdef MPS_EXPERIMENTAL
+#include "experimental.h"
+#endif
 #include "ranges.hpp"
 
 #include <atomic>
@@ -36,17 +40,17 @@
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace mps {
+inline namespace v1 {
 
 /** A failed call: the context's error record as it was then. what() is
  *  "mps_mpm_create: cell of the solver is 0 m, must be ...". */
 class error : public std::exception {
 public:
   error(const mps_context *context, mps_status status) : status_(status) {
-    const mps_error *last = context ? mps_context_error(context) : nullptr;
-    if (last && last->status == status) record_ = *last;
+    const mps_error *last = mps_context_error(context); /* without one: that of the thread */
+    if (last->status == status) record_ = *last;
     record_.status = status;
     text_ = record_.function[0] ? std::string(record_.function) + ": " : std::string();
     text_ += record_.message[0] ? record_.message : mps_status_text(status);
@@ -67,7 +71,7 @@ private:
 
 namespace detail {
 template <class T> inline void ended(const T *) noexcept {}
-inline void ended(const mps_context *context) noexcept; /* forgets what belongs to it */
+inline void ended(const mps_context *context) noexcept; /* forgets its exception */
 } // namespace detail
 
 /** Owns an object of the C library, and destroys it; moves, never copies. Converts to the pointer
@@ -109,7 +113,6 @@ private:
   }
 MPS_CPP_HANDLE(context)
 MPS_CPP_HANDLE(particles)
-MPS_CPP_HANDLE(neighbours)
 MPS_CPP_HANDLE(kernel)
 MPS_CPP_HANDLE(signal)
 MPS_CPP_HANDLE(material)
@@ -117,14 +120,18 @@ MPS_CPP_HANDLE(body)
 MPS_CPP_HANDLE(contact)
 MPS_CPP_HANDLE(snapshot)
 MPS_CPP_HANDLE(recorder)
+MPS_CPP_HANDLE(history)
 MPS_CPP_HANDLE(mpm)
 MPS_CPP_HANDLE(dynamics)
 MPS_CPP_HANDLE(elastic)
 MPS_CPP_HANDLE(fluid)
+#ifdef MPS_EXPERIMENTAL
+MPS_CPP_HANDLE(neighbours)
 MPS_CPP_HANDLE(coupling)
 MPS_CPP_HANDLE(domain)
 MPS_CPP_HANDLE(waves)
 MPS_CPP_HANDLE(absorber)
+#endif
 #undef MPS_CPP_HANDLE
 
 namespace detail {
@@ -187,7 +194,8 @@ inline void check(const mps_context *owner, mps_status status) {
  *  mps_signal_fn, mps_context_log_fn ...), `f` takes what stands behind `user` there and returns
  * the same, or nothing for MPS_OK. What it throws ends the call of the library and comes out of it,
  * if that is made by the functions of this header. The callback must live as long as what calls it,
- * which a solver may for longer than the handle of its law: mps::bind and mps::keep see to that.
+ * which a solver may for longer than the handle of its law: mps::bound, mps::create_signal and
+ * mps::set_hook give it to the library, which ends it.
  *
  *   mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) { ... });
  *   def.update = update.function();
@@ -203,6 +211,9 @@ public:
     };
   }
   void *user() const noexcept { return body_.get(); }
+  /** For the library, to which give() then leaves the function. */
+  static void release(void *user) { delete static_cast<body *>(user); }
+  void give() noexcept { (void)body_.release(); }
 
 private:
   struct body {
@@ -236,61 +247,49 @@ private:
 };
 
 namespace detail {
-/* Callbacks that live as long as their context. */
-class kept {
+inline void ended(const mps_context *context) noexcept { (void)thrown::take(context); }
+} // namespace detail
+
+/** A definition with a C++ function for its callback, which belongs to what is made from it, and to
+ * this until something is: one object for each.
+ *
+ *   mps::bound law(context, mps_material_user_defaults());
+ *   law.bind(&mps_material_user_def::update, [=](const mps_material_block *block) { ... });
+ *   law.wave_modulus = 1e6;
+ *   auto material = mps::create(context, mps_material_create_user, law); */
+template <class D> class bound : public D {
 public:
-  static void add(const mps_context *context, std::shared_ptr<void> callback) {
-    const std::lock_guard<std::mutex> lock(mutex());
-    list()[context].push_back(std::move(callback));
+  bound(const mps_context *owner, const D &def) : D(def), owner_(owner) {}
+  bound(const context &owner, const D &def) : bound(owner.get(), def) {}
+  template <class C, class F> void bind(C D::*member, F f) {
+    auto made = std::make_unique<callback<C>>(owner_, std::move(f));
+    this->*member = made->function();
+    this->user = made->user();
+    this->release = callback<C>::release;
+    held_ = std::unique_ptr<void, void (*)(void *)>(made->user(), callback<C>::release);
+    made->give();
   }
-  static void drop(const mps_context *context) noexcept {
-    std::vector<std::shared_ptr<void>> gone; /* ends without the lock: a lambda may hold handles */
-    const std::lock_guard<std::mutex> lock(mutex());
-    const auto found = list().find(context);
-    if (found == list().end()) return;
-    gone.swap(found->second);
-    list().erase(found);
+  /** The library has it: another object needs another function. */
+  void given() noexcept {
+    if (!held_) return;
+    (void)held_.release();
+    this->user = nullptr;
+    this->release = nullptr;
+    given_ = true;
+  }
+  /** Throws where the function has been given away. */
+  void usable() const {
+    if (given_ && !held_)
+      throw error(MPS_ERROR_STATE,
+                  "mps::bound: an object has the function of this definition: bind "
+                  "another one");
   }
 
 private:
-  static std::mutex &mutex() {
-    static auto *one = new std::mutex;
-    return *one;
-  }
-  static std::map<const mps_context *, std::vector<std::shared_ptr<void>>> &
-  list() { /* never destroyed: a static context may end last */
-    static auto *one = new std::map<const mps_context *, std::vector<std::shared_ptr<void>>>;
-    return *one;
-  }
+  const mps_context *owner_;
+  std::unique_ptr<void, void (*)(void *)> held_{nullptr, [](void *) {}};
+  bool given_ = false;
 };
-
-inline void ended(const mps_context *context) noexcept {
-  (void)thrown::take(context);
-  kept::drop(context);
-}
-} // namespace detail
-
-/** A callback that lives until the context's handle destroys the context, as everything that may
- * call it does.
- *
- *   const auto &motion = mps::keep<mps_signal_fn>(context, [](double t, double *out) { ... });
- *   auto signal = mps::create(context, mps_signal_create_user, motion.function(), motion.user());
- */
-template <class C, class F> const callback<C> &keep(const context &owner, F f) {
-  const auto made = std::make_shared<callback<C>>(owner.get(), std::move(f));
-  detail::kept::add(owner.get(), made);
-  return *made;
-}
-
-/** Puts a C++ function into the members `function` and `user` of a definition, kept as by
- * mps::keep.
- *
- *   mps::bind(context, def.update, def.user, [=](const mps_material_block *block) { ... }); */
-template <class C, class F> void bind(const context &owner, C &function, void *&user, F f) {
-  const callback<C> &made = keep<C>(owner, std::move(f));
-  function = made.function();
-  user = made.user();
-}
 
 namespace detail {
 /* What a C function takes in place of what a C++ program gives: the object of a handle, the address
@@ -299,10 +298,18 @@ template <class T> T *pass(const handle<T> &h) { return h.get(); }
 template <class T> T *pass(handle<T> &h) { return h.get(); }
 template <class S> using is_struct = std::enable_if_t<std::is_class_v<std::remove_reference_t<S>>>;
 template <class S, class = is_struct<S>> auto pass(S &s) -> decltype(&s) { return &s; }
+template <class D> const D *pass(bound<D> &def) {
+  def.usable();
+  return &def;
+}
 template <class S, class = std::enable_if_t<!std::is_class_v<std::remove_reference_t<S>>>>
 decltype(auto) pass(S &&s) {
   return std::forward<S>(s);
 }
+
+/* After a call that has succeeded. */
+template <class A> void given(const A &) noexcept {}
+template <class D> void given(bound<D> &def) noexcept { def.given(); }
 
 /* T of the last parameter, T **, of a function that creates. */
 template <class... P> struct last;
@@ -325,7 +332,7 @@ inline context create_context(const mps_context_def &def = mps_context_defaults(
         [](void *user) -> int32_t {
           return detail::thrown::has(static_cast<const mps_context *>(user));
         },
-        made);
+        made, nullptr);
   return context(made, made);
 }
 
@@ -333,6 +340,7 @@ inline context create_context(const mps_context_def &def = mps_context_defaults(
 template <class T, class... P, class... A>
 void call(const handle<T> &owner, mps_status (*f)(T *, P...), A &&...arguments) {
   check(owner.error_context(), f(owner.get(), detail::pass(arguments)...));
+  (detail::given(arguments), ...);
 }
 template <class T, class... P, class... A>
 void call(const handle<T> &owner, mps_status (*f)(const T *, P...), A &&...arguments) {
@@ -345,7 +353,28 @@ handle<detail::created<P...>> create(const handle<T> &owner, mps_status (*f)(T *
                                      A &&...arguments) {
   detail::created<P...> *made = nullptr;
   check(owner.error_context(), f(owner.get(), detail::pass(arguments)..., &made));
+  (detail::given(arguments), ...);
   return {made, owner.error_context()};
+}
+
+/** A signal of `quantity` by a C++ function f(t, motion), as mps_signal_create_user; it ends with
+ *  the signal. */
+template <class F> signal create_signal(const context &owner, int32_t quantity, F f) {
+  callback<mps_signal_fn> motion(owner.get(), std::move(f));
+  signal made = create(owner, mps_signal_create_user, quantity, motion.function(), motion.user(),
+                       motion.release);
+  motion.give();
+  return made;
+}
+
+/** A C++ function as the log, progress or cancel hook of a context, until another one is set:
+ *
+ *   mps::set_hook(context, mps_context_set_log, [](int32_t level, const char *text) { ... }); */
+template <class C, class F>
+void set_hook(const context &owner, void (*set)(mps_context *, C, void *, mps_release_fn), F f) {
+  callback<C> hook(owner.get(), std::move(f));
+  set(owner.get(), hook.function(), hook.user(), hook.release);
+  hook.give();
 }
 
 /** The value that f(owner, arguments..., &value) writes: a struct of results, a number. */
@@ -463,6 +492,7 @@ private:
   mps_edit edit_ = {};
 };
 
+} // namespace v1
 } // namespace mps
 
 #endif

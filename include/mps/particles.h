@@ -1,11 +1,11 @@
 /* mps/particles.h - a set of particles: positions on or off a lattice, and named fields.
  *
  * Storage is a structure of arrays: each component of a field is one contiguous array, aligned to
- * 64 bytes. Fields are read through zero-copy views and written between mps_particles_edit and
- * mps_particles_commit. Each particle has an `id` that no other one had or will have; ids need not
- * be consecutive. Adding, removing and sorting change the order and the epoch, and end views.
- * Thread rule: one thread at a time per set (and per context).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * 64 bytes. docs/fields.md lists the fields that the library knows, with unit and range. Fields are
+ * read through zero-copy views and written between mps_particles_edit and mps_particles_commit.
+ * Each particle has an `id` that no other one had or will have; ids need not be consecutive.
+ * Adding, removing and sorting change the order and the epoch, and end views. Thread rule: one
+ * thread at a time per set (and per context). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_PARTICLES_H
 #define LIBMPS_PARTICLES_H
 
@@ -19,16 +19,14 @@ typedef struct mps_particles_def {
   uint32_t struct_size;
   int32_t dim;      /* 2 (default) or 3 */
   double spacing;   /* D, m, 1e-12 to 1e12; no default */
-  double origin[3]; /* m; the fills put particles at origin + (i + 1/2) D (cell centred) */
+  double origin[3]; /* m, default 0; the fills put particles at origin + (i + 1/2) D (cell centred),
+                       so that a box of whole spacings is filled exactly */
 } mps_particles_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_particles_def_init(mps_particles_def *def, size_t size);
 static inline mps_particles_def mps_particles_defaults(void) {
   mps_particles_def def;
   memset(&def, 0, sizeof def);
-  if (mps_particles_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_PARTICLES, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -61,13 +59,17 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
  * are numbered x fastest, then y, then z; a shape may hold up to 2^31 sites. A site's centre within
  * 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and lower edges of a
  * polygon, out at `hi`, at the right and upper edges and on the surface of a ball. So shapes that
- * share an edge share no site. */
+ * share an edge share no site. What is made has whole sites: where a face of a box, or an edge of a
+ * polygon along an axis, lies more than 1e-6 spacings off the faces of the lattice, or a ball's
+ * volume differs by more than a tenth, a warning says what was asked for and what is made. A solver
+ * refuses particles that share a place (1e-6 spacings), and logs a warning where particles fill
+ * space above 1.5 of its volume, as two clouds that overlap do. */
 
 /** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. This
- *  and the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks pass
- *  the same arguments, and each keeps the particles of its part. MPS_ERROR_ARGUMENT: `count` or a
- *  position out of range; MPS_ERROR_STATE: the solver that holds the set takes no particles;
- *  MPS_ERROR_MEMORY. */
+ *  and the fills, of a set that lies on several ranks (mps/experimental/domain.h): collective; all
+ * ranks pass the same arguments, and each keeps the particles of its part. MPS_ERROR_ARGUMENT:
+ * `count` or a position out of range; MPS_ERROR_STATE: the solver that holds the set takes no
+ * particles; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
                                                       const double *positions);
 /** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). MPS_ERROR_ARGUMENT: an
@@ -106,8 +108,8 @@ MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particl
  *  changed. MPS_ERROR_ARGUMENT: an id that the set lacks, or one twice; MPS_ERROR_STATE: the solver
  *  that holds the set does not allow it, or a field is being edited. On several ranks collective:
  *  all pass the same list, or each the ids of its own particles. */
-MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, int64_t count,
-                                                      const int64_t *ids);
+MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, const int64_t *ids,
+                                                      int64_t count);
 
 /* ---- fields -------------------------------------------------------------------------------- */
 
@@ -175,7 +177,7 @@ MPS_NODISCARD static inline mps_status mps_particles_get_field_info(const mps_pa
 /** Ids of the particles with position in the box [lo, hi] (dim values, infinities allowed), in
  *  ascending order. Writes at most `capacity` of them to `ids` (may be NULL when capacity is 0);
  *  `count` receives their number. MPS_ERROR_ARGUMENT: a NULL array, `capacity` below 0, lo above
- *  hi; MPS_ERROR_MEMORY. */
+ *  hi; MPS_ERROR_STATE: a field is being edited; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_select_box(const mps_particles *particles,
                                                           const double *lo, const double *hi,
                                                           int64_t capacity, int64_t *count,
@@ -183,7 +185,8 @@ MPS_API MPS_NODISCARD mps_status mps_particles_select_box(const mps_particles *p
 /** Present index of the particle `id` in every view, or -1. */
 MPS_API int64_t mps_particles_index(const mps_particles *particles, int64_t id);
 /** Id of the particle nearest to x (dim values, m), the lowest of equally near ones; -1 for an
- *  empty set. Takes time in proportion to the number of particles. */
+ *  empty set, and with MPS_ERROR_STATE recorded while a field is being edited. Takes time in
+ *  proportion to the number of particles. */
 MPS_API int64_t mps_particles_nearest(const mps_particles *particles, const double *x);
 
 MPS_EXTERN_C_END

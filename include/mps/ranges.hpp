@@ -22,6 +22,7 @@
 #endif
 
 namespace mps {
+inline namespace v1 {
 
 /** Iterator over one component of a field, in the present order of the particles: random access. */
 template <class V> class strided {
@@ -138,6 +139,7 @@ private:
   int64_t size_ = 0;
 };
 
+} // namespace v1
 } // namespace mps
 
 #if defined(MPS_CPP_RANGES) /* both are views, and their iterators outlive them */

@@ -1,19 +1,91 @@
-/* mps/soil.h - ground: modified Cam-Clay and its state at rest, stiffness at small strain, sand
- * that contracts under cyclic shear, and any law at one point along paths of stress and strain, as
- * in a triaxial test.
+/* mps/soil.h - ground: its state at rest under its own weight, a stress by a function, and modified
+ * Cam-Clay.
  *
- * p = -I1/3 is the mean effective pressure, q = sqrt(3 J2), e the void ratio, v = 1 + e; tension is
- * positive in tensors. The equations are in docs/materials.md.
+ * mps_particles_set_geostatic and _set_stress write the field `stress` of a particle set: the
+ * initial stress of WLS-MPM with laws in rate form (linear elastic, von Mises, Drucker-Prager,
+ * Mohr-Coulomb). Laws that take the stress from the deformation gradient or the volume
+ * (neo-Hookean, Newtonian) do not read it. Tension is positive, so that these stresses are
+ * negative. p = -I1/3 is the mean effective pressure, q = sqrt(3 J2), e the void ratio, v = 1 + e.
  *
- * Thread rule: creation and states, one thread at a time per set and context; a point, one thread
- * at a time per context. SPDX-License-Identifier: BSD-3-Clause */
+ * Thread rule: one thread at a time per set and context; callbacks run on the calling thread.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_SOIL_H
 #define LIBMPS_SOIL_H
 
-#include "geostatic.h"
 #include "material.h"
+#include "particles.h"
 
 MPS_EXTERN_C_BEGIN
+
+/** A layer of ground, from the surface or the layer above it downwards; layers are parallel to the
+ *  surface, as depths are measured vertically. There is no water in it: with a water table give the
+ *  buoyant density below. The size of one in an array is mps_geostatic_def.layer_size. */
+typedef struct mps_geostatic_layer {
+  double thickness; /* m, 1e-9 to 1e9; infinite allowed for the lowest */
+  double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
+                       nu/(1 - nu) */
+  double density;   /* kg/m3, 1e-9 to 1e9; NaN: that of the field `density` of the particles whose
+                       centres lie in the layer, which must be one value */
+} mps_geostatic_layer;
+
+/** Writes the level (m) of the surface above or below the position x (m, as many values as the set
+ *  has dimensions; the vertical one is that of the particle). Another status than MPS_OK ends the
+ *  call, which returns it. */
+typedef mps_status (*mps_geostatic_level_fn)(void *user, const double *x, double *level);
+
+typedef struct mps_geostatic_def {
+  uint32_t struct_size;
+  int32_t vertical; /* axis that points up: 0, 1, 2, or -1 (default) for the last of the set: y in
+                       2D, z in 3D */
+  int64_t layer_count;               /* >= 1; no default */
+  const mps_geostatic_layer *layers; /* from the surface downwards; no default */
+  double gravity;                    /* m/s2, > 0, downwards; default 9.81 */
+  double surcharge;                  /* Pa, >= 0, load on the surface; default 0 */
+  int64_t surface_points;            /* >= 2 with `surface_line`, else 0 (default) */
+  /** The surface, by one of three: */
+  double surface;             /* m, level of a flat one; NaN (default): half a spacing above the
+                                 highest particle */
+  const double *surface_line; /* 2D: x0, y0, x1, y1, ..., x ascending; beyond the ends level. Not
+                                 where x is the vertical */
+  mps_geostatic_level_fn surface_level;
+  void *user;         /* passed to `surface_level` */
+  int32_t layer_size; /* bytes from one of `layers` to the next: mps_geostatic_defaults writes
+                         sizeof(mps_geostatic_layer); 0 (of mps_def_init): 24, that of
+                         the first release */
+  int32_t reserved;
+} mps_geostatic_def;
+
+static inline mps_geostatic_def mps_geostatic_defaults(void) {
+  mps_geostatic_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_def_init(MPS_DEF_GEOSTATIC, &def, sizeof def) != MPS_OK) def.struct_size = 0;
+  def.layer_size = (int32_t)sizeof(mps_geostatic_layer);
+  return def;
+}
+
+/** Sets the stress at rest of every particle, adding the field where the set lacks it: vertically
+ *  the weight of the ground above the particle's centre, summed layer by layer without an error of
+ *  integration, horizontally K0 times that, no shear. In 2D the direction out of the plane, or the
+ *  hoop, is horizontal. Under a level surface this is in balance; under a slope it is a start.
+ *  MPS_ERROR_ARGUMENT: a value out of range, a particle above the surface or below the lowest
+ *  layer, different densities in a layer that takes its density from them. MPS_ERROR_FIELD: no
+ *  `density` to take it from. MPS_ERROR_UNSUPPORTED: a `surface_line` that is not 2D with y
+ *  upwards. MPS_ERROR_STATE: a solver's callback is running. Nothing is changed on an error. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_geostatic(mps_particles *particles,
+                                                             const mps_geostatic_def *def);
+
+/** Writes the stress (Pa) at the position x (m): xx, yy, zz, xy in 2D, and zx, yz in 3D, which are
+ *  zero on entry. Another status than MPS_OK ends the call, which returns it. */
+typedef mps_status (*mps_geostatic_stress_fn)(void *user, const double *x, double *stress);
+
+/** Sets the stress of every particle by the caller's function, adding the field where the set lacks
+ *  it. MPS_ERROR_ARGUMENT for a stress that is not finite, or the status that the function returns;
+ *  then nothing is changed. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_stress(mps_particles *particles,
+                                                          mps_geostatic_stress_fn stress,
+                                                          void *user);
+
+/* ---- modified Cam-Clay ----------------------------------------------------------------------- */
 
 /** Modified Cam-Clay: q^2/M^2 + p (p - pc) = 0, associated; K = v p/kappa, dpc/pc = v times the
  *  plastic volume strain over lambda - kappa. Effective stress. Its history is `plastic_strain`,
@@ -22,9 +94,10 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_material_cam_clay_def {
   uint32_t struct_size;
   int32_t lode;          /* 0 (default): M in all directions; 1: it follows the Lode angle, in
-                            triaxial extension (3 - sin phi)/(3 + sin phi) of that in compression */
-  double critical_slope; /* M, q/p at the critical state in triaxial compression, 0.05 to 2.9; no
-                            default. 6 sin(phi)/(3 - sin(phi)) */
+                            triaxial extension (3 - sin phi)/(3 + sin phi) of that in compression,
+                            and so does the flow: associated too */
+  double critical_slope; /* M, q/p at the critical state in triaxial compression, 0.05 to 2.9, with
+                            `lode` to 1.9; no default. 6 sin(phi)/(3 - sin(phi)) */
   double compression;   /* lambda, slope of virgin compression in v - ln p, 1e-4 to 5; no default */
   double swelling;      /* kappa, slope of unloading, 1e-5 to below lambda; no default */
   double poisson;       /* nu, 0 to 0.49, from which G follows K; default 0.3 */
@@ -35,13 +108,10 @@ typedef struct mps_material_cam_clay_def {
   double least_pressure;   /* Pa, p below which grains part, up to pc/10; NaN (default): pc/1000 */
 } mps_material_cam_clay_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_cam_clay_def_init(mps_material_cam_clay_def *def, size_t size);
 static inline mps_material_cam_clay_def mps_material_cam_clay_defaults(void) {
   mps_material_cam_clay_def def;
   memset(&def, 0, sizeof def);
-  if (mps_material_cam_clay_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_def_init(MPS_DEF_MATERIAL_CAM_CLAY, &def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -52,194 +122,9 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_cam_clay(mps_context *conte
                                                               const mps_material_cam_clay_def *def,
                                                               mps_material **out);
 
-/* ---- stiffness at small strain --------------------------------------------------------------- */
-
-/** Stiffness that falls with the shear strain, and rises again where the strain turns: on first
- *  loading tau = G0 gamma/(1 + (gamma/gamma_r)^a) (Hardin and Drnevich 1972 with a = 1, Darendeli
- *  2001) up to the strength, tau = sqrt(J2), gamma = 2 sqrt(J2 of the strain deviator), counted
- *  from the first state, whose stress stays; unloading and reloading by Masing's rules, small loops
- *  within large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan
- *  1967): the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate
- *  nothing. K stays. No friction: the strength does not follow the pressure. Its history is
- *  `plastic_strain`, `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall
- *  threshold gamma_0.7 is 0.385 gamma_r. */
-typedef struct mps_material_small_strain_def {
-  uint32_t struct_size;
-  uint32_t reserved;
-  double shear_modulus;    /* Pa, G0 at zero strain; no default */
-  double poisson;          /* at zero strain, for K; default 0.3 */
-  double reference_strain; /* gamma_r, engineering shear strain at which G/G0 is 1/2 on the
-                              backbone, 1e-7 to 1; no default */
-  double curvature;        /* a, 0.5 to 1; default 1 */
-  double strength;         /* Pa, largest tau, from 0.05 G0 gamma_r to the backbone's largest: with
-                              curvature 1 G0 gamma_r, else its value at 1000 gamma_r. NaN (default):
-                              G0 gamma_r, with curvature 1 alone */
-} mps_material_small_strain_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_small_strain_def_init(mps_material_small_strain_def *def,
-                                                      size_t size);
-static inline mps_material_small_strain_def mps_material_small_strain_defaults(void) {
-  mps_material_small_strain_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_material_small_strain_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** Small-strain stiffness. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is set where the
- *  strength is reached. mps_material_wave_modulus and mps_material_get_moduli are those of zero
- *  strain, which limit a solver's step. MPS_ERROR_ARGUMENT: a constant out of range, which the
- *  message names; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
-    mps_context *context, const mps_material_small_strain_def *def, mps_material **out);
-
-/* ---- sand that contracts under cyclic shear -------------------------------------------------- */
-
-/** Mohr-Coulomb sand (without softening) that contracts in every half cycle of shear of the
- *  amplitude g, engineering strain, by 1/2 C1 g exp(-C2 e/g), e the contraction before it (Byrne
- *  1991), or with `c3` and `c4` by 1/2 (C1 (g - C2 e) + C3 e^2/(g + C4 e)) (Martin, Finn and Seed
- *  1975). Dry or drained sand settles; with pore water (mps/pore_water.h) effective stresses fall,
- *  without cohesion all in proportion, and the pressure of the water rises, to liquefaction, and
- *  falls as water leaves.
- *  Half cycles end where the deviatoric strain turns back by a tenth of its way from the last
- *  reversal and by two thresholds; g is half of that way, gamma = 2 sqrt(J2), in any direction.
- *  Grains without effective stress do not contract. Strains of mps_mpm_settle count: settle ground
- *  as Mohr-Coulomb, then mps_mpm_set_material. Of `relative_density`, `blow_count` and `c1`
- *  one must be given. Its history is that of Mohr-Coulomb, `contraction` (e), `contraction_before`
- *  (at the last reversal), `half_cycles` and two tensors of strain, 15 columns. */
-typedef struct mps_material_cyclic_sand_def {
-  uint32_t struct_size;
-  uint32_t reserved;
-  double young;            /* Pa, > 0, at the amplitudes of the shaking; no default */
-  double poisson;          /* default 0.3 */
-  double friction;         /* rad, angle phi, 0 <= phi < pi/2; no default */
-  double dilation;         /* rad, angle psi, 0 <= psi <= phi; default 0 */
-  double cohesion;         /* Pa, c >= 0, not 0 when phi is; default 0 */
-  double relative_density; /* Dr, 0.1 to 1: C1 = 7600 (100 Dr)^-2.5, C2 = 0.4/C1; NaN (default) */
-  double blow_count;       /* (N1)60, 1 to 60: C1 = 8.7 (N1)60^-1.25, C2 = 0.4/C1; NaN (default) */
-  double c1; /* C1 of a full cycle, 1e-4 to 100; NaN (default): by one of the former two */
-  double c2; /* C2, 0 to 100; NaN (default): 0.4/C1 */
-  double c3; /* C3 and */
-  double c4; /* C4, 1e-4 to 100, of Martin, Finn and Seed, with c1 and c2; NaN (default): Byrne */
-  double threshold;    /* amplitude, 0 to 0.01, up to which nothing contracts, and from twice which
-                          all does; default 1e-4 */
-  double strain_limit; /* amplitude, above the threshold and at most 1, beyond which larger ones
-                          contract no more; default 0.01 */
-} mps_material_cyclic_sand_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_material_cyclic_sand_def_init(mps_material_cyclic_sand_def *def,
-                                                     size_t size);
-static inline mps_material_cyclic_sand_def mps_material_cyclic_sand_defaults(void) {
-  mps_material_cyclic_sand_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_material_cyclic_sand_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** Cyclic sand. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is also set where a particle has
- *  contracted. MPS_ERROR_ARGUMENT: a constant out of range, none or several of `relative_density`,
- *  `blow_count` and `c1`, `c2` without `c1`, one of `c3` and `c4`; the message names it;
- *  MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_material_create_cyclic_sand(
-    mps_context *context, const mps_material_cyclic_sand_def *def, mps_material **out);
-
-/* ---- ground of Cam-Clay at rest -------------------------------------------------------------- */
-
-typedef struct mps_consolidation_def {
-  uint32_t struct_size;
-  int32_t reserved;
-  double ocr; /* largest former vertical effective stress over the present one, 1 to 1000;
-                 default 1 */
-  double pop; /* Pa, >= 0: added to that largest stress; default 0 */
-  double k0;  /* horizontal over vertical stress; NaN (default): that of the law after
-                 one-dimensional loading to the largest stress and elastic unloading, at most
-                 the passive one */
-  double critical_volume; /* Gamma, v on the critical state line at `reference`, above 1: e follows
-                             from p and pc; NaN (default): e of the law */
-  double reference;       /* Pa, > 0; default 1000 */
-  int64_t count;          /* of `ids`; 0 and NULL (default): all particles */
-  const int64_t *ids;
-  int32_t vertical; /* axis of the vertical stress, 0, 1, 2; -1 (default): the last of the set */
-  int32_t reserved_2;
-} mps_consolidation_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_consolidation_def_init(mps_consolidation_def *def, size_t size);
-static inline mps_consolidation_def mps_consolidation_defaults(void) {
-  mps_consolidation_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_consolidation_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** From the vertical effective stress in the field `stress` (mps_particles_set_geostatic with
- *  buoyant densities) sets the horizontal stresses, and the fields `preconsolidation` and
- *  `void_ratio`, of ground that has settled under its weight and its former load; no shear. To be
- *  called before the solver is created. MPS_ERROR_ARGUMENT: a value out of range, a vertical stress
- *  that is not compression (the message names the particle), k0 beyond the yield surface of the
- *  largest stress; MPS_ERROR_FIELD: no `stress`; MPS_ERROR_UNSUPPORTED: a law that is not Cam-Clay;
- *  MPS_ERROR_STATE: a solver's callback is running. Nothing is changed on an error. */
-MPS_API MPS_NODISCARD mps_status mps_particles_set_consolidation(mps_particles *particles,
-                                                                 const mps_material *material,
-                                                                 const mps_consolidation_def *def);
-
 /** K0 of one-dimensional virgin compression of a Cam-Clay; NaN of another law or NULL. Thread safe.
  *  */
 MPS_API double mps_material_normal_k0(const mps_material *material);
-
-/* ---- strength and stiffness that vary in the ground -------------------------------------------
- */
-
-/** The law `law` with moduli and strengths of each particle: its fields `stiffness_factor`
- *  multiplies E and the hardening modulus, `strength_factor` the yield stress, cohesion and tension
- *  (the last and residual ones too). The caller sets these two fields, mps_particles_set_profile by
- *  depth; 0, as in particles that have none, is 1. Constants are copied. Its history has the two as
- *  last columns; mps_material_wave_modulus and mps_material_get_moduli are those of factor 1, and
- *  the step of a solver follows the factors. MPS_ERROR_ARGUMENT: NULL, or a law of another context;
- *  MPS_ERROR_UNSUPPORTED: another law than linear elastic, von Mises, Drucker-Prager,
- *  Mohr-Coulomb, small strain and cyclic sand, or one made by this function; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_material_create_by_field(mps_context *context,
-                                                              const mps_material *law,
-                                                              mps_material **out);
-
-/** Writes a field of one component by depth: `value[k]` at `depth[k]` (m, `count` >= 1 of them,
- *  ascending), linear between, and the first and last value beyond. The field is added where the
- *  set lacks it. `ground` (may be NULL) gives the surface and the vertical axis as for
- *  mps_particles_set_geostatic; its other members are not read. MPS_ERROR_ARGUMENT: a number that
- *  is not finite, depths that do not ascend, a value that the field does not take, a particle above
- *  the surface; MPS_ERROR_FIELD: the field has several components or integers; MPS_ERROR_STATE: a
- *  solver's callback is running. Nothing is changed on an error. */
-MPS_API MPS_NODISCARD mps_status mps_particles_set_profile(mps_particles *particles,
-                                                           const char *field, int32_t count,
-                                                           const double *depth, const double *value,
-                                                           const mps_geostatic_def *ground);
-
-/* ---- a point along a path of stress and strain ------------------------------------------------
- */
-
-/** Bits of `controlled`, in the order of a stress's components. */
-#define MPS_MATERIAL_POINT_XX 1
-#define MPS_MATERIAL_POINT_YY 2
-#define MPS_MATERIAL_POINT_ZZ 4
-#define MPS_MATERIAL_POINT_XY 8
-#define MPS_MATERIAL_POINT_ZX 16
-#define MPS_MATERIAL_POINT_YZ 32
-
-/** `steps` (>= 1) steps of duration/steps with the velocity gradient[3 i + j] (1/s), of which the
- *  components in `controlled` (bits above) are found such that those components of the stress go in
- *  equal parts from the present values to `target` (6, Pa; others are not read). A controlled shear
- *  strain is symmetric, and adds to `gradient`. `found` (9, 1/s; may be NULL): the gradient of the
- *  last step. MPS_ERROR_ARGUMENT as mps_material_point_drive, and bits or targets out of range;
- *  MPS_ERROR_NUMERIC: no strain gives that stress, as beyond a law's strength; the point is
- *  unchanged then. */
-MPS_API MPS_NODISCARD mps_status
-mps_material_point_control(mps_context *context, const mps_material *material,
-                           mps_material_point *point, const double gradient[9], uint32_t controlled,
-                           const double target[6], double duration, int64_t steps, double found[9]);
 
 MPS_EXTERN_C_END
 #endif

@@ -19,10 +19,13 @@ context.mpm_create(...). The C header says what it does. So much is different:
 - what C returns through trailing pointers is returned: objects, numbers, structs of results;
 - arrays are lists or NumPy arrays, of float64 or int64; where the function writes, NumPy arrays;
 - a failed call raises Error with the text of the error record;
-- a callback is a Python function, without C's `user`; an exception in it ends the call and comes out.
+- a callback is a Python function, without C's `user`: arrays come as NumPy arrays, and what C has written
+  through a pointer is returned; an exception in it ends the call and comes out;
+- warnings of the library are Python's (MpsWarning), but where the context has a hook `log`.
 
 A particle set gives its fields as NumPy arrays without a copy: sand["velocity"], for reading. They
-raise StaleError once particles were added, removed or sorted. To write:
+raise StaleError once a solver has stepped, or particles were added, removed or sorted:
+numpy.array(sand["velocity"]) is a copy that stays. To write:
 
     with sand.edit("velocity") as v:
         v[:, 0] = 1.0
@@ -31,14 +34,14 @@ raise StaleError once particles were added, removed or sorted. To write:
 from . import _objects
 from ._arrays import Edit, Field
 from ._block import Block
-from ._call import Error, Result, StaleError, column, functions, library, results
+from ._call import Error, MpsWarning, Result, StaleError, column, functions, library, results
 from ._cdef import VERSION as __version__
 from ._objects import Context, Object, Particles
 
 _classes = {made.__name__: made for made in [*results.values(), *_objects.classes.values()]}
 _free = [name for name in functions if name != "context_create" and
          not any(_objects.takes(kind, name) for kind in _objects.classes)]
-__all__ = ["Block", "Context", "Edit", "Error", "Field", "Object", "Particles", "Result", "StaleError", "__version__", "column",
+__all__ = ["Block", "Context", "Edit", "Error", "Field", "MpsWarning", "Object", "Particles", "Result", "StaleError", "__version__", "column",
            "library", *_free]
 
 
@@ -56,5 +59,5 @@ def __getattr__(name):
 
 
 def __dir__():
-    constants = [name[4:] for name in dir(library) if name.startswith("MPS_")]
+    constants = [name[4:] for name in dir(library) if name.startswith("MPS_") and not name.startswith("MPS_DEF_")]
     return sorted({*__all__, *constants, *_classes})

@@ -12,24 +12,34 @@ _RAW = frozenset(("base", "ctypes", "data", "flat", "getbuffer", "setflags"))
 
 
 class _Loan:
-    """Until when a set lends memory: a field and all its parts have the same one."""
+    """Until when a set lends memory: a field and all its parts have the same one. An edit may be written through
+    until it ends; what is read is stale after a step, whether or not that has sorted the particles."""
 
-    def __init__(self, owner, epoch):
+    def __init__(self, owner, epoch, edit):
         self.owner, self.epoch, self.ended = owner, epoch, None
+        self.steps = None if edit else self._steps()
+
+    def _steps(self):
+        """How many calls may have changed fields of the set."""
+        return self.owner.context._steps.get(int(ffi.cast("intptr_t", self.owner.pointer)), 0)
 
     def reason(self):
         """Why the memory may not be looked at any more; None where it may."""
-        if self.ended is None and (self.owner.pointer is None or
-                                   library.mps_particles_epoch(self.owner.pointer) != self.epoch):
-            self.ended = "particles were added, removed or sorted: take the field again"
+        if self.ended is None:
+            if (self.owner.pointer is None or
+                    library.mps_particles_epoch(self.owner.pointer) != self.epoch):
+                self.ended = "particles were added, removed or sorted: take the field again"
+            elif self.steps is not None and self.steps != self._steps():
+                self.ended = "a solver has stepped since: take the field again; numpy.array(field) is a copy that stays"
         return self.ended
 
 
 class Field(NDArrayOperatorsMixin):
     """A field of particles, without a copy: (particles, components), or (particles,) for one
     component. It computes and answers as a NumPy array does; parts and turned views of it are fields
-    too. Using it after particles were added, removed or sorted raises StaleError. numpy.array(field)
-    copies it; numpy.asarray(field) gives a copy that cannot be written, as writes would be lost."""
+    too. Using it after a solver has stepped, or after particles were added, removed or sorted raises StaleError.
+    numpy.array(field) is a copy that stays; numpy.asarray(field) a copy that cannot be written, as writes would be
+    lost."""
 
     __slots__ = ("_loan", "_memory")
 
@@ -145,7 +155,7 @@ def lend(owner, view, writeable):
     memory = numpy.ndarray((count,) if one else (count, components), dtype, buffer, 0,
                            strides[:1] if one else strides)
     memory.flags.writeable = writeable and size > 0
-    return Field(_Loan(owner, view.epoch), memory)
+    return Field(_Loan(owner, view.epoch, writeable), memory)
 
 
 class Edit:

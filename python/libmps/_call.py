@@ -16,6 +16,34 @@ ffi = cffi.FFI()
 ffi.cdef(_cdef.TEXT)
 
 
+class _Library:
+    """The library's functions; those that all solvers share also under the name of one, as the headers have them: a
+    solver's pointer is one of mps_solver."""
+
+    def __init__(self, opened):
+        self._opened = opened
+
+    def __dir__(self):
+        return [*dir(self._opened), *_cdef.SHARED]
+
+    def __getattr__(self, name):
+        if name not in _cdef.SHARED:
+            return getattr(self._opened, name)
+        kind, target, definition = _cdef.SHARED[name]
+        made = getattr(self._opened, target)
+        if definition:
+            made = ffi.callback(kind, _of_kind(made, getattr(self._opened, definition)))
+        else:
+            made = ffi.cast(kind, made)
+        setattr(self, name, made)
+        return made
+
+
+def _of_kind(function, kind):
+    """A function of mps_solver for one kind of definitions."""
+    return lambda solver, *values: function(ffi.cast("mps_solver *", solver), kind, *values)
+
+
 def _open():
     """The library that LIBMPS_LIBRARY names; else the one in the package (a wheel) or three folders above (as
     `cmake --install` has them); else where the system looks."""
@@ -29,10 +57,12 @@ def _open():
     return ffi.dlopen(_cdef.SONAME)
 
 
-library = _open()
+library = _Library(_open())
+#: These have a name for each kind of definition: mpm_add_boundary.
+_OF_ANY_KIND = {"solver_add", "solver_set", "solver_get", "solver_get_def", "contact_get_def"}
 #: Names of the functions, without "mps_": those of the headers, results without "_sized".
 functions = sorted({name[4:].removesuffix("_sized") for name in _cdef.PARAMETERS
-                    if not name.endswith(("_destroy", "_init"))})
+                    if not name.endswith(("_destroy", "_init"))} - _OF_ANY_KIND)
 
 
 class Error(Exception):
@@ -52,7 +82,12 @@ class Error(Exception):
 
 
 class StaleError(Exception):
-    """An array of a field whose particles were added, removed or sorted since; a block whose law has returned."""
+    """An array of a field taken before a solver stepped, or before particles were added, removed or sorted; a block
+    whose law has returned."""
+
+
+class MpsWarning(UserWarning):
+    """A warning of the library, where the context has no hook `log`."""
 
 
 class Result(SimpleNamespace):
@@ -145,11 +180,11 @@ class Call:
     """One call: keeps alive what C sees by pointer, and knows how long arrays are. What callbacks raise
     goes into `raised`, in this call or a later one that asks them."""
 
-    def __init__(self, raised=None):
-        self.alive = []
+    def __init__(self, raised=None, owner=None):
+        self.alive, self.owner = [], owner
         self.raised = [] if raised is None else raised
         self.lengths = {}  # numbers by name, of arguments and members
-        self._arrays = []  # (owner of the formula, its shapes, name, length), to be compared
+        self._arrays = []  # (owner of the formula, name, length, shape, whether C only reads it), to be compared
 
     def array(self, value, item, constant):
         """A pointer to the numbers of a list (which C only reads) or NumPy array."""
@@ -164,46 +199,19 @@ class Call:
         self.alive.append(held)
         return ffi.cast(f"{item.cname} *", held.ctypes.data)
 
-    def callback(self, kind, function):
-        """A C function that calls `function` without the first argument, C's `user`."""
-
-        stops = kind.cname == "int32_t(*)(void *)"  # the cancel hook
-        blocks = [k for k, arg in enumerate(kind.args[1:]) if arg.cname == "mps_material_block *"]
-        moduli = [k for k, arg in enumerate(kind.args[1:]) if blocks and arg.cname == "double *"]
-
-        def called(_user, *values):
-            # The same error for all: the first exception is the one that is raised.
-            if stops and self.raised:  # by a hook whose answer C does not look at: log, progress
-                return 1
-            if blocks:
-                block = _block.Block(values[blocks[0]])
-                try:
-                    answer = function(block)
-                    if moduli:  # one a particle, which Python returns
-                        if answer is None:
-                            raise TypeError("`moduli` of a law returns K + 4G/3 of each particle of the block, not None")
-                        numpy.frombuffer(ffi.buffer(values[moduli[0]], 8 * block.count))[:] = answer
-                    else:
-                        block._write()
-                finally:
-                    block._end()
-            else:
-                answer = function(*[self.wrap(value) for value in values])
-            if kind.result.kind == "void":
-                return None
-            return 0 if answer is None else answer
-
-        def failed(_type, exception, trace):
-            self.raised.append(exception.with_traceback(trace))  # the user's own lines are in it
-
-        stop = library.MPS_ERROR_CANCELLED
-        error = None if kind.result.kind == "void" else stop if kind.result.kind == "enum" else 1
+    def callback(self, kind, function, owner, word):
+        """A C function that calls `function` without the first argument, C's `user`: the parameter or member `word`
+        of `owner`."""
         if isinstance(getattr(function, "address", None), int):  # compiled, by numba's cfunc
             self.alive.append(function)
             return ffi.cast(kind, function.address)
-        made = ffi.callback(kind, called, error=error, onerror=failed)
+        made = _callbacks.make(self, kind, function, owner, word)
         self.alive.append(made)
         return made
+
+    def words(self, numbers):
+        """What the names in a formula stand for, in a callback that was given these numbers."""
+        return _Words(self.owner, {**self.lengths, **numbers})
 
     def wrap(self, value):
         """An argument of a callback; the pointer of an object that the call knows as that object."""
@@ -235,23 +243,31 @@ class Call:
         self.alive.append(made)
         return made
 
-    def measure(self, owner, name, kind, value):
+    def measure(self, owner, name, kind, value, constant=True):
         """Notes how long an array is that C reads or writes."""
         plain = not isinstance(value, (ffi.CData, str, bytes, Mapping, Result)) and not hasattr(type(value), "pointer")
         if kind.kind == "pointer" and plain and hasattr(value, "__len__"):
-            self._arrays.append((owner, name, numpy.size(value) if kind.item.kind == "primitive"
-                                 else len(value)))
+            shape = numpy.shape(value) if kind.item.kind == "primitive" else (len(value),)
+            self._arrays.append((owner, name, int(numpy.prod(shape)), shape, constant))
 
     def compare(self, words):
-        """Refuses arrays that are shorter than C takes them to be."""
-        for owner, name, given in self._arrays:
+        """Refuses arrays that are shorter than C takes them to be, points with a number more, and tables whose rows
+        are not those that C reads."""
+        for owner, name, given, shape, constant in self._arrays:
             formula = (_shapes.FUNCTIONS.get(owner) or _shapes.STRUCTS.get(owner) or {}).get(name, "1")
             wanted = _shapes.length(formula, words)
-            if given < wanted:
-                raise ValueError(f"{owner}: {name!r} has {given} values, and must have {wanted}"
-                                 f"{'' if formula.isdigit() else f' ({formula})'}")
+            shown = "" if formula.isdigit() else f" ({formula})"
+            if given < wanted or (constant and given > wanted and (formula.isdigit() or formula == "dim")):
+                raise ValueError(f"{owner}: {name!r} has {given} values, and must have {wanted}{shown}")
+            if len(shape) < 2 or given == 0:
+                continue
+            columns = _shapes.width(formula, words)
+            if shape[-1] != (columns or given):
+                raise ValueError(f"{owner}: {name!r} has the shape {tuple(shape)}, and must be "
+                                 f"{f'rows of {columns}' if columns else 'a list of numbers'}{shown}")
 
     def assign(self, made, name, kind, value):
+        owner = ffi.typeof(made).cname.removesuffix(" *").removesuffix(" &")
         if kind.kind == "array" and kind.item.kind == "pointer":
             self.fits(name, kind, value)
             for k, item in enumerate(value):
@@ -270,7 +286,7 @@ class Call:
             getattr(made, name)[0:len(numbers)] = numbers
         else:
             try:
-                setattr(made, name, self.to_c(value, kind, True))
+                setattr(made, name, self.to_c(value, kind, True, owner, name))
             except (TypeError, OverflowError) as error:
                 raise type(error)(f"{name!r} is {value!r}: {error}") from error
 
@@ -279,13 +295,14 @@ class Call:
         if len(value) > kind.length:
             raise ValueError(f"{name!r} has {len(value)} values, and takes at most {kind.length}")
 
-    def to_c(self, value, kind, constant):
+    def to_c(self, value, kind, constant, owner=None, word=None):
+        """A value for C: of the parameter or member `word` of `owner`, where it is one."""
         if value is None:
             return ffi.NULL
         if hasattr(type(value), "pointer"):
             return self.object(value, kind)
         if kind.kind == "function" and not isinstance(value, ffi.CData):
-            return self.callback(kind, value)
+            return self.callback(kind, value, owner, word)
         if kind.kind == "pointer" and kind.item.cname == "char":
             text = os.fsencode(value)
             if b"\0" in text:
@@ -349,11 +366,11 @@ def _is_object(kind):
 
 def _set_defaults(made, kind):
     """The defaults of a struct that has some."""
-    name = kind.cname + "_init"
-    if name in _cdef.PARAMETERS and len(_cdef.PARAMETERS[name]) == 2:
-        status = getattr(library, name)(made, ffi.sizeof(kind))
+    number = getattr(library, "MPS_DEF_" + kind.cname.removeprefix("mps_").removesuffix("_def").upper(), None)
+    if number is not None:
+        status = library.mps_def_init(number, made, ffi.sizeof(kind))
         if status != 0:
-            raise Error(name, status)
+            raise Error("mps_def_init", status)
 
 
 def _output(kind):
@@ -412,7 +429,7 @@ class _Arguments:
     def convert(self, value, kind, word, constant):
         """An argument for C; what is wrong with it names it."""
         try:
-            return self.state.to_c(value, kind, constant)
+            return self.state.to_c(value, kind, constant, self.full, word)
         except (TypeError, ValueError, OverflowError) as error:
             raise type(error)(f"{self.place()}: {word!r} is {reprlib.repr(value)}: {error}") from error
 
@@ -425,7 +442,7 @@ class _Arguments:
 
     def one(self, kind, word, constant, given, members):
         state = self.state
-        if word == "user" and kind.cname == "void *":
+        if (word == "user" and kind.cname == "void *") or word == "release":  # Python keeps callbacks with their objects
             self.values.append(ffi.NULL)
         elif word == "size" and self.full.endswith("_sized"):
             self.values.append(ffi.sizeof(self.outputs[-1]))
@@ -440,7 +457,7 @@ class _Arguments:
             self.values.append(self.convert(value, kind, word, constant))
             if kind.kind == "primitive":
                 self.number(value, kind, word)
-            state.measure(f"mps_{self.name}", word, kind, value)
+            state.measure(f"mps_{self.name}", word, kind, value, constant)
             state.lengths[word] = value
         elif word == "capacity":
             self.capacity = len(self.values)
@@ -491,7 +508,7 @@ class _Arguments:
 def call(name, owner, values, members):
     """Calls mps_`name`: `owner` (None: no object) and `values` are its arguments, `members` those of its
     definition. Returns (results, the call)."""
-    state = Call(None if owner is None else owner.context._raised)
+    state = Call(None if owner is None else owner.context._raised, owner)
     arguments = _Arguments(name, owner, state)
     arguments.take(list(([owner] if owner is not None else []) + list(values)), dict(members))
     function = getattr(library, arguments.full)
@@ -581,4 +598,4 @@ def function_or_constant(name):
     raise AttributeError(f"libmps has no {name!r}")
 
 
-from . import _block  # noqa: E402 (it uses ffi)
+from . import _callbacks  # noqa: E402 (it uses ffi)

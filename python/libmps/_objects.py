@@ -1,12 +1,15 @@
 """Objects of the library: what they own and their methods."""
 
 import inspect
+import sys
+import warnings
 
 import numpy
 
 from . import _cdef, _docs, _show
 from ._arrays import Edit, lend
-from ._call import Call, Error, call, class_name, ffi, functions, library, returns_status, same, to_python
+from ._call import (Call, Error, MpsWarning, call, class_name, ffi, functions, library, returns_status, same,
+                    to_python)
 
 
 class Object:
@@ -26,6 +29,7 @@ class Object:
         self._holder = ffi.new(f"mps_{self.kind} *[1]", [pointer])
         if context is None:
             self._running, self._late = 0, []  # calls under way; what is destroyed after them
+            self._steps = {}  # calls that may have changed fields, by the address of the set
             self._raised = []  # by callbacks in the call under way
 
     def close(self):
@@ -73,6 +77,8 @@ class Object:
             result, outputs, state = call(name, self, values, members)
         finally:
             context._running -= 1
+            if _may_step(self.kind, name):
+                self._stepped()
             while not context._running and context._late:
                 destroy, holder, _alive = context._late.pop()
                 destroy(holder)
@@ -90,6 +96,12 @@ class Object:
                 for output in outputs]
         self._remember(name, state, made)
         return None if not made else made[0] if len(made) == 1 else tuple(made)
+
+    def _stepped(self):
+        """Fields of the solver's set that were taken before may have other values now: they are stale."""
+        if self.pointer is not None:
+            place = int(ffi.cast("intptr_t", getattr(library, f"mps_{self.kind}_particles")(self.pointer)))
+            self.context._steps[place] = self.context._steps.get(place, 0) + 1
 
     def _remember(self, name, state, made):
         """Contacts belong to their solver, until close(); lengths that only a definition has."""
@@ -123,6 +135,29 @@ class Object:
         return to_python(result)
 
 
+#: Objects that change fields of a set of particles, and what they do without changing them.
+_SOLVERS = ("mpm", "dynamics", "elastic", "fluid", "solver")
+_KEEP_FIELDS = ("add_", "remove_", "set_", "save", "snapshot", "grid", "dt", "find_limit")
+
+
+def _may_step(kind, name):
+    """Whether mps_`name` of a solver may change fields of its particles."""
+    if kind not in _SOLVERS or name.removeprefix(kind + "_").startswith(_KEEP_FIELDS):
+        return False
+    full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
+    return not _cdef.PARAMETERS[full][0].startswith("const ")
+
+
+def _warn(level, message):
+    """The hook `log` where the program has none: a warning of Python, at the line outside of the package."""
+    if level != library.MPS_CONTEXT_LOG_WARNING:
+        return
+    depth, frame = 1, sys._getframe()
+    while frame.f_back and frame.f_globals.get("__package__") == __package__:
+        depth, frame = depth + 1, frame.f_back
+    warnings.warn(message, MpsWarning, stacklevel=depth)
+
+
 def _leave(_holder):
     """Destroys nothing: the object is its owner's."""
 
@@ -139,11 +174,12 @@ def _go_on():
 
 class Context(Object):
     """mps_context: the members of mps_context_def by keyword (threads, executor, log ...). Without a
-    hook `cancel` Ctrl-C ends the call under way, as `cancel=lambda: 0` does."""
+    hook `cancel` Ctrl-C ends the call under way, as `cancel=lambda: 0` does; without a hook `log` warnings of the
+    library are Python's (MpsWarning, by the module `warnings`)."""
 
     def __init__(self, **members):
         raised = []
-        members = {**members, "cancel": members.get("cancel") or _go_on}
+        members = {**members, "cancel": members.get("cancel") or _go_on, "log": members.get("log") or _warn}
         state, made, text = Call(raised), ffi.new("mps_context *[1]"), ffi.new("char[512]")
         definition = state.struct(ffi.typeof("mps_context_def"), members, "Context() has no keyword")
         status = library.mps_context_create(definition, made, text, 512)
@@ -157,6 +193,10 @@ class Context(Object):
     def set_cancel(self, cancel):
         """mps_context_set_cancel; None: Ctrl-C alone ends a call."""
         self._invoke("context_set_cancel", (cancel or _go_on,), {})
+
+    def set_log(self, log):
+        """mps_context_set_log: log(level, message); None: warnings become Python's (MpsWarning)."""
+        self._invoke("context_set_log", (log or _warn,), {})
 
 
 class Particles(Object):
@@ -239,7 +279,8 @@ def _classes():
         own = made.setdefault(kind, type(name, (Object,), {"__module__": "libmps", "__doc__": Object.__doc__}))
         for function in functions:
             word = function.removeprefix(kind + "_")
-            if takes(kind, function) and word not in ("context", "kind") and word not in own.__dict__:
+            hidden = ("context", "kind", *(("view", "commit", "abandon") if kind == "particles" else ()))
+            if takes(kind, function) and word not in hidden and word not in own.__dict__:
                 setattr(own, word, _method(function, word, name))
     return made
 

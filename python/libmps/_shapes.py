@@ -9,7 +9,10 @@ A length is a formula of other arguments (members) by name, and of
     nodes(number)      of a wall of the fluid
     MPS_...            a constant
 
-Every array of the headers stands here: tests/python looks for missing ones."""
+Every array of the headers stands here: tests/python looks for missing ones. An array given as a table must have as
+many columns as the formula says: 2 of `2 * vertices`."""
+
+import re
 
 #: name of the function: {parameter: length}
 FUNCTIONS = {
@@ -34,10 +37,13 @@ FUNCTIONS = {
     "mps_particles_fill_ball": {"centre": "dim"},
     "mps_particles_fill_where": {"lo": "dim", "hi": "dim"},
     "mps_particles_remove": {"ids": "count"},
+    "mps_solver_get_numbers": {"numbers": "capacity"},
     "mps_particles_select_box": {"lo": "dim", "hi": "dim", "ids": "capacity"},
     "mps_particles_nearest": {"x": "dim"},
     "mps_particles_set_material": {"ids": "count"},
     "mps_domain_max": {"values": "count"},
+    "mps_history_create": {"columns": "count", "units": "count"},
+    "mps_history_record": {"values": "count"},
     "mps_domain_gather_fields": {"names": "count"},
     "mps_domain_get_field": {"ids": "count", "values": "count * components(name)"},
     "mps_material_point_drive": {"gradient": "9"},
@@ -54,16 +60,15 @@ FUNCTIONS = {
                                 "displacements": "3 * count * particles"},
     "mps_elastic_get_section": {"about": "3", "force": "3", "moment": "3"},
     "mps_elastic_modes": {"omega": "count", "shapes": "3 * count * particles"},
-    "mps_fluid_set_wall_motion": {"displacement": "max(1, nodes(number))",
+    "mps_fluid_set_boundary_motion": {"displacement": "max(1, nodes(number))",
                                   "velocity": "max(1, nodes(number))"},
     "mps_fluid_get_segments": {"force": "3 * capacity", "moment": "capacity"},
-    "mps_fluid_get_wall": {"x": "3 * capacity", "pressure": "capacity"},
+    "mps_fluid_get_boundary_points": {"x": "3 * capacity", "pressure": "capacity"},
     "mps_fluid_get_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_body_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_levels": {"station": "count", "level": "count"},
     "mps_mpm_set_material": {"ids": "count"},
     "mps_mpm_set_pore_level": {"point": "dim"},
-    "mps_fluid_set_material": {"ids": "count"},
     "mps_waves_get_components": {"frequency": "capacity", "amplitude": "capacity", "phase": "capacity"},
     "mps_waves_get_levels": {"t": "count", "linear": "count", "level": "count"},
     "mps_waves_get_piston": {"t": "count", "displacement": "count", "velocity": "count",
@@ -106,6 +111,60 @@ STRUCTS = {
 }
 
 
+#: C type of a callback: ({array that it reads: length}, {what it returns: length}). Besides the words above
+#:
+#:     equation   this rank's rows of the last matrix that a linear solver received
+#:
+#: A callback that is not here gets numbers, texts and objects, and returns nothing or a status.
+CALLBACKS = {
+    "mps_particles_predicate_fn": ({"x": "dim"}, {"inside": "1"}),
+    "mps_signal_fn": ({}, {"motion": "3"}),
+    "mps_geostatic_level_fn": ({"x": "dim"}, {"level": "1"}),
+    "mps_geostatic_stress_fn": ({"x": "dim"}, {"stress": "4 if dim == 2 else 6"}),
+    "mps_elastic_traction_fn": ({"x": "dim", "normal": "dim"}, {"traction": "dim"}),
+    "mps_history_fn": ({}, {"value": "1"}),
+    "mps_linear_matrix_fn": ({"matrix": "1"}, {}),
+    "mps_linear_solve_fn": ({"b": "equation", "x": "equation"}, {"x": "equation"}),
+}
+
+
+
+def passed(callback, names):
+    """Which parameters of a C callback (without `user`) the Python function is called with."""
+    if callback in ("mps_material_fn", "mps_material_moduli_fn"):
+        return ["block"]
+    reads, returns = CALLBACKS.get(callback, ({}, {}))
+    return [name for name in names if name in reads or name not in (*returns, "result")]
+
+
+def answer(callback):
+    """What the Python function of a C callback returns, as " -> traction (dim numbers)"; "" of one that answers nothing
+    or a status."""
+    if callback == "mps_material_moduli_fn":
+        return " -> moduli (one number a particle)"
+    returns = CALLBACKS.get(callback, ({}, {}))[1]
+    return "".join(f" -> {name} ({'True or False' if name == 'inside' else 'a number' if n == '1' else n + ' numbers'})"
+                   for name, n in returns.items())
+
+
+#: Structs that a callback receives: {member: length}, of other members.
+RECEIVED = {
+    "mps_linear_matrix": {"start": "rows + 1", "column": "entries", "value": "entries", "mode": "modes * rows"},
+}
+
+
 def length(formula, words):
     """The number that a formula gives; `words` finds the value of a name."""
     return int(eval(formula, {"__builtins__": {}, "max": max}, words))  # formulas of this file alone
+
+
+def width(formula, words):
+    """How many numbers a row has where the array is given as a table; None: it is a list of single numbers."""
+    choice = re.fullmatch(r"(.+) if (.+) else (.+)", formula)
+    if choice:
+        condition = eval(choice[2], {"__builtins__": {}}, words)
+        return width(choice[1 if condition else 3], words)
+    factors = formula.split(" * ")
+    if len(factors) == 1:
+        return None
+    return length(factors[0] if factors[0].isdigit() or factors[0] in ("dim", "components") else factors[-1], words)

@@ -35,7 +35,7 @@ def _material(owner):
 
 
 def _body(owner):
-    return [f"{_ask(owner, 'dim')}D", _many(_ask(owner, "part_count"), "part")]
+    return [f"{_ask(owner, 'dim')}D"]
 
 
 def _kernel(owner):

@@ -20,11 +20,8 @@ typedef struct mpsi_mesh mpsi_mesh;
 
 enum { MPSI_MOTIONS = 6 };
 /* Allowed ranges of a body: beyond them squares and quotients lose their digits. */
-#define MPSI_BODY_FAR 1e9     /* m, m/s, rad, rad/s, m/s2: positions, lengths, rates */
-#define MPSI_BODY_SMALL 1e-9  /* m: radii and sides */
-#define MPSI_BODY_LIGHT 1e-30 /* kg, kg m2 */
-#define MPSI_BODY_HEAVY 1e30
-#define MPSI_PART_NAME 48 /* bytes, with the terminating zero */
+#define MPSI_BODY_SMALL 1e-9 /* m: radii and sides */
+#define MPSI_PART_NAME 48    /* bytes, with the terminating zero */
 
 /* Vectors of space have three components in 2D too, z being 0 there: in 2D x may be read as two. */
 
@@ -197,6 +194,8 @@ static inline const mpsi_body_source *mpsi_body_mover(const mps_body *body) {
   while (s && !s->moves) s = s->next;
   return s;
 }
+/* MPS_ERROR_STATE where there is one. */
+mps_status mpsi_body_check_mover(const mps_body *body, const char *function);
 /* Adds the forces (N, N m, of the whole body) of a step of dt by one source, those of its parts;
  * the body's present forces become the sum over its sources. */
 void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt);

@@ -4,6 +4,7 @@
 #define MPSI_BODY_CONTACT_H
 
 #include "body_internal.h"
+#include "signal/signal_internal.h"
 
 /* Arrays of mps_contact_get_particles, with room for `capacity` particles; NULL: not wanted. */
 typedef struct mpsi_contact_list {
@@ -23,12 +24,16 @@ typedef struct mpsi_contact_owner {
                           int64_t *count);
   /* Writes the reaction by one part of the body; NULL: that of `source` is this. */
   void (*reaction)(const void *owner, const mps_contact *contact, int32_t part, mps_reaction *out);
+  /* Its kind of definition, MPS_DEF_...; NULL: `def` of the contact is that. */
+  int32_t def_kind;
+  void (*get_def)(const void *owner, const mps_contact *contact, void *def);
 } mpsi_contact_owner;
 
 struct mps_contact {
   mps_context *context;
-  int32_t references; /* the solver, and the caller's handle; one thread at a time: no atomics */
-  mps_contact_def def;
+  int32_t references;  /* the solver, and the caller's handle; one thread at a time: no atomics */
+  mps_contact_def def; /* friction_factor: a share in the signal */
+  double friction;     /* mu in the step being made: mpsi_contact_set_friction */
   mps_body *body;
   double extent; /* m: see mpsi_body_extent */
   bool thin;     /* the solver separates both sides of a thin wall */
@@ -70,6 +75,12 @@ void mpsi_contact_react(mps_contact *contact, double dt, bool moves);
  * multiplies by the radius. */
 double mpsi_contact_penalty(const mps_contact *contact, double modulus, double spacing, double cell,
                             double courant);
+
+/* Of a step that begins at t (s): mu with its factor in time. `number`: of the contact, for
+ * records.
+ */
+mps_status mpsi_contact_set_friction(mps_contact *contact, const char *function, int32_t number,
+                                     double t);
 
 /* Largest speed (m/s) of the body's surface. */
 double mpsi_contact_speed(const mps_contact *contact);

@@ -195,11 +195,12 @@ bool mpsi_body_reaches_next(const mps_body *body, const double *x, double reach,
 
 mps_status mps_body_distance(const mps_body *body, int64_t count, const double *x, double *distance,
                              double *normal, double *foot, int64_t *face) {
-  if (!body) return MPS_ERROR_ARGUMENT;
-  if (count < 0 || count > MAX_POINTS || (count > 0 && !x))
+  if (!body) return mpsi_null(__func__, "body");
+  if (count < 0 || count > MAX_POINTS)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld with x %s: must be 0 to %lld, and 0 where x is NULL",
-                     (long long)count, x ? "given" : "NULL", (long long)MAX_POINTS);
+                     "count is %lld points, allowed are 0 to %lld", (long long)count,
+                     (long long)MAX_POINTS);
+  if (count > 0 && !x) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "x is NULL");
   const int32_t dim = body->dim;
   for (int64_t i = 0; i < dim * count; i++)
     if (!isfinite(x[i]))

@@ -11,6 +11,9 @@
 
 /* A triangle whose height is below this part of its longest side has no direction. */
 #define FLAT 1e-12
+/* Of the longest side of the box: corners as near as that are joined where the surface has a hole
+ * otherwise. Programs that write each triangle by itself round a corner differently in each. */
+#define NEAR 1e-6
 #define FILE_LIMIT ((int64_t)1 << 30) /* bytes of the largest STL file that is read */
 
 static const double *point(const mpsi_mesh *mesh, int64_t t, int k) {
@@ -76,6 +79,89 @@ static mps_status join_points(mps_context *context, const char *function, mpsi_m
     mesh->corner[s] = number[corner ? corner[s] : s];
   mpsi_free(context, known.item);
   mpsi_free(context, number);
+  return MPS_OK;
+}
+
+/* ---- points that are nearly the same --------------------------------------------------------- */
+
+static double square_between(const double *a, const double *b) {
+  const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  return mpsi_dot3(d, d);
+}
+
+/* Groups of points: each has a parent, at last the first of the group by its coordinates, which is
+ * the same in any order of the points. */
+typedef struct groups {
+  const double *xyz;
+  int32_t *parent, *next; /* next: point in the same cell, or -1 */
+  table cells;            /* first point of a cell, by the hash of the cell */
+  double width;           /* m: nearer points are one */
+} groups;
+
+static int32_t root_of(const groups *g, int32_t i) {
+  while (g->parent[i] != i) i = g->parent[i] = g->parent[g->parent[i]];
+  return i;
+}
+
+static bool is_before(const double *a, const double *b) {
+  for (int c = 0; c < 3; c++)
+    if (a[c] != b[c]) return a[c] < b[c];
+  return false;
+}
+
+static void unite(const groups *g, int32_t i, int32_t j) {
+  const int32_t a = root_of(g, i), b = root_of(g, j);
+  if (a == b) return;
+  const bool first = is_before(g->xyz + 3 * (int64_t)a, g->xyz + 3 * (int64_t)b);
+  g->parent[first ? b : a] = first ? a : b;
+}
+
+static int32_t *cell_at(const groups *g, const double *x, const int *step) {
+  double cell[3];
+  for (int c = 0; c < 3; c++) cell[c] = floor(x[c] / g->width) + step[c];
+  return &g->cells.item[point_hash(cell) & g->cells.mask];
+}
+
+/* Cells that share a place of the table only cost time: distances decide. */
+static void add_point(const groups *g, int32_t i) {
+  const double *x = g->xyz + 3 * (int64_t)i;
+  static const int here[3] = {0, 0, 0};
+  for (int k = 0; k < 27; k++) {
+    const int step[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+    for (int32_t j = *cell_at(g, x, step) - 1; j >= 0; j = g->next[j])
+      if (square_between(x, g->xyz + 3 * (int64_t)j) <= g->width * g->width) unite(g, i, j);
+  }
+  int32_t *own = cell_at(g, x, here);
+  g->next[i] = *own - 1, *own = i + 1;
+}
+
+/* Joins the corners that are nearer than NEAR; *joined: whether there are any. A chain of points
+ * that is longer than four times that is a fine part of the surface, and nothing is joined. */
+static mps_status join_near(mps_context *context, const char *function, mpsi_mesh *mesh,
+                            bool *joined) {
+  groups g = {.xyz = mesh->xyz, .width = NEAR * 2.0 * mesh->size};
+  *joined = false;
+  g.parent = mpsi_alloc(context, 2 * mesh->vertices, sizeof *g.parent);
+  if (!g.parent || !table_begin(context, mesh->vertices, &g.cells)) {
+    mpsi_free(context, g.parent);
+    return mpsi_fail_memory(context, function, (size_t)mesh->vertices * 4 * sizeof *g.parent);
+  }
+  g.next = g.parent + mesh->vertices;
+  for (int32_t i = 0; i < mesh->vertices; i++) g.parent[i] = i;
+  for (int32_t i = 0; i < mesh->vertices; i++) add_point(&g, i);
+  bool together = true;
+  for (int32_t i = 0; i < mesh->vertices; i++) {
+    const int32_t root = root_of(&g, i);
+    *joined = *joined || root != i;
+    together =
+        together && square_between(mesh->xyz + 3 * (int64_t)i, mesh->xyz + 3 * (int64_t)root) <=
+                        16.0 * g.width * g.width;
+  }
+  *joined = *joined && together;
+  for (int64_t s = 0; s < 3 * mesh->triangles && *joined; s++)
+    mesh->corner[s] = root_of(&g, mesh->corner[s]);
+  mpsi_free(context, g.cells.item);
+  mpsi_free(context, g.parent);
   return MPS_OK;
 }
 
@@ -188,7 +274,36 @@ static mps_status join_sides(mps_context *context, const char *function, mpsi_me
   return MPS_OK;
 }
 
-static mps_status match_edges(mps_context *context, const char *function, mpsi_mesh *mesh) {
+/* The corner nearest to an end of the edge `hole` among the ends of others that belong to one
+ * triangle, in a message: how far the two sides of a gap are apart. */
+static mps_status fail_hole(mps_context *context, const char *function, const mpsi_mesh *mesh,
+                            int64_t hole) {
+  int32_t end[2], other[2];
+  double nearest = INFINITY;
+  const double *at = NULL;
+  char what[200] = "belongs to no other triangle: a hole";
+  side_ends(mesh, hole, &end[0], &end[1]);
+  for (int64_t s = 0; s < 3 * mesh->triangles; s++) {
+    if (mesh->across[s] >= 0) continue;
+    side_ends(mesh, s, &other[0], &other[1]);
+    for (int k = 0; k < 4; k++) {
+      const int32_t v = other[k % 2];
+      const double *x = mesh->xyz + 3 * (int64_t)v;
+      const double square = square_between(mesh->xyz + 3 * (int64_t)end[k / 2], x);
+      if (v != end[0] && v != end[1] && square < nearest) nearest = square, at = x;
+    }
+  }
+  if (at)
+    snprintf(what, sizeof what,
+             "belongs to no other triangle: a hole; the next corner at a hole, (%g, %g, %g) m, is "
+             "%.3g m away, corners up to %.3g m apart are joined",
+             at[0], at[1], at[2], sqrt(nearest), NEAR * 2.0 * mesh->size);
+  return fail_edge(context, function, mesh, hole, what);
+}
+
+/* *hole: the first side without another triangle, or -1. */
+static mps_status match_edges(mps_context *context, const char *function, mpsi_mesh *mesh,
+                              int64_t *hole) {
   const int64_t sides = 3 * mesh->triangles;
   table known; /* of the first side at each edge */
   if (!table_begin(context, sides / 2 + 1, &known))
@@ -213,9 +328,9 @@ static mps_status match_edges(mps_context *context, const char *function, mpsi_m
     else
       status = join_sides(context, function, mesh, s, other);
   }
-  for (int64_t s = 0; s < sides && status == MPS_OK; s++)
-    if (mesh->across[s] < 0)
-      status = fail_edge(context, function, mesh, s, "belongs to no other triangle: a hole");
+  *hole = -1;
+  for (int64_t s = sides - 1; s >= 0; s--)
+    if (mesh->across[s] < 0) *hole = s;
   mpsi_free(context, known.item);
   return status;
 }
@@ -302,10 +417,16 @@ static mps_status allocate(mps_context *context, const char *function, int64_t v
 }
 
 static mps_status build(mps_context *context, const char *function, mpsi_mesh *mesh) {
+  int64_t hole = -1;
+  bool joined = false;
   find_box(mesh);
   if (volume(mesh) < 0.0) turn_over(mesh);
   mps_status status = find_normals(context, function, mesh);
-  if (status == MPS_OK) status = match_edges(context, function, mesh);
+  if (status == MPS_OK) status = match_edges(context, function, mesh, &hole);
+  if (status == MPS_OK && hole >= 0) status = join_near(context, function, mesh, &joined);
+  if (status == MPS_OK && joined) status = find_normals(context, function, mesh);
+  if (status == MPS_OK && joined) status = match_edges(context, function, mesh, &hole);
+  if (status == MPS_OK && hole >= 0) status = fail_hole(context, function, mesh, hole);
   if (status == MPS_OK) status = check_fans(context, function, mesh);
   if (status != MPS_OK) return status;
   const double inside = volume(mesh), size = mesh->size;
@@ -335,10 +456,13 @@ mps_status mpsi_mesh_create(mps_context *context, const char *function, int64_t 
 
 static mps_status make_body(mps_context *context, const char *function, const mps_body_def *def,
                             int64_t vertices, const double *xyz, int64_t triangles,
-                            const int32_t *corner, mps_body **out) {
+                            const int32_t *corner, const char *path, mps_body **out) {
   mpsi_mesh *mesh = NULL;
   mps_status status = mpsi_mesh_create(context, function, vertices, xyz, triangles, corner, &mesh);
-  if (!corner) status = mpsi_fail_of(context, status, "path"); /* a file of triangles */
+  char file[96];
+  const size_t length = path ? strlen(path) : 0;
+  snprintf(file, sizeof file, "path '%s'", length > 80 ? path + length - 80 : path ? path : "");
+  if (path) status = mpsi_fail_of(context, status, file);
   if (status == MPS_OK)
     status = mpsi_body_new(context, function, def, 3, MPSI_MESH, triangles, out);
   if (status == MPS_OK)
@@ -351,17 +475,17 @@ static mps_status make_body(mps_context *context, const char *function, const mp
 mps_status mps_body_create_mesh(mps_context *context, const mps_body_def *def, int64_t vertices,
                                 const double *xyz, int64_t triangles, const int32_t *corner,
                                 mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!xyz || !corner)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", xyz ? "corner" : "xyz");
-  return make_body(context, __func__, def, vertices, xyz, triangles, corner, out);
+  return make_body(context, __func__, def, vertices, xyz, triangles, corner, NULL, out);
 }
 
 mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def, const char *path,
                                double scale, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!path) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "path is NULL");
@@ -376,7 +500,7 @@ mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def, co
     status = mpsi_stl_read(context, __func__, path, data, size, scale, &triangles, &xyz);
   mpsi_free(context, data);
   if (status == MPS_OK)
-    status = make_body(context, __func__, def, 3 * triangles, xyz, triangles, NULL, out);
+    status = make_body(context, __func__, def, 3 * triangles, xyz, triangles, NULL, path, out);
   mpsi_free(context, xyz);
   return status;
 }

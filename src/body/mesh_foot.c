@@ -60,11 +60,15 @@ mps_status mpsi_mesh_index(mps_context *context, const char *function, mpsi_mesh
   }
   rtcReleaseGeometry(triangles); /* the scene keeps it */
   const enum RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE)
-    return mpsi_fail(
-        context, function, error == RTC_ERROR_OUT_OF_MEMORY ? MPS_ERROR_MEMORY : MPS_ERROR_INTERNAL,
-        "Embree failed with error %d on %lld triangles", (int)error, (long long)mesh->triangles);
-  return MPS_OK;
+  if (error == RTC_ERROR_NONE) return MPS_OK;
+  /* where an allocation of its own fails Embree knows no reason; the triangles have been checked */
+  if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN)
+    return mpsi_fail(context, function, MPS_ERROR_MEMORY,
+                     "Embree was refused memory for %lld triangles (error %d)",
+                     (long long)mesh->triangles, (int)error);
+  return mpsi_fail(context, function, MPS_ERROR_INTERNAL,
+                   "Embree failed with error %d on %lld triangles", (int)error,
+                   (long long)mesh->triangles);
 }
 
 static void drop_index(mpsi_mesh *mesh) {

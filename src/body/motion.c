@@ -29,7 +29,11 @@ static mps_status find_course(const mps_body *body, mpsi_signal_use use, mps_sig
   const double first = c < 3 ? body->def.position[c] : body->def.rotation[c - 3];
   out->at[c] = signal ? first + factor * m.u : first;
   out->rate[c] = signal ? factor * m.v : 0.0;
-  return MPS_OK;
+  if (fabs(out->at[c]) <= MPSI_BODY_FAR && fabs(out->rate[c]) <= MPSI_BODY_FAR) return MPS_OK;
+  return mpsi_fail(body->context, use.function, MPS_ERROR_ARGUMENT,
+                   "factor is %g: the signal of component %d moves the body to %g at a rate of %g, "
+                   "both must be at most %g (m, rad; per s) at t = %g s",
+                   factor, c, out->at[c], out->rate[c], MPSI_BODY_FAR, t);
 }
 
 /* All components but `besides` (-1: all). */
@@ -222,15 +226,22 @@ static bool is_sane(const mpsi_pose *pose) {
   return sane;
 }
 
+mps_status mpsi_body_check_mover(const mps_body *body, const char *function) {
+  if (!mpsi_body_mover(body)) return MPS_OK;
+  return mpsi_fail(body->context, function, MPS_ERROR_STATE,
+                   "another solver moves the body: make this contact with the mover "
+                   "MPS_CONTACT_MOVER_OTHER");
+}
+
 mps_status mps_body_advance(mps_body *body, double dt) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   if (!isfinite(dt) || dt <= 0.0)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be finite and > 0", dt);
   if (mpsi_body_mover(body))
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
-                     "a solver moves this body: end that contact first, make it with mover 1 "
-                     "(other), or set floats 0 for the body");
+                     "a solver moves this body: end that contact first, or make it with the mover "
+                     "MPS_CONTACT_MOVER_OTHER");
   const mps_status status = mpsi_body_look_ahead(body, __func__, -1, dt);
   if (status != MPS_OK) return status;
   const mps_body before = *body;
@@ -245,7 +256,7 @@ mps_status mps_body_advance(mps_body *body, double dt) {
 }
 
 mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal, double factor) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   if (body->dim == 2 ? component != 0 && component != 1 && component != 5
                      : component < 0 || component >= MPSI_MOTIONS)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "component is %d, allowed are %s",
@@ -260,7 +271,8 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
                      "a free body follows no signal: use mps_body_set_load");
   mpsi_signal_use use = used_by(body, __func__);
   mpsi_course course;
-  mps_status status = find_courses(body, use, component, body->time, &course);
+  mps_status status = mpsi_signal_check(body->context, __func__, MPSI_SIGNAL_MOTION, 1, &signal);
+  if (status == MPS_OK) status = find_courses(body, use, component, body->time, &course);
   use.component = component;
   if (status == MPS_OK) status = find_course(body, use, signal, factor, body->time, &course);
   if (status != MPS_OK) return status;
@@ -274,46 +286,6 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
 
 /* ---- motion from outside --------------------------------------------------------------------- */
 
-static const mps_body_motion motion_defaults = {.struct_size = sizeof(mps_body_motion),
-                                                .position = {NAN, NAN, NAN},
-                                                .rotation = {NAN, NAN, NAN}};
-
-mps_status mps_body_motion_init(mps_body_motion *motion, size_t size) {
-  return MPSI_DEF_INIT(mps_body_motion, motion, size, &motion_defaults);
-}
-
-static mps_status check_motion(mps_body *body, const char *function, const mps_body_motion *m) {
-  static const bool in_plane[3] = {true, true, false}, about_z[3] = {false, false, true};
-  const struct {
-    const char *name, *unit;
-    const double *value;
-    const bool *plane;
-    bool may_be_nan;
-  } list[] = {{"position", "m", m->position, in_plane, true},
-              {"rotation", "rad", m->rotation, about_z, true},
-              {"velocity", "m/s", m->velocity, in_plane, false},
-              {"spin", "rad/s", m->spin, about_z, false}};
-  for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    for (int c = 0; c < 3; c++) {
-      const double value = list[k].value[c];
-      const bool unset = list[k].may_be_nan && isnan(value);
-      if (!unset && !(fabs(value) <= MPSI_BODY_FAR))
-        return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
-                         "%s[%d] is %g %s, must be within +-%g%s", list[k].name, c, value,
-                         list[k].unit, MPSI_BODY_FAR, list[k].may_be_nan ? ", or NaN" : "");
-      if (body->dim == 2 && !list[k].plane[c] && !unset && value != 0.0)
-        return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
-                         "%s[%d] is %g %s, must be 0 for a 2D shape", list[k].name, c, value,
-                         list[k].unit);
-    }
-  const int unset = isnan(m->rotation[0]) + isnan(m->rotation[1]) + isnan(m->rotation[2]);
-  if (body->dim == 3 && unset % 3 != 0)
-    return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
-                     "rotation is (%g, %g, %g) rad: all components must be given, or all NaN",
-                     m->rotation[0], m->rotation[1], m->rotation[2]);
-  return MPS_OK;
-}
-
 mps_status mpsi_body_check_axial(mps_context *context, const char *function, const double *velocity,
                                  const double *spin, const double *gravity) {
   if (velocity[0] == 0.0 && spin[2] == 0.0 && gravity[0] == 0.0) return MPS_OK;
@@ -324,9 +296,9 @@ mps_status mpsi_body_check_axial(mps_context *context, const char *function, con
 }
 
 mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motion) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   const bool free_body = body->def.motion == MPS_BODY_MOTION_FREE;
-  mps_body_motion motion = motion_defaults;
+  mps_body_motion motion = mps_body_motion_defaults();
   if (!user_motion && free_body)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "motion is NULL, and a free body follows no signals");
@@ -336,8 +308,8 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
     if (status == MPS_OK) follow(body, &course);
     return status;
   }
-  mps_status status = MPSI_DEF_READ(body->context, __func__, mps_body_motion, user_motion, &motion);
-  if (status == MPS_OK) status = check_motion(body, __func__, &motion);
+  mps_status status = MPSI_DEF_READ_IN(body->context, __func__, mps_body_motion, user_motion,
+                                       mpsi_scene_of(body->dim), &motion);
   if (status == MPS_OK && free_body && body->axial)
     status = mpsi_body_check_axial(body->context, __func__, motion.velocity, motion.spin,
                                    body->def.gravity);
@@ -361,21 +333,22 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
 /* ---- loads ----------------------------------------------------------------------------------- */
 
 mps_status mps_body_set_load(mps_body *body, const double *force, const double *moment) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   mpsi_load load = {{0}, {0}};
   if (force) memcpy(load.force, force, sizeof load.force);
   if (moment) memcpy(load.moment, moment, sizeof load.moment);
-  for (int c = 0; c < 3; c++)
-    if (!isfinite(load.force[c]) || !isfinite(load.moment[c]))
-      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                       "force[%d] is %g N and moment[%d] %g N m, must be finite", c, load.force[c],
-                       c, load.moment[c]);
+  for (int c = 0; c < 6; c++) {
+    const double value = c < 3 ? load.force[c] : load.moment[c - 3];
+    if (!isfinite(value))
+      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "%s[%d] is %g, must be finite",
+                       c < 3 ? "force" : "moment", c % 3, value);
+  }
   if (body->def.motion != MPS_BODY_MOTION_FREE)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
-                     "a prescribed body takes no load: its motion is given");
+                     "a driven body takes no load: make it free (MPS_BODY_MOTION_FREE)");
   if (body->dim == 2 && (load.force[2] != 0.0 || load.moment[0] != 0.0 || load.moment[1] != 0.0))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "force[2] is %g, moment[0] %g and moment[1] %g, must be 0 in 2D",
+                     "force[2], moment[0] and moment[1] are %g, %g and %g, must be 0 in 2D",
                      load.force[2], load.moment[0], load.moment[1]);
   if (body->axial && (load.force[0] != 0.0 || load.moment[2] != 0.0))
     return mpsi_fail(
@@ -388,7 +361,7 @@ mps_status mps_body_set_load(mps_body *body, const double *force, const double *
 }
 
 mps_status mps_body_get_state_sized(const mps_body *body, mps_body_state *out, size_t size) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   const mpsi_pose *p = &body->pose;
   mps_body_state state = {.time = body->time};
   memcpy(state.position, p->x, sizeof p->x);
@@ -402,7 +375,7 @@ mps_status mps_body_get_state_sized(const mps_body *body, mps_body_state *out, s
 }
 
 mps_status mps_body_get_totals_sized(const mps_body *body, mps_body_totals *out, size_t size) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   const mpsi_pose *p = &body->pose;
   mps_body_totals t = {.mass = body->def.mass,
                        .work_contacts = body->work_contacts,

@@ -85,6 +85,10 @@ void mpsi_body_strike(mps_body *body, mpsi_body_source *source) {
 
 mps_status mpsi_body_check_part(const mps_body *body, const char *function, int32_t part) {
   if (part >= -1 && part < body->parts) return MPS_OK;
+  if (body->parts == 1)
+    return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                     "part is %d, and the body has no named parts: allowed are 0 and -1, the whole",
+                     part);
   return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
                    "part is %d, allowed are 0 to %d, and -1 for all", part, body->parts - 1);
 }
@@ -105,7 +109,7 @@ void mpsi_body_add_reaction(mps_reaction *sum, const mps_reaction *r) {
 mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_reaction *out,
                                        size_t size) {
   static const char function[] = "mps_body_get_reaction";
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   const mps_status status = mpsi_body_check_part(body, function, part);
   if (status != MPS_OK) return status;
   mps_reaction sum = {0};
@@ -151,17 +155,24 @@ static mps_status ensure_part(mps_body *body, const char *function) {
 
 mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, int64_t count,
                               int32_t *part) {
-  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_null(__func__, "body");
   const size_t length = name ? mpsi_identifier(name, MPSI_PART_NAME) : 0;
   if (length == 0 || name[length] != '\0')
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
                      name ? name : "(NULL)");
-  if (first < 0 || first >= body->faces || count < 1 || count > body->faces)
+  if (body->faces == 1 && (first != 0 || count != 1))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "first is %lld and count %lld, allowed are 0 to %lld and 1 to %lld",
-                     (long long)first, (long long)count, (long long)body->faces - 1,
-                     (long long)body->faces);
+                     "first is %lld and count %lld, but the surface is a single piece: 0 and 1",
+                     (long long)first, (long long)count);
+  if (first < 0 || first >= body->faces)
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "first is %lld, and the pieces of the surface are numbered 0 to %lld",
+                     (long long)first, (long long)body->faces - 1);
+  if (count < 1 || count > body->faces)
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, and the surface has 1 to %lld pieces to name",
+                     (long long)count, (long long)body->faces);
   int32_t number = mps_body_find_part(body, name);
   if (number < 0) {
     if (body->parts == MOST_PARTS)
@@ -176,8 +187,6 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
   if (part) *part = number;
   return MPS_OK;
 }
-
-int32_t mps_body_part_count(const mps_body *body) { return body ? body->parts : 0; }
 
 int32_t mps_body_find_part(const mps_body *body, const char *name) {
   for (int32_t k = 0; body && name && k < body->parts; k++)

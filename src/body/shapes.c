@@ -3,7 +3,7 @@
 #include "body_internal.h"
 
 #include "core/base/polygon.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 #include <stdio.h>
 
@@ -73,7 +73,7 @@ static mps_status check_corners(mps_context *context, const char *function, int6
 
 mps_status mps_body_create_polygon(mps_context *context, const mps_body_def *def, int64_t vertices,
                                    const double *xy, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   const mps_status status = check_corners(context, __func__, vertices, xy, "xy");
@@ -83,7 +83,7 @@ mps_status mps_body_create_polygon(mps_context *context, const mps_body_def *def
 
 mps_status mps_body_create_box(mps_context *context, const mps_body_def *def, double width,
                                double height, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = check_length(context, __func__, "width", width);
@@ -96,7 +96,7 @@ mps_status mps_body_create_box(mps_context *context, const mps_body_def *def, do
 
 static mps_status make_ball(mps_context *context, const char *function, const mps_body_def *def,
                             int32_t dim, double radius, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(function, "context");
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = check_length(context, function, "radius", radius);
@@ -107,7 +107,7 @@ static mps_status make_ball(mps_context *context, const char *function, const mp
 
 static mps_status make_half(mps_context *context, const char *function, const mps_body_def *def,
                             int32_t dim, const double *normal, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(function, "context");
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!normal) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "normal is NULL");
@@ -166,7 +166,7 @@ static mps_status check_profile(mps_context *context, const char *function, int6
 
 mps_status mps_body_create_revolution(mps_context *context, const mps_body_def *def,
                                       int64_t vertices, const double *rz, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = check_corners(context, __func__, vertices, rz, "rz");
@@ -177,7 +177,7 @@ mps_status mps_body_create_revolution(mps_context *context, const mps_body_def *
 
 mps_status mps_body_create_cylinder(mps_context *context, const mps_body_def *def, double radius,
                                     double length, mps_body **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = check_length(context, __func__, "radius", radius);

@@ -40,7 +40,7 @@ bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_conta
   /* the force that would end the slip, (33), and Coulomb's bound on it, (34) */
   const double stick =
       node->mass * slip / dt * stick_share(contact->body, dim, all_mass, node->x, s);
-  const double f = fmin(stick, contact->def.friction * fn);
+  const double f = fmin(stick, contact->friction * fn);
   for (int c = 0; c < 3; c++) force[c] = -f * s[c];
   return true;
 }

@@ -5,8 +5,10 @@
 #define MPSI_INTERNAL_H
 
 #ifndef MPSI_LEVEL /* inner loops read no definitions: a new one does not compile them again */
-#include "core/context/released_sizes.h"
+#include "core/definition/definition.h"
 #endif
+
+#include "core/definition/ends.h"
 
 #include <mps/context.h>
 
@@ -28,9 +30,10 @@
 
 /* ---- errors -------------------------------------------------------------------------------- */
 
-/* Records an error on the context (NULL allowed: nothing is recorded) and returns `status`, so
- * that `return mpsi_fail(ctx, "mps_x_create", MPS_ERROR_ARGUMENT, "...", ...)` reads as one. The
- * message names the offending value and what is allowed. */
+/* Records an error on the context (NULL: on the thread alone, as mps_last_error reads it) and
+ * returns `status` (`function` NULL: nothing is recorded), so that `return mpsi_fail(ctx,
+ * "mps_x_create", MPS_ERROR_ARGUMENT, "...", ...)` reads as one. The message names the offending
+ * value and what is allowed. */
 mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
                      const char *format, ...) MPSI_PRINTF(4, 5);
 /* Adds the step and the particle id to the record just written. */
@@ -38,6 +41,8 @@ void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle);
 /* Names the object concerned in the record just written: "body 2", "field 'density'". Without it
  * the object is the kind that the function's name begins with. */
 void mpsi_fail_object(mps_context *context, const char *format, ...) MPSI_PRINTF(2, 3);
+/* MPS_ERROR_ARGUMENT for an object that is NULL, and with it the context. */
+mps_status mpsi_null(const char *function, const char *argument);
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
 /* `status` is that of a public function called by the library itself: on an error the record is
  * renamed to `function`, which the caller has called. Returns `status`. */
@@ -48,8 +53,6 @@ mps_status mpsi_as(mps_context *context, const char *function, mps_status status
 mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *argument);
 int64_t mpsi_failures(const mps_context *context); /* number of records so far */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
-
-#define MPSI_FARTHEST 1e15 /* coordinates, either sign */
 
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
  * `room` characters or more. The rest is not checked. */
@@ -71,39 +74,45 @@ bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t ne
 mps_context *mpsi_context_retain(mps_context *context);
 void mpsi_context_release(mps_context *context);
 
+/* ---- callbacks that are stored --- */
+
+/* Ends `user` of a callback; `release` may be NULL. */
+static inline void mpsi_release(mps_release_fn release, void *user) {
+  if (release) release(user);
+}
+
 /* ---- hooks ---------------------------------------------------------------------------------- */
 
 void mpsi_progress(mps_context *context, const char *task, int64_t step, double time,
                    double time_end);
 bool mpsi_cancelled(mps_context *context);
 
-/* ---- growing structs -------------------------------------------------------------------------
- * Definitions (in): the released size of each is in released_sizes.h, written by
- * scripts/update-sizes. */
+/* ---- growing structs: definitions (in) are described in definition.h --------------------------
+ */
 
-/* Largest size (bytes) of a definition or a result. A larger one is an error before any byte of the
- * tail is read or written. */
-#define MPSI_STRUCT_MOST 4096
-
-/* Reads the caller's definition `def` (any size from the released one on) over *known, a `type`
- * that holds the defaults. A tail that this library does not know must be zero. */
+/* Reads the caller's definition `def` over the defaults into *known, a `type`, and checks each
+ * member and rule of its tables. NULL is an error. */
 #define MPSI_DEF_READ(context, function, type, def, known)                                         \
-  mpsi_def_read(context, function, def, MPSI_RELEASED(type), 1 ? (known) : (type *)0, sizeof(type))
-/* The body of every mps_x_def_init: copies *defaults to `def`, up to `size` bytes, zero fills the
- * rest and writes struct_size = size. */
-#define MPSI_DEF_INIT(type, def, size, defaults)                                                   \
-  mpsi_def_init(def, size, MPSI_RELEASED(type), 1 ? (defaults) : (const type *)0, sizeof(type))
-/* Where pointers are shorter than in the table, so are the structs. */
-#define MPSI_RELEASED(type)                                                                        \
-  ((size_t)MPSI_RELEASED_##type < sizeof(type) ? (size_t)MPSI_RELEASED_##type : sizeof(type))
+  MPSI_DEF_READ_IN(context, function, type, def, 0, known)
+/* The same by a solver or set that is a `scene` (mpsi_scene), on which rules may depend. */
+#define MPSI_DEF_READ_IN(context, function, type, def, scene, known)                               \
+  mpsi_def_read(context, function, &mpsi_definition_of_##type, def, true, scene,                   \
+                1 ? (known) : (type *)0)
+/* The same where NULL stands for the defaults. */
+#define MPSI_DEF_READ_OR_DEFAULTS(context, function, type, def, known)                             \
+  MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, type, def, 0, known)
+#define MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, type, def, scene, known)                   \
+  mpsi_def_read(context, function, &mpsi_definition_of_##type, def, false, scene,                  \
+                1 ? (known) : (type *)0)
 
-mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
-                         size_t minimum, void *known, size_t known_size);
-mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
-                         size_t defaults_size);
+struct mpsi_definition;
+mps_status mpsi_def_read(mps_context *context, const char *function,
+                         const struct mpsi_definition *definition, const void *def, bool needed,
+                         uint32_t scene, void *known);
 
 /* Results (out): the body of every mps_x_get_y_sized. Writes the first `size` bytes of the result
- * `known` to the caller's struct `out`, and zeros behind the members of this library.
+ * `known` to the caller's struct `out`; members that only the caller knows become NaN, or -1 where
+ * they are integers: all bits set.
  * MPS_ERROR_ARGUMENT for NULL or a size of 0 or above MPSI_STRUCT_MOST; then nothing is written. */
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);

@@ -1,46 +1,13 @@
 /* coupling.c - the coupling as an object: definition, guesses, the next values to try, memory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "coupling_private.h"
-#include "core/base/members.h"
 
 #include <math.h>
 #include <string.h>
 
-#define MOST_COLUMNS 64 /* as quasi_newton.c has room for */
-#define MEMORY_HEAD 6   /* format, size, steps, columns, factor, repeats: before the arrays */
+#define MEMORY_HEAD 6 /* format, size, steps, columns, factor, repeats: before the arrays */
 #define MEMORY_FORMAT 1.0
-
-static const mps_coupling_def defaults = {
-    .struct_size = sizeof(mps_coupling_def),
-    .relaxation = 0.1,
-    .tolerance = 1e-4,
-    .filter = 1e-4,
-    .repeats = 50,
-    .reuse = 4,
-    .columns = 40,
-    .order = 1,
-};
-
-mps_status mps_coupling_def_init(mps_coupling_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_coupling_def, def, size, &defaults);
-}
-
-static mps_status check_def(mps_context *context, const mps_coupling_def *d) {
-  const mpsi_member checks[] = {
-      {"method", "0, 1 or 2", d->method,
-       d->method >= 0 && d->method <= MPS_COUPLING_METHOD_CONSTANT},
-      {"size", "1 to 2^31", (double)d->size, d->size >= 1 && d->size <= INT64_C(1) << 31},
-      {"relaxation", "in (0, 1]", d->relaxation, d->relaxation > 0.0 && d->relaxation <= 1.0},
-      {"tolerance", "in (0, 1)", d->tolerance, d->tolerance > 0.0 && d->tolerance < 1.0},
-      {"floor", "finite and >= 0", d->floor, d->floor >= 0.0 && isfinite(d->floor)},
-      {"filter", "in [0, 1)", d->filter, d->filter >= 0.0 && d->filter < 1.0},
-      {"repeats", ">= 1", d->repeats, d->repeats >= 1},
-      {"reuse", ">= 0", d->reuse, d->reuse >= 0},
-      {"columns", "1 to 64", d->columns, d->columns >= 1 && d->columns <= MOST_COLUMNS},
-      {"order", "0, 1 or 2", d->order, d->order >= 0 && d->order < MPSI_COUPLING_PAST},
-  };
-  return MPSI_CHECK_MEMBERS(context, "mps_coupling_create", "the coupling", checks);
-}
+#define LARGEST 1e100 /* of a value: sums of squares and extrapolations stay finite */
 
 static bool allocate(mps_coupling *c) {
   const int64_t n = c->def.size, most = c->def.columns;
@@ -68,13 +35,12 @@ static void release(mps_coupling *c) {
 
 mps_status mps_coupling_create(mps_context *context, const mps_coupling_def *user_def,
                                mps_coupling **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!user_def || !out)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", user_def ? "out" : "def");
   *out = NULL;
-  mps_coupling_def def = defaults;
+  mps_coupling_def def;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_coupling_def, user_def, &def);
-  if (status == MPS_OK) status = check_def(context, &def);
   if (status != MPS_OK) return status;
   if (def.columns > def.size) def.columns = (int32_t)def.size;
   mps_coupling *c = mpsi_alloc(context, 1, sizeof *c);
@@ -103,13 +69,14 @@ void mps_coupling_destroy(mps_coupling **coupling) {
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 mps_status mps_coupling_begin(mps_coupling *c, const double *start, double *guess) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   if (!guess) return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT, "guess is NULL");
   const int64_t n = c->def.size;
   for (int64_t i = 0; start && i < n; i++)
-    if (!isfinite(start[i]))
+    if (!(fabs(start[i]) <= LARGEST))
       return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT,
-                       "start value %lld is %g, must be finite", (long long)i, start[i]);
+                       "start value %lld is %g, must be within %g", (long long)i, start[i],
+                       LARGEST);
   static const double weight[MPSI_COUPLING_PAST][MPSI_COUPLING_PAST] = {
       {1.0, 0.0, 0.0}, {2.0, -1.0, 0.0}, {3.0, -3.0, 1.0}};
   const int64_t order = c->steps - 1 < c->def.order ? c->steps - 1 : c->def.order;
@@ -136,7 +103,8 @@ static void update_factor(mps_coupling *c) {
     const double change = c->residual[i] - c->last_residual[i];
     product += c->last_residual[i] * change, square += change * change;
   }
-  if (square > 0.0 && product != 0.0) c->factor *= -product / square;
+  const double factor = square > 0.0 ? c->factor * (-product / square) : 0.0;
+  if (factor != 0.0 && isfinite(factor)) c->factor = factor;
 }
 
 static void improve(mps_coupling *c) {
@@ -152,8 +120,37 @@ static void improve(mps_coupling *c) {
   }
 }
 
+/* Euclidean norm; values of which all squares underflow are scaled by a power of two. */
+static double norm(int64_t n, const double *a) {
+  double most = 0.0, sum = 0.0;
+  const double square = mpsi_coupling_dot(n, a, a);
+  if (square > 1e-200) return sqrt(square);
+  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(a[i]));
+  if (most == 0.0) return 0.0;
+  const int scale = ilogb(most);
+  for (int64_t i = 0; i < n; i++) {
+    const double x = scalbn(a[i], -scale);
+    sum += x * x;
+  }
+  return scalbn(sqrt(sum), scale);
+}
+
+/* The next iterate must be one that a solver can take. */
+static mps_status check_iterate(mps_coupling *c, const char *function) {
+  for (int64_t i = 0; i < c->def.size; i++)
+    if (!(fabs(c->x[i]) <= LARGEST)) {
+      const double value = c->x[i];
+      c->factor = c->def.relaxation;
+      return mpsi_fail(c->context, function, MPS_ERROR_NUMERIC,
+                       "repeat %d of the coupling gives value %lld as %g, must be within %g: the "
+                       "repeats diverge",
+                       c->repeats, (long long)i, value, LARGEST);
+    }
+  return MPS_OK;
+}
+
 mps_status mps_coupling_next(mps_coupling *c, const double *answer, double *guess, int32_t *done) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   if (!answer || !guess || !done)
     return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      !answer ? "answer"
@@ -164,16 +161,15 @@ mps_status mps_coupling_next(mps_coupling *c, const double *answer, double *gues
                      "no step of the coupling is begun: mps_coupling_begin comes first");
   const int64_t n = c->def.size;
   for (int64_t i = 0; i < n; i++)
-    if (!isfinite(answer[i]))
+    if (!(fabs(answer[i]) <= LARGEST))
       return mpsi_fail(c->context, __func__, MPS_ERROR_NUMERIC,
-                       "answer %lld at repeat %d of the coupling is %g, must be finite",
-                       (long long)i, c->repeats + 1, answer[i]);
+                       "answer %lld at repeat %d of the coupling is %g, must be within %g",
+                       (long long)i, c->repeats + 1, answer[i], LARGEST);
   memcpy(c->answer, answer, (size_t)n * sizeof *answer);
   for (int64_t i = 0; i < n; i++) c->residual[i] = answer[i] - c->x[i];
-  const double r = sqrt(mpsi_coupling_dot(n, c->residual, c->residual));
-  const double whole = sqrt(mpsi_coupling_dot(n, answer, answer));
+  const double r = norm(n, c->residual), whole = norm(n, answer);
   c->repeats++, c->all_repeats++;
-  c->relative = whole > 0.0 ? r / whole : r;
+  c->relative = whole > 0.0 ? fmin(r / whole, LARGEST) : r;
   *done = c->agreed = r <= c->def.tolerance * whole || r <= c->def.floor * sqrt((double)n);
   if (*done) {
     memcpy(guess, c->x, (size_t)n * sizeof *guess);
@@ -185,6 +181,8 @@ mps_status mps_coupling_next(mps_coupling *c, const double *answer, double *gues
                      "allowed %g",
                      c->repeats, c->relative, c->def.tolerance);
   improve(c);
+  const mps_status status = check_iterate(c, __func__);
+  if (status != MPS_OK) return status;
   memcpy(c->last_residual, c->residual, (size_t)n * sizeof *guess);
   memcpy(c->last_answer, c->answer, (size_t)n * sizeof *guess);
   memcpy(guess, c->x, (size_t)n * sizeof *guess);
@@ -192,7 +190,7 @@ mps_status mps_coupling_next(mps_coupling *c, const double *answer, double *gues
 }
 
 mps_status mps_coupling_accept(mps_coupling *c) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   if (!c->open || !c->agreed)
     return mpsi_fail(
         c->context, __func__, MPS_ERROR_STATE,
@@ -210,7 +208,7 @@ mps_status mps_coupling_accept(mps_coupling *c) {
 
 mps_status mps_coupling_get_report_sized(const mps_coupling *c, mps_coupling_report *out,
                                          size_t size) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   const mps_coupling_report report = {c->steps, c->all_repeats, c->repeats, c->columns,
                                       c->relative};
   return mpsi_out_write(c->context, "mps_coupling_get_report", out, size, &report, sizeof report);
@@ -220,7 +218,7 @@ mps_status mps_coupling_get_report_sized(const mps_coupling *c, mps_coupling_rep
 
 mps_status mps_coupling_get_memory(const mps_coupling *c, int64_t capacity, int64_t *count,
                                    double *values) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   if (!count || capacity < 0 || (capacity > 0 && !values))
     return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT, "%s",
                      !count ? "count is NULL" : "capacity is negative or values is NULL");
@@ -246,7 +244,7 @@ mps_status mps_coupling_get_memory(const mps_coupling *c, int64_t capacity, int6
 }
 
 mps_status mps_coupling_set_memory(mps_coupling *c, int64_t count, const double *values) {
-  if (!c) return MPS_ERROR_ARGUMENT;
+  if (!c) return mpsi_null(__func__, "coupling");
   if (!values) return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT, "values is NULL");
   const int64_t n = c->def.size;
   const double most = c->def.columns;
@@ -261,10 +259,17 @@ mps_status mps_coupling_set_memory(mps_coupling *c, int64_t count, const double 
                      "these %lld values are not the memory of a coupling of %lld values",
                      (long long)count, (long long)n);
   for (int64_t i = 0; i < count; i++)
-    if (!isfinite(values[i]))
+    if (!(fabs(values[i]) <= 4.0 * LARGEST)) /* columns are differences of differences */
       return mpsi_fail(c->context, __func__, MPS_ERROR_FORMAT,
-                       "value %lld of the coupling's memory is %g, must be finite", (long long)i,
-                       values[i]);
+                       "value %lld of the coupling's memory is %g, must be within %g", (long long)i,
+                       values[i], 4.0 * LARGEST);
+  for (int64_t k = 0; k < (int64_t)values[3]; k++) {
+    const double step = values[MEMORY_HEAD + MPSI_COUPLING_PAST * n + k * (1 + 2 * n)];
+    if (!(step >= 0.0 && step <= values[2]))
+      return mpsi_fail(c->context, __func__, MPS_ERROR_FORMAT,
+                       "column %lld of the coupling's memory is of step %g, allowed are 0 to %g",
+                       (long long)k, step, values[2]);
+  }
   c->steps = (int64_t)values[2], c->columns = (int32_t)values[3], c->factor = values[4];
   c->all_repeats = (int64_t)values[5];
   const double *at = values + MEMORY_HEAD;

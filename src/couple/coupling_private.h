@@ -5,7 +5,7 @@
 
 #include "core/internal.h"
 
-#include <mps/couple.h>
+#include <mps/experimental/coupling.h>
 
 #include <stdbool.h>
 

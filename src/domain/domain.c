@@ -4,23 +4,15 @@
 
 #include <string.h>
 
-#define MOST_RANKS 1000000
-
-static const mps_domain_def domain_defaults = {.struct_size = sizeof(mps_domain_def), .size = 1};
-
-mps_status mps_domain_def_init(mps_domain_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_domain_def, def, size, &domain_defaults);
-}
-
 /* ---- for the program ------------------------------------------------------------------------- */
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {
-  if (!domain) return MPS_ERROR_ARGUMENT;
+  if (!domain) return mpsi_null(__func__, "domain");
   return mpsi_domain_agree(domain, __func__, status);
 }
 
 mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values) {
-  if (!domain) return MPS_ERROR_ARGUMENT;
+  if (!domain) return mpsi_null(__func__, "domain");
   mps_status status = MPS_OK;
   if (count < 0 || (count > 0 && !values))
     status = mpsi_fail(domain->context, __func__, MPS_ERROR_ARGUMENT,
@@ -35,31 +27,6 @@ mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values) {
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
-
-static mps_status check_def(mps_context *context, const mps_domain_def *def) {
-  static const char *const function = "mps_domain_create";
-  if (def->size < 1 || def->size > MOST_RANKS)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "size is %d ranks, allowed are 1 to %d",
-                     def->size, MOST_RANKS);
-  if (def->rank < 0 || def->rank >= def->size)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "rank is %d, allowed are 0 to %d",
-                     def->rank, def->size - 1);
-  if (def->reserved != 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "reserved is %d, must be 0",
-                     def->reserved);
-  const char *missing = !def->rendezvous     ? "rendezvous"
-                        : !def->star_create  ? "star_create"
-                        : !def->star_begin   ? "star_begin"
-                        : !def->star_end     ? "star_end"
-                        : !def->star_destroy ? "star_destroy"
-                        : !def->reduce_max   ? "reduce_max"
-                        : !def->reduce_sum   ? "reduce_sum"
-                                             : NULL;
-  if (!missing && !def->max_begin != !def->max_end)
-    missing = def->max_begin ? "max_end" : "max_begin";
-  if (!missing) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "the callback %s is NULL", missing);
-}
 
 /* Are these ranks 0 to size - 1 of the same library at the same instruction level? */
 static mps_status try_transport(mps_domain *domain) {
@@ -84,12 +51,11 @@ static mps_status try_transport(mps_domain *domain) {
 
 mps_status mps_domain_create(mps_context *context, const mps_domain_def *user_def,
                              mps_domain **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_domain_def def = domain_defaults;
+  mps_domain_def def;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_domain_def, user_def, &def);
-  if (status == MPS_OK) status = check_def(context, &def);
   if (status != MPS_OK) return status;
   mps_domain *domain = mpsi_alloc(context, 1, sizeof *domain);
   if (!domain) return mpsi_fail_memory(context, __func__, sizeof *domain);
@@ -97,7 +63,7 @@ mps_status mps_domain_create(mps_context *context, const mps_domain_def *user_de
   domain->settled = -1;
   status = try_transport(domain);
   if (status != MPS_OK) {
-    domain->def.destroy = NULL;
+    domain->def.release = NULL;
     domain->def.max_leave = NULL; /* all ranks are here */
     mps_domain_destroy(&domain);
   }
@@ -119,7 +85,7 @@ void mps_domain_destroy(mps_domain **pointer) {
   if (--domain->references > 0) return;
   mps_context *context = domain->context;
   mpsi_domain_leave(domain);
-  if (domain->def.destroy) domain->def.destroy(domain->def.user);
+  mpsi_release(domain->def.release, domain->def.user);
   mpsi_free(context, domain);
   mpsi_context_release(context);
 }

@@ -14,13 +14,13 @@
 
 /* Fields to send: id, position and those of the list; with `names` NULL all. */
 typedef struct choice {
-  int32_t count;
+  int64_t count;
   const char *const *names;
 } choice;
 
 static bool is_chosen(const choice *c, int32_t field, const char *name) {
   bool chosen = !c->names || field < 2; /* id, position */
-  for (int32_t k = 0; k < c->count && !chosen; k++) chosen = strcmp(c->names[k], name) == 0;
+  for (int64_t k = 0; k < c->count && !chosen; k++) chosen = strcmp(c->names[k], name) == 0;
   return chosen;
 }
 
@@ -30,9 +30,9 @@ static mps_status check_choice(const mps_domain *domain, const char *function,
   mps_status status = MPS_OK;
   if (c->count < 0 || (c->count > 0 && !c->names))
     return mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %d with names %s, must be >= 0, and 0 where names is NULL", c->count,
-                     c->names ? "given" : "NULL");
-  for (int32_t k = 0; k < c->count && status == MPS_OK; k++)
+                     "count is %lld with names %s, must be >= 0, and 0 where names is NULL",
+                     (long long)c->count, c->names ? "given" : "NULL");
+  for (int64_t k = 0; k < c->count && status == MPS_OK; k++)
     status = mpsi_as(domain->context, function, mps_particles_view(particles, c->names[k], &view));
   return status;
 }
@@ -291,7 +291,8 @@ static mps_status gather(mps_domain *domain, const char *function, mps_particles
     status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "the particle set was made from another context than the domain");
   else
-    status = pack(domain, function, particles, chosen, &data, &bytes);
+    status = mpsi_particles_committed(particles, function);
+  if (status == MPS_OK) status = pack(domain, function, particles, chosen, &data, &bytes);
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = send_to_first(domain, function, data, bytes, &box);
   mpsi_free(context, data);
@@ -300,16 +301,11 @@ static mps_status gather(mps_domain *domain, const char *function, mps_particles
   return mpsi_domain_agree(domain, function, status);
 }
 
-mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_particles **whole) {
-  const choice all = {.names = NULL};
-  return domain ? gather(domain, __func__, particles, &all, whole) : MPS_ERROR_ARGUMENT;
-}
-
-mps_status mps_domain_gather_fields(mps_domain *domain, mps_particles *particles, int32_t count,
+mps_status mps_domain_gather_fields(mps_domain *domain, mps_particles *particles, int64_t count,
                                     const char *const *names, mps_particles **whole) {
-  static const char *const none[1] = {""};
-  const choice chosen = {.count = count, .names = count == 0 ? none : names};
-  return domain ? gather(domain, __func__, particles, &chosen, whole) : MPS_ERROR_ARGUMENT;
+  const choice chosen = {.count = count, .names = names};
+  return domain ? gather(domain, __func__, particles, &chosen, whole)
+                : mpsi_null(__func__, "domain");
 }
 
 /* ---- rows of a solver's state ---------------------------------------------------------------- */

@@ -48,7 +48,7 @@ static mps_status create(mps_domain *domain, const char *function, const mps_par
 
 mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_def *def,
                                        mps_particles **out) {
-  if (!domain) return MPS_ERROR_ARGUMENT;
+  if (!domain) return mpsi_null(__func__, "domain");
   mps_particles *made = NULL;
   mpsi_given given;
   if (out) *out = NULL;
@@ -57,9 +57,7 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
   if (status == MPS_OK)
     status = MPSI_DEF_READ(domain->context, __func__, mps_particles_def, def, &known);
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, &known, dim);
-  MPSI_GIVE(&given, &known, spacing);
-  MPSI_GIVE_VECTOR(&given, &known, origin, 3);
+  MPSI_GIVE_DEF(&given, mps_particles_def, &known);
   status = mpsi_domain_agree_given(domain, __func__, status, &given);
   if (status != MPS_OK)
     mps_particles_destroy(&made);

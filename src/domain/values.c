@@ -15,11 +15,12 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
   uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
   if (!particles)
     status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT, "particles is NULL");
-  else if (count < 0 || (count > 0 && (!ids || !values)))
-    status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
-                       "count is %lld with ids %s and values %s, must be >= 0, and 0 where one of "
-                       "them is NULL",
-                       (long long)count, ids ? "given" : "NULL", values ? "given" : "NULL");
+  else if (count < 0)
+    status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                       (long long)count);
+  else if (count > 0 && (!ids || !values))
+    status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                       ids ? "values" : "ids");
   else if (mpsi_particles_context(particles) != domain->context)
     status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
                        "the particle set was made from another context than the domain");
@@ -82,8 +83,8 @@ static mps_status share_values(mps_domain *domain, const char *function,
 }
 
 mps_status mps_domain_get_field(mps_domain *domain, mps_particles *particles, const char *name,
-                                int64_t count, const int64_t *ids, double *values) {
-  if (!domain) return MPS_ERROR_ARGUMENT;
+                                const int64_t *ids, int64_t count, double *values) {
+  if (!domain) return mpsi_null(__func__, "domain");
   mps_view view = {.data = NULL};
   double *teller = NULL;
   mps_status status = check(domain, __func__, particles, name, count, ids, values, &view);

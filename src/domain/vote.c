@@ -14,6 +14,7 @@
  * vote behind that says so. SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -162,6 +163,7 @@ static mps_status read_vote(mps_domain *domain, const char *function, int32_t co
 
 mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
                                   int32_t count, const double *values) {
+  assert(count <= MPSI_DOMAIN_ALONG);
   if (!mpsi_domain_many(domain)) return status;
   if (domain->lost != MPS_OK)
     return status == domain->lost ? status : mpsi_domain_alive(domain, function);

@@ -6,6 +6,9 @@
 
 mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what) {
   if (r->file.error) return mpsi_fail_io(r->context, r->function, "read", r->path, r->file.error);
+  if (r->stay.memory)
+    return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
+                     "HDF5 was refused memory to read '%.200s': %s", r->path, r->stay.text);
   return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
                    "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
                    r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);

@@ -40,15 +40,11 @@ static mps_status check_path(mps_context *context, const char *function, const c
 static mps_status read_info(mps_context *context, const char *function, const mps_checkpoint *info,
                             mps_checkpoint *out) {
   if (!info) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "info is NULL");
-  (void)mps_checkpoint_init(out, sizeof *out);
   const mps_status status = MPSI_DEF_READ(context, function, mps_checkpoint, info, out);
   if (status == MPS_OK && !memchr(out->user_key, '\0', sizeof out->user_key))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "user_key is '%.64s...', must be terminated: at most 63 characters",
                      out->user_key);
-  if (status == MPS_OK && out->user_bytes < 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "user_bytes is %lld, must be >= 0",
-                     (long long)out->user_bytes);
   return status;
 }
 
@@ -173,7 +169,7 @@ static mps_status open_checkpoint(writing *w, const char *path, const mps_checkp
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
                      "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
                      info->time, (long long)info->step, info->dt);
-  return mpsi_replace_begin(context, w->function, path, &w->replacement);
+  return mpsi_replace_begin(context, w->function, path, true, &w->replacement);
 }
 
 static mps_status fill_checkpoint(writing *w, mpsi_row_source *from, const char *solver,
@@ -196,11 +192,12 @@ static mps_status fill_checkpoint(writing *w, mpsi_row_source *from, const char 
   return status;
 }
 
-mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
+mps_status mpsi_checkpoint_write(mps_particles *particles, const char *path,
                                 const mps_checkpoint *info) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   writing w = {.context = mpsi_particles_context(particles), .function = __func__};
-  const mps_status status = open_checkpoint(&w, path, info);
+  mps_status status = mpsi_particles_committed(particles, __func__);
+  if (status == MPS_OK) status = open_checkpoint(&w, path, info);
   mpsi_row_source own = source_of(particles);
   return status == MPS_OK ? fill_checkpoint(&w, &own, NULL, NULL) : status;
 }
@@ -208,8 +205,8 @@ mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
 static mps_status open_solver(writing *w, const mpsi_state_of *of, const char *path,
                               const mps_checkpoint *user_info) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_status status = MPS_OK;
-  if (user_info) status = MPSI_DEF_READ(of->context, w->function, mps_checkpoint, user_info, &info);
+  mps_status status =
+      MPSI_DEF_READ_OR_DEFAULTS(of->context, w->function, mps_checkpoint, user_info, &info);
   if (status != MPS_OK) return status;
   info.struct_size = sizeof info;
   info.time = of->time;
@@ -264,7 +261,8 @@ static mps_status read_header(reading *r) {
   if (!mpsi_h5_read_text(root, "user_key", sizeof r->user_key, r->user_key))
     return mpsi_checkpoint_malformed(r, "user_key");
   const header *h = &r->header;
-  if (!isfinite(h->time) || h->step < 0 || !(h->dt >= 0.0 && isfinite(h->dt)))
+  if (!isfinite(h->time) || h->step < 0 || h->step > MPSI_STATE_MOST ||
+      !(h->dt >= 0.0 && isfinite(h->dt)))
     return mpsi_checkpoint_malformed(r, "its time, step or dt is out of range");
   return MPS_OK;
 }
@@ -507,7 +505,7 @@ static void drop_reading(reading *r) {
 }
 
 mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   reading r = {.context = context, .function = __func__, .path = path, .file = {.id = -1}};
   mps_checkpoint wanted;
   mps_status status = check_path(context, __func__, path);
@@ -538,7 +536,7 @@ static reading reading_of(mps_particles *particles, const char *function, const 
 }
 
 mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   reading r = reading_of(particles, __func__, path);
   mps_status status = look(&r, info, NULL);
   if (status == MPS_OK) /* a solver would continue from fields that it has not read */

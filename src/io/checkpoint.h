@@ -8,6 +8,9 @@
 
 #include <mps/io.h>
 
+/* Of a set alone: mps_checkpoint_read is its inverse. */
+mps_status mpsi_checkpoint_write(mps_particles *particles, const char *path,
+                                 const mps_checkpoint *info);
 /* Writes the fields of the solver's set and its state. Of `info` (NULL: the defaults) only user_key
  * and the user_data are read: time, step and dt are those of `of`. */
 mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,

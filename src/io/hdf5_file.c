@@ -23,7 +23,10 @@ static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
 
 static herr_t note_innermost(unsigned n, const H5E_error2_t *error, void *data) {
   mpsi_h5_stay *stay = data;
-  if (n == 0) snprintf(stay->text, sizeof stay->text, "%s", error->desc ? error->desc : "");
+  if (n == 0) {
+    snprintf(stay->text, sizeof stay->text, "%s", error->desc ? error->desc : "");
+    stay->memory = error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
+  }
   return 0;
 }
 
@@ -204,18 +207,12 @@ bool mpsi_h5_close(mpsi_h5_file *file) {
   return good;
 }
 
-mps_status mpsi_fail_io(mps_context *context, const char *function, const char *verb,
-                        const char *path, int error) {
-  char reason[128] = "unknown error";
-  if (error != 0) (void)strerror_r(error, reason, sizeof reason);
-  return mpsi_fail(context, function, MPS_ERROR_IO, "cannot %s '%.300s': %s", verb, path, reason);
-}
-
 mps_status mpsi_h5_fail(mps_context *context, const char *function, mps_status status,
                         const mpsi_h5_stay *stay, const mpsi_h5_file *file, const char *verb,
                         const char *path) {
   if (file->error) return mpsi_fail_io(context, function, verb, path, file->error);
-  return mpsi_fail(context, function, status, "cannot %s '%.200s': HDF5 says: %s", verb, path,
+  return mpsi_fail(context, function, stay->memory ? MPS_ERROR_MEMORY : status,
+                   "cannot %s '%.200s': HDF5 says: %s", verb, path,
                    stay->text[0] ? stay->text : "nothing");
 }
 

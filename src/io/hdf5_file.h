@@ -21,6 +21,7 @@ typedef struct mpsi_h5_stay {
   H5E_auto1_t old_print; /* else of the old form */
 #endif
   unsigned is_new_form;
+  bool memory;    /* that error is a refused allocation */
   char text[200]; /* innermost text of the first HDF5 error since enter; "" none */
 } mpsi_h5_stay;
 

@@ -190,7 +190,7 @@ static bool describe_frame(mps_recorder *recorder, mark *next, int64_t points, d
 }
 
 mps_status mps_recorder_write(mps_recorder *recorder, double time) {
-  if (!recorder) return MPS_ERROR_ARGUMENT;
+  if (!recorder) return mpsi_null(__func__, "recorder");
   mps_context *context = recorder->context;
   if (recorder->broken)
     return mpsi_fail(context, __func__, MPS_ERROR_STATE,
@@ -222,10 +222,6 @@ mps_status mps_recorder_write(mps_recorder *recorder, double time) {
   recorder->now = next;
   recorder->last_time = time;
   return MPS_OK;
-}
-
-int64_t mps_recorder_frames(const mps_recorder *recorder) {
-  return recorder ? recorder->now.frames : 0;
 }
 
 /* ---- creation: the choice of fields ---------------------------------------------------------- */
@@ -290,22 +286,9 @@ static mps_status choose_fields(mps_recorder *recorder, const mps_recorder_def *
 
 static mps_status check_def(mps_context *context, const mps_recorder_def *def) {
   static const char *const function = "mps_recorder_create";
-  if (!def->path || !def->path[0])
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "path is %s, must name a file",
-                     def->path ? "empty" : "NULL");
-  if (def->field_count < 0 || def->field_count > INT32_MAX ||
-      (def->field_count > 0 && !def->fields))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "field_count is %lld with fields %s, must be >= 0, and 0 where fields is NULL",
-                     (long long)def->field_count, def->fields ? "given" : "NULL");
-  if (def->compression < 0 || def->compression > 9)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "compression is %d, allowed are 0 (none) to 9", def->compression);
-  if (def->xdmf != 0 && def->xdmf != 1)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xdmf is %d, must be 0 or 1",
-                     def->xdmf);
-  if (def->xdmf) return mpsi_xdmf_check(context, function, def->path);
-  return MPS_OK;
+  if (!def->path[0])
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "path is empty, must name a file");
+  return def->xdmf ? mpsi_xdmf_check(context, function, def->path) : MPS_OK;
 }
 
 /* ---- creation: the file ---------------------------------------------------------------------- */
@@ -402,11 +385,10 @@ static mps_status build(mps_recorder *recorder, const mps_recorder_def *def) {
 
 mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                                const mps_recorder_def *user_def, mps_recorder **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_recorder_def def;
-  (void)mps_recorder_def_init(&def, sizeof def);
   mps_status status = mpsi_particles_check_context(particles, context, __func__);
   if (status == MPS_OK) status = MPSI_DEF_READ(context, __func__, mps_recorder_def, user_def, &def);
   if (status == MPS_OK) status = check_def(context, &def);

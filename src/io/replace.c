@@ -9,8 +9,16 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+mps_status mpsi_fail_io(mps_context *context, const char *function, const char *verb,
+                        const char *path, int error) {
+  char reason[128] = "unknown error";
+  if (error != 0) (void)strerror_r(error, reason, sizeof reason);
+  return mpsi_fail(context, function, MPS_ERROR_IO, "cannot %s '%.300s': %s", verb, path, reason);
+}
 
 #define SEAL_SIZE 32
 static const unsigned char seal_name[16] = "libmps seal 1\r\n";
@@ -43,7 +51,7 @@ static int64_t read_at(int fd, void *buffer, size_t size, int64_t offset) {
 /* Checksum of the first `size` bytes. Each step is one to one in the sum and in the word, so that a
  * change of any one word is always detected. False: errno. */
 static bool checksum(int fd, int64_t size, uint64_t *out) {
-  unsigned char buffer[16384];
+  unsigned char buffer[4096];
   uint64_t sum = (uint64_t)size;
   for (int64_t done = 0; done < size;) {
     const size_t want =
@@ -135,7 +143,8 @@ static bool is_ours(const char *path, int64_t size) {
 
 /* A new name, an empty file or an earlier checkpoint may be replaced: a rename would also replace a
  * device, or any other file of the caller. */
-static mps_status check_place(mps_context *context, const char *function, const char *path) {
+static mps_status check_place(mps_context *context, const char *function, const char *path,
+                              bool sealed) {
   struct stat status;
   if (stat(path, &status) != 0)
     return errno == ENOENT ? MPS_OK : mpsi_fail_io(context, function, "write", path, errno);
@@ -143,32 +152,50 @@ static mps_status check_place(mps_context *context, const char *function, const 
     return mpsi_fail(context, function, MPS_ERROR_IO,
                      "cannot write '%.300s': it is a %s, not a file", path,
                      S_ISDIR(status.st_mode) ? "directory" : "device or pipe");
-  if (is_ours(path, (int64_t)status.st_size)) return MPS_OK;
+  if (!sealed || is_ours(path, (int64_t)status.st_size)) return MPS_OK;
   if (errno != 0) return mpsi_fail_io(context, function, "replace", path, errno);
   return mpsi_fail(context, function, MPS_ERROR_IO,
                    "cannot write '%.300s': the file there is no checkpoint, and is not replaced",
                    path);
 }
 
-static bool is_file(int fd) {
+/* True on file systems without locks. The lock ends with the descriptor. */
+static bool lock(int fd) { return flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
+
+/* Removes what a program that was killed has left under the temporary name. Anything but a file,
+ * such as a link, stays, and so does a file that is being written. */
+static mps_status clear_name(mps_context *context, const char *function, const char *part) {
   struct stat status;
-  return fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  if (lstat(part, &status) != 0)
+    return errno == ENOENT ? MPS_OK : mpsi_fail_io(context, function, "open", part, errno);
+  if (!S_ISREG(status.st_mode))
+    return mpsi_fail(context, function, MPS_ERROR_IO, "cannot write '%.300s': not a file", part);
+  const int fd = open(part, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  const bool free = fd < 0 || lock(fd);
+  if (free) (void)unlink(part);
+  if (fd >= 0) close(fd);
+  return free ? MPS_OK
+              : mpsi_fail(context, function, MPS_ERROR_IO,
+                          "cannot write '%.300s': it is being written by another program or thread",
+                          part);
 }
 
 mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
-                              mpsi_replacement *out) {
+                              bool sealed, mpsi_replacement *out) {
   const size_t size = strlen(path) + sizeof ".part";
-  *out = (mpsi_replacement){.path = path, .fd = -1};
-  const mps_status place = check_place(context, function, path);
-  if (place != MPS_OK) return place;
+  *out = (mpsi_replacement){.path = path, .fd = -1, .sealed = sealed};
+  mps_status status = check_place(context, function, path, sealed);
+  if (status != MPS_OK) return status;
   out->part = mpsi_alloc(context, (int64_t)size, 1);
   if (!out->part) return mpsi_fail_memory(context, function, size);
   snprintf(out->part, size, "%s.part", path);
-  out->fd = open(out->part, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (out->fd >= 0 && is_file(out->fd)) return MPS_OK;
-  const mps_status status = out->fd < 0 ? mpsi_fail_io(context, function, "open", out->part, errno)
-                                        : mpsi_fail(context, function, MPS_ERROR_IO,
-                                                    "cannot write '%.300s': not a file", out->part);
+  status = clear_name(context, function, out->part);
+  if (status == MPS_OK) {
+    out->fd = open(out->part, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (out->fd < 0 || !lock(out->fd)) /* another began at the same time */
+      status = mpsi_fail_io(context, function, "open", out->part, errno);
+  }
+  if (status == MPS_OK) return MPS_OK;
   if (out->fd >= 0) close(out->fd);
   out->fd = -1;
   mpsi_free(context, out->part);
@@ -190,7 +217,7 @@ static void confirm_name(char *part) {
 mps_status mpsi_replace_commit(mps_context *context, const char *function,
                                mpsi_replacement *replacement) {
   mps_status status = MPS_OK;
-  if (!seal(replacement->fd) || fsync(replacement->fd) != 0)
+  if ((replacement->sealed && !seal(replacement->fd)) || fsync(replacement->fd) != 0)
     status = mpsi_fail_io(context, function, "write", replacement->part, errno);
   const int fd = replacement->fd;
   replacement->fd = -1;

@@ -9,12 +9,15 @@ typedef struct mpsi_replacement {
   const char *path; /* the caller's */
   char *part;       /* "<path>.part", where it is written */
   int fd;
+  bool sealed;
 } mpsi_replacement;
 
-/* Opens an empty "<path>.part", for reading and writing through `fd`. MPS_ERROR_IO where `path` is
- * anything but a new name, an empty file or one that was sealed. */
+/* Creates "<path>.part", for reading and writing through `fd`, in place of one that a killed
+ * program has left. MPS_ERROR_IO where `path` is anything but a new name, an empty file or one that
+ * was sealed, or where the temporary name is a link or is being written. Without `sealed` any other
+ * file may be there too, and no seal is written. */
 mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
-                              mpsi_replacement *out);
+                              bool sealed, mpsi_replacement *out);
 /* Seals the file, lets the disk confirm it, and renames it to `path`. Ends the replacement; on an
  * error `path` is unchanged. */
 mps_status mpsi_replace_commit(mps_context *context, const char *function,

@@ -168,8 +168,7 @@ mps_status mpsi_h5_read_state(mpsi_reading *r, const mpsi_state_of *of) {
   place p = {.root = r->file.id, .group = -1};
   if (H5Lexists(p.root, "solver", H5P_DEFAULT) <= 0)
     return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
-                     "'%.200s' has the fields of a set but no solver: it was written by "
-                     "mps_checkpoint_write",
+                     "'%.200s' has the fields of a set but no solver: mps_checkpoint_read reads them",
                      r->path);
   mps_status status = MPS_OK;
   if (!go_to(&p, "name", false, &leaf) || !mpsi_h5_read_text(p.group, leaf, sizeof name, name))

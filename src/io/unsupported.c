@@ -21,23 +21,12 @@ mps_status mps_recorder_write(mps_recorder *recorder, double time) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-int64_t mps_recorder_frames(const mps_recorder *recorder) {
-  (void)recorder;
-  return 0;
-}
-
 mps_status mps_recorder_close(mps_recorder **recorder) {
   (void)recorder;
   return MPS_OK;
 }
 
 void mps_recorder_destroy(mps_recorder **recorder) { (void)recorder; }
-
-mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
-                                const mps_checkpoint *info) {
-  (void)path, (void)info;
-  return unsupported(particles ? mpsi_particles_context(particles) : NULL, __func__);
-}
 
 mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
   (void)path, (void)info;

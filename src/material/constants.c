@@ -1,57 +1,18 @@
-/* constants.c - checks of parameters, elastic constants, and the cones of Drucker and Prager that
+/* constants.c - elastic constants, and the cones of Drucker and Prager that
  * match Mohr and Coulomb, Nakamura (55)-(56).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
-#include "core/base/digits.h"
 
-#define RIGHT_ANGLE 1.57079632679489662
 #define ROOT3 1.7320508075688772
-
 /* ---- checks ---------------------------------------------------------------------------------- */
-
-static mps_status out_of_range(mps_context *context, const char *function, const char *name,
-                               const char *unit, double value, double low, double high,
-                               const char *sign) {
-  if (isinf(high))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s, must be finite and %s %g",
-                     name, value, unit, sign, low);
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %s %g and < %g",
-                   name, mpsi_outside(value, low, high).text, unit, sign, low, high);
-}
-
-static mps_status check_within(mps_context *context, const char *function, const char *name,
-                               const char *unit, double value, double low, double high) {
-  if (value >= low && value < high) return MPS_OK; /* not NaN */
-  return out_of_range(context, function, name, unit, value, low, high, ">=");
-}
 
 mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
                               double poisson) {
   const mps_status status =
-      mpsi_check_range(context, function, "young: Young's modulus", young, MPSI_RANGE_MODULUS);
+      mpsi_check_range(context, function, "young", young, MPSI_RANGE_MODULUS);
   if (status != MPS_OK) return status;
-  return mpsi_check_range(context, function, "poisson: Poisson's ratio", poisson,
+  return mpsi_check_range(context, function, "poisson", poisson,
                           MPSI_RANGE_POISSON);
-}
-
-mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
-                               double dilation, double cohesion) {
-  mps_status status = check_within(context, function, "friction: the friction angle",
-                                   " rad (angles are in radians)", friction, 0.0, RIGHT_ANGLE);
-  if (status != MPS_OK) return status;
-  if (!(dilation >= 0.0 && dilation <= friction))
-    return mpsi_fail(
-        context, function, MPS_ERROR_ARGUMENT,
-        "dilation: the dilation angle is %s rad, must be >= 0 and at most the friction angle, "
-        "%g rad",
-        mpsi_outside(dilation, 0.0, friction).text, friction);
-  status = mpsi_check_range_or_0(context, function, "cohesion", cohesion, MPSI_RANGE_STRESS);
-  if (status != MPS_OK) return status;
-  if (friction == 0.0 && cohesion == 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "friction and cohesion are both 0: the material has no strength; one "
-                     "must be > 0");
-  return MPS_OK;
 }
 
 /* ---- constants ------------------------------------------------------------------------------- */
@@ -64,6 +25,12 @@ mpsi_law mpsi_law_elastic(double young, double poisson) {
                     .bulk = bulk,
                     .lambda = bulk - 2.0 / 3.0 * shear,
                     .per_bulk = 1.0 / bulk};
+}
+
+void mpsi_law_add_dilation_end(mpsi_law *law, double dilation, double void_ratio,
+                               double max_void_ratio) {
+  const bool ends = dilation > 0.0 && !isnan(max_void_ratio);
+  law->loosest = ends ? (1.0 + max_void_ratio) / (1.0 + void_ratio) : 0.0;
 }
 
 double mpsi_law_wave_modulus(const mpsi_law *law) { return law->bulk + 4.0 / 3.0 * law->shear; }

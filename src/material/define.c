@@ -4,78 +4,9 @@
 #include "core/particles/particles_internal.h"
 
 #include <mps/soil.h>
+#include <mps/experimental/soil.h>
 
 #include <stdio.h>
-
-static const mps_material_von_mises_def von_mises_defaults = {.young = NAN,
-                                                              .poisson = 0.3,
-                                                              .yield_stress = NAN,
-                                                              .residual = 1.0,
-                                                              .slip = NAN,
-                                                              .band = NAN,
-                                                              .rate_reference = 3e-6};
-static const mps_material_drucker_prager_def drucker_prager_defaults = {
-    .cone = MPS_MATERIAL_CONE_PLANE_STRAIN,
-    .young = NAN,
-    .poisson = 0.3,
-    .friction = NAN,
-    .tension = INFINITY};
-static const mps_material_mohr_coulomb_def mohr_coulomb_defaults = {.young = NAN,
-                                                                    .poisson = 0.3,
-                                                                    .friction = NAN,
-                                                                    .tension = INFINITY,
-                                                                    .residual_friction = NAN,
-                                                                    .residual_cohesion = NAN,
-                                                                    .slip = NAN,
-                                                                    .band = NAN,
-                                                                    .rate_reference = 3e-6};
-static const mps_material_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT,
-                                                              .bulk_modulus = NAN};
-static const mps_material_user_def user_defaults = {.name = "user",
-                                                    .turns_stress = 1,
-                                                    .wave_modulus = NAN,
-                                                    .bulk_modulus = NAN,
-                                                    .shear_modulus = NAN};
-
-static const mps_material_cam_clay_def cam_clay_defaults = {.critical_slope = NAN,
-                                                            .compression = NAN,
-                                                            .swelling = NAN,
-                                                            .poisson = 0.3,
-                                                            .shear_modulus = NAN,
-                                                            .void_ratio = NAN,
-                                                            .preconsolidation = NAN,
-                                                            .least_pressure = NAN};
-
-static const mps_material_small_strain_def small_strain_defaults = {.shear_modulus = NAN,
-                                                                    .poisson = 0.3,
-                                                                    .reference_strain = NAN,
-                                                                    .curvature = 1.0,
-                                                                    .strength = NAN};
-
-static const mps_material_cyclic_sand_def cyclic_sand_defaults = {.young = NAN,
-                                                                  .poisson = 0.3,
-                                                                  .friction = NAN,
-                                                                  .relative_density = NAN,
-                                                                  .blow_count = NAN,
-                                                                  .c1 = NAN,
-                                                                  .c2 = NAN,
-                                                                  .c3 = NAN,
-                                                                  .c4 = NAN,
-                                                                  .threshold = 1e-4,
-                                                                  .strain_limit = 0.01};
-
-#define DEF_INIT(name)                                                                             \
-  mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
-    return MPSI_DEF_INIT(mps_material_##name##_def, def, size, &name##_defaults);                  \
-  }
-DEF_INIT(von_mises)
-DEF_INIT(drucker_prager)
-DEF_INIT(mohr_coulomb)
-DEF_INIT(newtonian)
-DEF_INIT(user)
-DEF_INIT(cam_clay)
-DEF_INIT(small_strain)
-DEF_INIT(cyclic_sand)
 
 /* A material of the library's own. A column of its history that is a field of the library is that
  * field, one for all laws; others lie under the law's name. */
@@ -106,7 +37,7 @@ static mps_status create(mps_context *context, const char *function, mpsi_law_ki
 }
 
 static mps_status check_out(mps_context *context, const char *function, mps_material **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(function, "context");
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   return MPS_OK;
@@ -129,7 +60,7 @@ mps_status mps_material_create_neo_hookean(mps_context *context, double young, d
 #define CREATE(name, KIND)                                                                         \
   mps_status mps_material_create_##name(                                                           \
       mps_context *context, const mps_material_##name##_def *user_def, mps_material **out) {       \
-    mps_material_##name##_def def = name##_defaults;                                               \
+    mps_material_##name##_def def = mps_material_##name##_defaults();                              \
     mps_status status = check_out(context, __func__, out);                                         \
     if (status == MPS_OK)                                                                          \
       status = MPSI_DEF_READ(context, __func__, mps_material_##name##_def, user_def, &def);        \
@@ -149,7 +80,7 @@ CREATE(cyclic_sand, MPSI_LAW_CYCLIC_SAND)
 mps_status mps_material_create_by_field(mps_context *context, const mps_material *law,
                                         mps_material **out) {
   static const char *const names[MPSI_FACTORS] = {"stiffness_factor", "strength_factor"};
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!law) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law is NULL");
@@ -189,6 +120,8 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
       mpsi_material_new(context, function, type, def->name, def->history_count);
   if (!material) return MPS_ERROR_MEMORY;
   material->law = law;
+  material->release = def->release;
+  material->release_user = def->user;
   material->wave_modulus =
       isnan(def->wave_modulus) ? mpsi_law_wave_modulus(&law) : def->wave_modulus;
   for (int32_t c = 0; c < def->history_count; c++) {
@@ -203,7 +136,7 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
 
 mps_status mps_material_create_user(mps_context *context, const mps_material_user_def *user_def,
                                     mps_material **out) {
-  mps_material_user_def def = user_defaults;
+  mps_material_user_def def = mps_material_user_defaults();
   mps_status status = check_out(context, __func__, out);
   if (status == MPS_OK)
     status = MPSI_DEF_READ(context, __func__, mps_material_user_def, user_def, &def);

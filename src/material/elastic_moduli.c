@@ -22,7 +22,7 @@ static mps_moduli moduli_of(double shear, double bulk, double density) {
 mps_status mps_moduli_from_elastic_sized(mps_context *context, double young, double poisson,
                                          double density, mps_moduli *out, size_t size) {
   static const char function[] = "mps_moduli_from_elastic";
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   mps_status status = mpsi_check_elastic(context, function, young, poisson);
   if (status == MPS_OK)
     status = mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
@@ -37,7 +37,7 @@ mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_v
                                             double pressure_velocity, double density,
                                             mps_moduli *out, size_t size) {
   static const char function[] = "mps_moduli_from_velocities";
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   mps_status status = mpsi_check_range(context, function, "shear_velocity: the shear wave velocity",
                                        shear_velocity, MPSI_RANGE_WAVE_VELOCITY);
   if (status == MPS_OK)
@@ -67,7 +67,7 @@ mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_v
 mps_status mps_material_get_moduli_sized(const mps_material *material, double density,
                                          mps_moduli *out, size_t size) {
   static const char function[] = "mps_material_get_moduli";
-  if (!material) return MPS_ERROR_ARGUMENT;
+  if (!material) return mpsi_null(__func__, "material");
   mps_context *context = material->context;
   if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
@@ -132,8 +132,8 @@ static mps_status write_ground(mps_particles *particles, const double value[GROU
 }
 
 mps_status mps_particles_set_material(mps_particles *particles, const mps_material *material,
-                                      double density, int64_t count, const int64_t *ids) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+                                      double density, const int64_t *ids, int64_t count) {
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = mpsi_particles_context(particles);
   mps_moduli m = {0};
   mps_status status = mpsi_material_check_elastic(context, set_material, material);

@@ -3,19 +3,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/base/ranges.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
-#include <mps/geostatic.h>
 #include <mps/soil.h>
+#include <mps/experimental/soil.h>
 
 #define ON_SURFACE 1e-9 /* spacings: a centre this little above the surface lies on it */
-
-static const mps_geostatic_def geostatic_defaults = {
-    .struct_size = sizeof(mps_geostatic_def), .gravity = 9.81, .vertical = -1, .surface = NAN};
-
-mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_geostatic_def, def, size, &geostatic_defaults);
-}
 
 /* Bytes of a layer: in 0.3; far beyond what any version will have. */
 enum { FIRST_LAYER = 24, MOST_LAYER = 65536 };
@@ -48,17 +41,19 @@ static const mps_geostatic_layer *layer_of(const geostatic *g, int32_t k) {
 
 static mps_status check_layers(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
-  if (d->layer_count < 1 || !d->layers)
+  if (!d->layers)
     return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
-                     "layer_count is %d%s, must be >= 1", (int)d->layer_count,
-                     d->layers ? "" : " and layers is NULL");
+                     "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
+  if (d->layer_count < 1)
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
+                     "layer_count is %lld, must be >= 1", (long long)d->layer_count);
   if (d->layer_size != 0 && (d->layer_size < FIRST_LAYER || d->layer_size > MOST_LAYER ||
                              d->layer_size % (int32_t)sizeof(double) != 0))
     return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "layer_size is %d, must be sizeof(mps_geostatic_layer) (%d to %d, a multiple "
                      "of 8), or 0",
                      (int)d->layer_size, FIRST_LAYER, MOST_LAYER);
-  for (int32_t k = 0; k < d->layer_count; k++) {
+  for (int64_t k = 0; k < d->layer_count; k++) {
     const mps_geostatic_layer *layer = layer_of(g, k);
     const bool lowest = k == d->layer_count - 1;
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
@@ -88,12 +83,8 @@ static mps_status check_layers(const geostatic *g) {
 
 static mps_status check_line(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
-  const int32_t n = d->surface_points;
-  if (!d->surface_line && n == 0) return MPS_OK;
-  if (!d->surface_line || n < 2)
-    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
-                     "surface_points is %d%s, must be >= 2 with a line", (int)n,
-                     d->surface_line ? "" : " and surface_line is NULL");
+  const int64_t n = d->surface_points;
+  if (!d->surface_line) return MPS_OK;
   if (g->dim != 2 || g->up != 1)
     return mpsi_fail(g->context, g->function, MPS_ERROR_UNSUPPORTED,
                      "a surface_line is for 2D with y upwards: use surface_level");
@@ -108,33 +99,11 @@ static mps_status check_line(const geostatic *g) {
   return MPS_OK;
 }
 
-static mps_status check_numbers(const geostatic *g) {
-  const mps_geostatic_def *d = &g->def;
-  mps_status status =
-      mpsi_check_range(g->context, g->function, "gravity", d->gravity, MPSI_RANGE_ACCELERATION);
-  if (status == MPS_OK)
-    status = mpsi_check_range_or_0(g->context, g->function, "surcharge", d->surcharge,
-                                   MPSI_RANGE_STRESS);
-  if (status == MPS_OK && !isnan(d->surface))
-    status = mpsi_check_range(g->context, g->function, "surface", d->surface, MPSI_RANGE_LEVEL);
-  if (status != MPS_OK) return status;
-  if (g->up < 0 || g->up >= g->dim)
-    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
-                     "vertical is %d, must be 0..%d, or -1 for the last axis", (int)d->vertical,
-                     (int)g->dim - 1);
-  const int given = !isnan(d->surface) + (d->surface_line != NULL) + (d->surface_level != NULL);
-  if (given > 1)
-    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
-                     "%d of surface, surface_line and surface_level are given, only one may be",
-                     given);
-  return MPS_OK;
-}
-
 /* ---- depths ---------------------------------------------------------------------------------- */
 
 static double level_of_line(const mps_geostatic_def *d, double x) {
   const double *p = d->surface_line;
-  const int32_t n = d->surface_points;
+  const int64_t n = d->surface_points;
   if (x <= p[0]) return p[1];
   for (int32_t k = 1; k < n; k++) {
     if (x > p[2 * k]) continue;
@@ -188,7 +157,7 @@ static mps_status find_depths(geostatic *g) {
 
 /* The layer with the depth in [top, bottom); the lowest one with its bottom, and count below. */
 static int32_t layer_at(const geostatic *g, double depth) {
-  const int32_t n = g->def.layer_count;
+  const int64_t n = g->def.layer_count;
   int32_t k = 0;
   while (k < n && depth >= g->top[k] + layer_of(g, k)->thickness) k++;
   if (k == n && depth <= g->top[n - 1] + layer_of(g, n - 1)->thickness) k--;
@@ -199,7 +168,7 @@ static int32_t layer_at(const geostatic *g, double depth) {
 
 /* Density of the layers that take it from their particles: one value, or an error. */
 static mps_status take_densities(geostatic *g, double *density) {
-  const int32_t n = g->def.layer_count;
+  const int64_t n = g->def.layer_count;
   for (int32_t k = 0; k < n; k++) density[k] = layer_of(g, k)->density;
   for (int64_t k = 0; k < g->count; k++) {
     const int32_t layer = layer_at(g, g->depth[k]);
@@ -230,7 +199,7 @@ static mps_status take_densities(geostatic *g, double *density) {
 }
 
 static mps_status weigh(geostatic *g) {
-  const int32_t n = g->def.layer_count;
+  const int64_t n = g->def.layer_count;
   for (int32_t k = 1; k < n; k++) g->top[k] = g->top[k - 1] + layer_of(g, k - 1)->thickness;
   mps_status status = find_depths(g);
   if (status == MPS_OK) status = take_densities(g, g->weight);
@@ -275,18 +244,18 @@ static void look_at_set(geostatic *g) {
 }
 
 mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geostatic_def *def) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   geostatic g = {.set = particles,
                  .context = mpsi_particles_context(particles),
-                 .def = geostatic_defaults,
+                 .def = mps_geostatic_defaults(),
                  .function = set_geostatic};
-  mps_status status = MPSI_DEF_READ(g.context, set_geostatic, mps_geostatic_def, def, &g.def);
+  mps_status status = MPSI_DEF_READ_IN(g.context, set_geostatic, mps_geostatic_def, def,
+                                       mpsi_scene_of(mps_particles_dim(particles)), &g.def);
   if (status == MPS_OK) status = mpsi_particles_writable(particles, set_geostatic);
   if (status != MPS_OK) return status;
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
-  status = check_numbers(&g);
-  if (status == MPS_OK) status = check_line(&g);
+  status = check_line(&g);
   if (status == MPS_OK) status = check_layers(&g);
   if (status != MPS_OK) return status;
   const int64_t n = g.def.layer_count, room = g.count + 3 * n;
@@ -320,7 +289,7 @@ static mps_status evaluate_stress(const geostatic *g, mps_geostatic_stress_fn fn
 
 mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stress_fn fn,
                                     void *user) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   geostatic g = {.set = particles, .context = mpsi_particles_context(particles)};
   if (!fn) return mpsi_fail(g.context, __func__, MPS_ERROR_ARGUMENT, "stress is NULL");
   mps_status status = mpsi_particles_writable(particles, __func__);
@@ -340,7 +309,7 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stre
 
 /* ---- a field by depth ------------------------------------------------------------------------ */
 
-static mps_status check_profile(const geostatic *g, const char *field, int32_t count,
+static mps_status check_profile(const geostatic *g, const char *field, int64_t count,
                                 const double *depth, const double *value) {
   if (!field || !depth || !value)
     return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT, "%s is NULL",
@@ -350,11 +319,15 @@ static mps_status check_profile(const geostatic *g, const char *field, int32_t c
   if (count < 1)
     return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT, "count is %d, must be >= 1",
                      (int)count);
-  for (int32_t k = 0; k < count; k++)
-    if (!isfinite(depth[k]) || !isfinite(value[k]) || (k > 0 && depth[k] <= depth[k - 1]))
+  for (int32_t k = 0; k < count; k++) {
+    if (!isfinite(value[k]))
       return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
-                       "depth[%d] is %g m and value[%d] %g: must be finite, and depths ascend",
-                       (int)k, depth[k], (int)k, value[k]);
+                       "value[%d] is %g, must be finite", (int)k, value[k]);
+    if (!isfinite(depth[k]) || (k > 0 && depth[k] <= depth[k - 1]))
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
+                       "depth[%d] is %g m, must be finite and greater than the one before", (int)k,
+                       depth[k]);
+  }
   return MPS_OK;
 }
 
@@ -369,7 +342,7 @@ static double profile_at(int32_t count, const double *depth, const double *value
   return value[count - 1];
 }
 
-static mps_status write_profile(const geostatic *g, const char *field, int32_t count,
+static mps_status write_profile(const geostatic *g, const char *field, int64_t count,
                                 const double *depth, const double *value) {
   mps_edit edit;
   mps_status status = mpsi_as(g->context, g->function, mps_particles_edit(g->set, field, &edit));
@@ -381,24 +354,24 @@ static mps_status write_profile(const geostatic *g, const char *field, int32_t c
   return status;
 }
 
-mps_status mps_particles_set_profile(mps_particles *particles, const char *field, int32_t count,
+mps_status mps_particles_set_profile(mps_particles *particles, const char *field, int64_t count,
                                      const double *depth, const double *value,
                                      const mps_geostatic_def *ground) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   geostatic g = {.set = particles,
                  .context = mpsi_particles_context(particles),
-                 .def = geostatic_defaults,
+                 .def = mps_geostatic_defaults(),
                  .function = __func__};
   mps_view view;
   mps_status status = check_profile(&g, field, count, depth, value);
   if (status == MPS_OK && ground)
-    status = MPSI_DEF_READ(g.context, __func__, mps_geostatic_def, ground, &g.def);
+    status = MPSI_DEF_READ_IN(g.context, __func__, mps_geostatic_def, ground,
+                              mpsi_scene_of(mps_particles_dim(particles)), &g.def);
   if (status == MPS_OK) status = mpsi_particles_writable(particles, __func__);
   if (status != MPS_OK) return status;
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
-  status = check_numbers(&g);
-  if (status == MPS_OK) status = check_line(&g);
+  status = check_line(&g);
   if (status != MPS_OK) return status;
   g.depth = mpsi_alloc(g.context, g.count, sizeof *g.depth);
   if (!g.depth) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * sizeof *g.depth);

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-enum { CONSTANTS = 43 }; /* doubles of mpsi_law before its layers, all of them listed below */
+enum { CONSTANTS = 44 }; /* doubles of mpsi_law before its layers, all of them listed below */
 _Static_assert(offsetof(mpsi_law, layer_shear) - offsetof(mpsi_law, shear) ==
                    CONSTANTS * sizeof(double),
                "a constant that is new in mpsi_law is to be listed in mpsi_material_give");
@@ -33,6 +33,7 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                    {"c cos(phi) of the material", law->c_cos_phi},
                    {"the apex of the material's pyramid", law->apex},
                    {"the tension limit of the material's pyramid", law->cut},
+                   {"V/V0 at which the material's dilation ends", law->loosest},
                    {"the residual strength of the material", law->residual},
                    {"the rate of softening of the material", law->per_strain},
                    {"the softening of the material", law->softens + 2.0 * law->softens_linearly},

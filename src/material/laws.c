@@ -53,13 +53,18 @@ MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, d
  * q_tension, so that one expression covers all cases.
  *
  * The volume increase at the limit is a gap between grains, the volume strain `gap`. Compression
- * closes it before the mean stress falls below 0; meanwhile the grains do not dilate. */
-MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q, double gap) {
+ * closes it before the mean stress falls below 0; meanwhile the grains do not dilate.
+ *
+ * Dilation that would take p below `least` (mpsi_least_mean) ends there, on the cone. */
+MPSI_INLINE meridian return_drucker_prager(const bool ends, const mpsi_law *law, double p, double q,
+                                           double gap, double least) {
   const double closed = p + law->bulk * gap;
   const double f = q + 3.0 * law->alpha * closed - law->kappa;
   const double multiplier = at_least(f, 0.0) * law->cone;
-  const double p_cone = closed - 3.0 * law->bulk * law->alpha_flow * multiplier;
-  const double q_cone = q - law->shear * multiplier;
+  const double p_full = closed - 3.0 * law->bulk * law->alpha_flow * multiplier;
+  const double p_cone = ends ? at_least(p_full, at_most(least, closed)) : p_full;
+  const double q_cone = ends && p_cone > p_full ? law->kappa - 3.0 * law->alpha * p_cone
+                                                : q - law->shear * multiplier;
   const double p_open = at_most(at_least(p, 0.0), law->tension);
   const double radius = at_least(law->kappa - 3.0 * law->alpha * p_open, law->q_tension);
   const bool open = gap > 0.0 && closed > 0.0, tears = p_cone > law->tension;
@@ -76,23 +81,34 @@ MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double
 
 /* ---- laws of the Jaumann rate ---------------------------------------------------------------- */
 
+/* How a volume grows by the volume strain of a step. */
+typedef enum growth_kind { BY_SUM, BY_FRACTION, BY_EXPONENTIAL } growth_kind;
+
 /* A volume after the volume strain `growth`. Single grains beside a wall may vibrate by a hundredth
  * for as long as a pile is driven. The stress keeps the sum of such strains; (1 + x)(1 - x) loses x
- * squared in each cycle. So frictional laws take exp(growth), to the third order. */
-MPSI_INLINE double grown(const bool frictional, double volume, double growth) {
+ * squared in each cycle. So frictional laws take exp(growth), to the third order, and to rounding
+ * where the volume decides that dilation ends. */
+MPSI_INLINE double grown(const growth_kind kind, double volume, double growth) {
+  if (kind == BY_EXPONENTIAL) return volume * exp(growth);
   const double half = 0.5 * at_least(at_most(growth, 1.0), -1.0);
-  return frictional ? volume * ((1.0 + half) / (1.0 - half)) : volume + volume * growth;
+  return kind == BY_FRACTION ? volume * ((1.0 + half) / (1.0 - half)) : volume + volume * growth;
+}
+
+/* Mean stress (Pa) below which dilation does not take a volume in a step with the strain d, which
+ * closes the gap; -INFINITY: dilation does not end. */
+MPSI_INLINE double least_mean(const mpsi_law *law, double volume, mpsi_sym d, double gap) {
+  return mpsi_least_mean(law, grown(BY_EXPONENTIAL, volume, (d.xx + d.yy + d.zz) - -gap));
 }
 
 /* Treatment of the trial stress in the loop of the Jaumann rate. */
-enum { ELASTIC, MISES, CONE, PYRAMID };
+enum { ELASTIC, MISES, CONE, ENDING_CONE, PYRAMID };
 
 MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law *constants,
                            const mps_material_block *block) {
   const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
   const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio, *strain = yields == ELASTIC ? NULL : block->history[0],
-         *gap = yields == CONE || yields == PYRAMID ? block->history[1] : NULL;
+         *gap = yields >= CONE ? block->history[1] : NULL;
   int64_t *flags = block->flags;
   const double dt = block->dt;
   SIMD for (int64_t k = 0; k < block->count; k++) {
@@ -103,6 +119,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
     int64_t flag = 0;
     double opened = 0.0;
     if (yields != ELASTIC) {
+      const double least = yields == ENDING_CONE ? least_mean(&law, volume[k], d, gap[k]) : 0.0;
       const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
       const double q =
           sqrt(0.5 * (dx * dx + dy * dy + dz * dz) + (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
@@ -113,7 +130,8 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
         flag = ((over > 0.0) | (gap[k] > 0.0)) ? MPS_MATERIAL_FLAG_PLASTIC : 0;
       } else {
         const meridian m = yields == MISES ? return_von_mises(&law, p, q, strain[k])
-                                           : return_drucker_prager(&law, p, q, gap[k]);
+                                           : return_drucker_prager(yields == ENDING_CONE, &law, p,
+                                                                   q, gap[k], least);
         const double scale = m.q / (q + NOTHING); /* 1 if elastic */
         flag = m.flags;
         s.xx = m.p + scale * dx;
@@ -123,7 +141,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
         s.yz *= scale;
         s.zx *= scale;
         strain[k] += m.plastic;
-        if (yields == CONE) {
+        if (yields == CONE || yields == ENDING_CONE) {
           opened = m.opened;
           gap[k] = at_least(gap[k] + opened, 0.0);
         }
@@ -133,22 +151,26 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
     flags[k] = flag;
     if (yields != PYRAMID) {
       const double growth = (d.xx + d.yy + d.zz) - opened;
-      volume[k] = grown(yields == CONE, volume[k], growth);
+      volume[k] = grown(yields == ENDING_CONE ? BY_EXPONENTIAL
+                        : yields == CONE      ? BY_FRACTION
+                                              : BY_SUM,
+                        volume[k], growth);
     }
   }
 }
 
 /* V/V0 of particles [begin, end) of a block; `opened`, of these, is the strain of gaps, NULL for
  * laws without. */
-MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block, int64_t begin,
-                             int64_t end, const double *opened) {
+MPSI_INLINE void volume_loop(const int geometry, const growth_kind kind,
+                             const mps_material_block *block, int64_t begin, int64_t end,
+                             const double *opened) {
   const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio;
   const double dt = block->dt;
   SIMD for (int64_t k = begin; k < end; k++) {
     const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
     const double growth = (d.xx + d.yy + d.zz) - (opened ? opened[k - begin] : 0.0);
-    volume[k] = grown(opened != NULL, volume[k], growth);
+    volume[k] = grown(kind, volume[k], growth);
   }
 }
 
@@ -207,7 +229,10 @@ MPSI_INLINE mps_status von_mises_loop(const int geometry, const mpsi_law *law,
 
 MPSI_INLINE mps_status drucker_prager_loop(const int geometry, const mpsi_law *law,
                                            const mps_material_block *block) {
-  rate_loop(geometry, CONE, law, block);
+  if (law->loosest > 0.0)
+    rate_loop(geometry, ENDING_CONE, law, block);
+  else
+    rate_loop(geometry, CONE, law, block);
   return MPS_OK;
 }
 
@@ -223,19 +248,25 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
     for (int64_t k = begin; k < end; k++) {
       opened[k - begin] = 0.0;
       if (block->flags[k] == 0) continue;
-      double s[6];
+      double s[6], least = -INFINITY;
       for (int32_t c = 0; c < components; c++) s[c] = block->stress[c][k];
+      if (law->loosest > 0.0)
+        least = least_mean(law, block->volume_ratio[k],
+                           mpsi_strain(geometry, &columns, k, block->dt), gap[k]);
       if (law->softens)
         block->flags[k] = mpsi_soften_mohr_coulomb(
-            law, dim, law->rate_factor > 0.0 ? rate_of(geometry, &columns, k) : 0.0, s, &strain[k],
-            &gap[k], &opened[k - begin]);
+            law, dim, law->rate_factor > 0.0 ? rate_of(geometry, &columns, k) : 0.0, least, s,
+            &strain[k], &gap[k], &opened[k - begin]);
       else
         block->flags[k] =
-            mpsi_mohr_coulomb_return(law, dim, s, &strain[k], &gap[k], &opened[k - begin]);
+            mpsi_mohr_coulomb_return(law, dim, least, s, &strain[k], &gap[k], &opened[k - begin]);
       if (block->flags[k] == 0) continue;
       for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
     }
-    volume_loop(geometry, block, begin, end, opened);
+    if (law->loosest > 0.0)
+      volume_loop(geometry, BY_EXPONENTIAL, block, begin, end, opened);
+    else
+      volume_loop(geometry, BY_FRACTION, block, begin, end, opened);
   }
   return MPS_OK;
 }
@@ -366,7 +397,7 @@ MPSI_INLINE mps_status user_loop(const int geometry, const mpsi_law *law,
   if (law->needs_deformation)
     deform_loop(geometry, block);
   else
-    volume_loop(geometry, block, 0, block->count, NULL);
+    volume_loop(geometry, BY_SUM, block, 0, block->count, NULL);
   if (law->turns_stress) turn_loop(geometry, block);
   const mps_status status = law->update(law->user, block);
   return status == MPS_OK ? mpsi_check_results(block, law->history_count) : status;

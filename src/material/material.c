@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
+#include <mps/experimental/material_point.h>
 #include <stdio.h>
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -11,6 +12,7 @@ static void release(mps_material *m) {
   mpsi_free(context, m->history_names);
   mpsi_free(context, m->history_fields);
   mpsi_free(context, m->history_initial);
+  mpsi_release(m->release, m->release_user);
   mpsi_free(context, m->owned);
   mpsi_free(context, m);
   mpsi_context_release(context);
@@ -74,10 +76,6 @@ double mps_material_wave_modulus(const mps_material *material) {
   return material ? material->wave_modulus : 0.0;
 }
 
-int32_t mps_material_needs_deformation(const mps_material *material) {
-  return material && material->law.needs_deformation;
-}
-
 int32_t mps_material_history_count(const mps_material *material) {
   return material ? material->history_count : 0;
 }
@@ -87,7 +85,7 @@ const char *mps_material_history_name(const mps_material *material, int32_t inde
   return material->history_names[index];
 }
 
-const char *mps_material_history_field(const mps_material *material, int32_t index) {
+const char *mpsi_material_history_field(const mps_material *material, int32_t index) {
   if (!material || index < 0 || index >= material->history_count) return NULL;
   return material->history_fields[index];
 }
@@ -97,8 +95,12 @@ double mps_material_history_initial(const mps_material *material, int32_t index)
   return material->history_initial[index];
 }
 
+bool mpsi_material_needs_deformation(const mps_material *material) {
+  return material->law.needs_deformation;
+}
+
 bool mpsi_material_reads_volume(const mps_material *material) {
-  return (material->type->traits & MPSI_LAW_READS_VOLUME) != 0;
+  return (material->type->traits & MPSI_LAW_READS_VOLUME) != 0 || material->law.loosest > 0.0;
 }
 
 bool mpsi_material_opens(const mps_material *material) {
@@ -120,6 +122,15 @@ bool mpsi_material_dilates(const mps_material *material) {
   return mpsi_material_opens(material) &&
          (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0 ||
           material->law.frictional);
+}
+
+bool mpsi_material_dilates_without_end(const mps_material *material) {
+  return mpsi_material_dilates(material) && !(material->law.loosest > 0.0);
+}
+
+bool mpsi_material_keeps_volume(const mps_material *material) {
+  const uint32_t yields = MPSI_LAW_OPENS | MPSI_LAW_ISOCHORIC | MPSI_LAW_HAS_START;
+  return (material->type->traits & yields) != 0 && !(material->law.loosest > 0.0);
 }
 
 const double *mpsi_material_stiffness(const mps_material *material, double *const *history) {
@@ -184,21 +195,6 @@ static mps_status check_tensors(mps_context *context, const char *function,
 
 static mps_status check_block(mps_context *context, const char *function,
                               const mps_material *material, const mps_material_block *block) {
-  if (block->dim != 2 && block->dim != 3)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3",
-                     block->dim);
-  if (block->count < 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                     (long long)block->count);
-  if (!isfinite(block->dt) || block->dt <= 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dt is %g s, must be finite and > 0",
-                     block->dt);
-  if (!block->volume_ratio || !block->flags)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
-                     block->volume_ratio ? "flags" : "volume_ratio");
-  if (block->message_size < 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "message_size is %d, must be >= 0",
-                     block->message_size);
   if (block->history_count < material->history_count)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "history_count is %d, the law %s has %d columns", block->history_count,
@@ -209,11 +205,6 @@ static mps_status check_block(mps_context *context, const char *function,
                        "history[%d] (%s) is NULL, needed by the law %s", c,
                        material->history_names[c], material->name);
   return check_tensors(context, function, material, block);
-}
-
-mps_status mps_material_block_init(mps_material_block *block, size_t size) {
-  static const mps_material_block defaults = {.dim = 2};
-  return MPSI_DEF_INIT(mps_material_block, block, size, &defaults);
 }
 
 mps_status mpsi_material_refused(mps_context *context, const char *function,
@@ -232,7 +223,7 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 
 mps_status mps_material_update(mps_context *context, const mps_material *material,
                                const mps_material_block *user_block) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!material || !user_block)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      material ? "block" : "material");

@@ -5,7 +5,7 @@
  *   1. Columns of the particles of one material in the block: the velocity gradient of the step
  *      (2D: gradient[0, 1, 3, 4]; gradient[8] = v_r/r if axisymmetric, NULL in plane strain; 3D:
  *      all nine), in/out stress, volume_ratio, flags, the history columns, and the deformation
- *      gradient if mps_material_needs_deformation. They must not overlap; any alignment will do,
+ *      gradient if mpsi_material_needs_deformation. They must not overlap; any alignment will do,
  *      64 bytes is fastest. They are contiguous: a particle is an index, not a stride. Particles
  *      of several materials: one call for each run of equal ones.
  *   2. mpsi_material_apply(). It does everything of Nakamura step 12 and 13: spin, trial stress,
@@ -57,6 +57,9 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 
 /* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
 bool mpsi_material_reads_volume(const mps_material *material);
+bool mpsi_material_needs_deformation(const mps_material *material); /* not the rate */
+/* The field of a set that holds history column `index`; NULL: no such column. */
+const char *mpsi_material_history_field(const mps_material *material, int32_t index);
 /* True: a frictional law with a gap between its grains; its history has plastic_strain and opening.
  */
 bool mpsi_material_opens(const mps_material *material);
@@ -64,6 +67,11 @@ bool mpsi_material_opens(const mps_material *material);
 void mpsi_material_sand_columns(const mps_material *material, int32_t *strain, int32_t *gap);
 /* True: such a law with plastic dilation, an angle above 0; of a user's law it is unknown. */
 bool mpsi_material_dilates(const mps_material *material);
+/* True: its plastic dilation never ends. */
+bool mpsi_material_dilates_without_end(const mps_material *material);
+/* True: a law of the library that yields, of ground or metal, so that V/V0 is near 1 if all is
+ * well; not rubber, linear elasticity, fluids, users' laws and sand whose dilation has an end. */
+bool mpsi_material_keeps_volume(const mps_material *material);
 /* The volumetric strain that suits a law (MPS_MPM_VOLUMETRIC_BY_LAW of mps/mpm.h). */
 typedef enum mpsi_volume {
   MPSI_VOLUME_OWN,     /* each particle's own */

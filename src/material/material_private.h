@@ -30,6 +30,8 @@ typedef struct mpsi_law {
   double alpha, kappa, alpha_flow, cone, tension, q_tension;
   /* Mohr-Coulomb; cut: largest principal stress, infinite where the apex comes first. */
   double sin_phi, sin_psi, c_cos_phi, apex, cut;
+  /* Both: V/V0 without stress at which dilation ends; 0: it does not end. */
+  double loosest;
   /* Softening and rate: share of the strength that is left at last, exponent per plastic strain,
    * mu and 1/(reference rate); Mohr-Coulomb's slopes and cohesion, first and last. */
   double residual, per_strain, rate_factor, per_rate;
@@ -73,6 +75,8 @@ struct mps_material {
   char (*history_names)[MPSI_MATERIAL_NAME];
   char (*history_fields)[MPSI_MATERIAL_FIELD];
   double *history_initial;
+  mps_release_fn release; /* of a user's law or UMAT, with its `user` */
+  void *release_user;
   void *owned; /* data of law.user that the library allocated, freed with the material; or NULL */
   const double *owned_constants; /* in `owned`: those of a UMAT */
   int32_t owned_count;
@@ -93,8 +97,9 @@ mps_status mpsi_check_results(const mps_material_block *block, int32_t history_c
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
  * flags; adds to *plastic_strain, opens and closes the gap, and returns, where it has flags, the
- * part of the step's volume strain that is not that of the grains. */
-int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
+ * part of the step's volume strain that is not that of the grains. Dilation does not take the mean
+ * stress below `least` (Pa): mpsi_least_mean. */
+int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double least, double *stress,
                                  double *plastic_strain, double *gap, double *opened);
 
 /* State of one particle of Cam-Clay. */
@@ -109,6 +114,8 @@ int64_t mpsi_cam_clay_step(const mpsi_law *law, int32_t dim, const double *d, do
 
 /* K0 of its one-dimensional virgin compression. */
 double mpsi_cam_clay_k0(const mpsi_law *law);
+/* M^2 in the direction of the deviator s (6, Pa) of the size q. */
+double mpsi_cam_clay_slope2(const mpsi_law *law, const double *s, double q);
 
 /* Columns of the factors of stiffness and strength. */
 enum { MPSI_FACTORS = 2 };
@@ -126,7 +133,15 @@ double mpsi_rate_factor(const mpsi_law *law, double rate);
 double mpsi_soften_mises(const mpsi_law *law, double trial, double strength,
                          double *plastic_strain);
 /* mpsi_mohr_coulomb_return with the strength of the plastic strain after the step. */
-int64_t mpsi_soften_mohr_coulomb(const mpsi_law *law, int32_t dim, double rate, double *stress,
-                                 double *plastic_strain, double *gap, double *opened);
+int64_t mpsi_soften_mohr_coulomb(const mpsi_law *law, int32_t dim, double rate, double least,
+                                 double *stress, double *plastic_strain, double *gap,
+                                 double *opened);
+
+/* Mean stress (Pa) below which ground of the volume V/V0 does not get by dilation. Without its
+ * stress it would have the volume V/V0 exp(-p/K), which neither elastic strain nor a gap changes:
+ * it grows by dilation alone, up to that of the loosest state. */
+static inline double mpsi_least_mean(const mpsi_law *law, double volume_ratio) {
+  return law->loosest > 0.0 ? law->bulk * log(volume_ratio / law->loosest) : -INFINITY;
+}
 
 #endif

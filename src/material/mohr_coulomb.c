@@ -199,18 +199,48 @@ static void hold_open(const mpsi_law *law, double mean, double *s) {
   for (int i = 0; i < 3; i++) s[i] = p + share * (s[i] - mean);
 }
 
+static double mean_of(const double *s) { return (s[0] + s[1] + s[2]) / 3.0; }
+
+/* The return with an end of dilation: where the flow by psi takes the mean stress below `least`, it
+ * goes by the angle between 0 and psi that takes it there. The mean stress falls with the angle. */
+static int64_t return_to_end(const mpsi_law *law, double least, double *s) {
+  const double close = 1e-15 * law->bulk, trial[3] = {s[0], s[1], s[2]};
+  int64_t flags = return_principal(law, s);
+  if (!(law->loosest > 0.0) || flags == 0 || flags & MPS_MATERIAL_FLAG_APEX) return flags;
+  double high = law->sin_psi, f_high = mean_of(s) - least, low = 0.0, f_low = 0.0;
+  if (f_high >= -close) return flags;
+  mpsi_law part = *law;
+  for (int i = 0; i < 100; i++) { /* no dilation first, then Illinois */
+    const double x = i == 0 ? 0.0 : low - f_low * (high - low) / (f_high - f_low);
+    part.sin_psi = x;
+    for (int c = 0; c < 3; c++) s[c] = trial[c];
+    flags = return_principal(&part, s);
+    const double f = mean_of(s) - least;
+    if (fabs(f) <= close || (i == 0 && f < 0.0)) break;
+    if (f > 0.0) {
+      low = x, f_low = f;
+      if (i > 0) f_high *= 0.5;
+    } else {
+      high = x, f_high = f;
+      f_low *= 0.5;
+    }
+  }
+  return flags;
+}
+
 /* The return with the gap: compression closes it before the mean stress falls below 0; the volume
  * strain of a return to the apex, or to the cut-off along all axes, opens it. A crack along one or
  * two axes has no gap. *opened: volume strain that is not that of the grains. */
-static int64_t return_with_gap(const mpsi_law *law, double *s, double *gap, double *opened) {
-  const double mean = (s[0] + s[1] + s[2]) / 3.0, closed = mean + law->bulk * *gap;
+static int64_t return_with_gap(const mpsi_law *law, double least, double *s, double *gap,
+                               double *opened) {
+  const double mean = mean_of(s), closed = mean + law->bulk * *gap;
   const bool open = *gap > 0.0 && closed > 0.0;
   int64_t flags = MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
   if (open) {
     hold_open(law, mean, s);
   } else {
     for (int i = 0; i < 3; i++) s[i] += law->bulk * *gap;
-    const int64_t yields = return_principal(law, s);
+    const int64_t yields = return_to_end(law, least, s);
     *opened = -*gap;
     if (!(yields & MPS_MATERIAL_FLAG_APEX)) {
       if (*gap == 0.0) return yields;
@@ -218,19 +248,19 @@ static int64_t return_with_gap(const mpsi_law *law, double *s, double *gap, doub
       return flags;
     }
   }
-  *opened = (mean - (s[0] + s[1] + s[2]) / 3.0) * law->per_bulk;
+  *opened = (mean - mean_of(s)) * law->per_bulk;
   *gap = open || s[0] == s[2] ? fmax(0.0, *gap + *opened) : 0.0;
   return flags;
 }
 
-int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
+int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double least, double *stress,
                                  double *plastic_strain, double *gap, double *opened) {
   const principal trial = dim == 3 ? split_space(stress) : split_plane(stress);
   int rank[3];
   double s[3], before[3], value[3];
   order(trial.value, rank);
   for (int i = 0; i < 3; i++) before[i] = s[i] = trial.value[rank[i]];
-  const int64_t flags = return_with_gap(law, s, gap, opened);
+  const int64_t flags = return_with_gap(law, least, s, gap, opened);
   if (flags == 0) return 0;
   for (int i = 0; i < 3; i++) value[rank[i]] = s[i];
   *plastic_strain += plastic_increment(law, before, s);

@@ -6,10 +6,11 @@
 #include "material_private.h"
 
 #include <mps/soil.h>
+#include <mps/experimental/material_point.h>
 
 mps_status mps_material_point_init(mps_context *context, const mps_material *material,
                                    mps_material_point *point) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!material || !point)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      material ? "point" : "material");
@@ -41,44 +42,61 @@ static mps_status check_drive(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-mps_status mps_material_point_drive(mps_context *context, const mps_material *material,
-                                    mps_material_point *point, const double gradient[9],
-                                    double duration, int64_t steps) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  const mps_status status =
-      check_drive(context, __func__, material, point, gradient, duration, steps);
-  if (status != MPS_OK) return status;
-  mps_material_point now = *point; /* the caller's point changes only when every step succeeds */
+/* What is too large for the stack of a host's thread. */
+typedef struct drive {
+  mps_material_point now; /* the caller's point changes only when every step succeeds */
   double *history[MPS_MATERIAL_POINT_HISTORY];
+} drive;
+
+static mps_status follow(mps_context *context, const char *function, const mps_material *material,
+                         mps_material_point *point, const double gradient[9], double duration,
+                         int64_t steps, drive *d) {
+  mps_material_point *now = &d->now;
+  *now = *point;
   char message[MPSI_MATERIAL_MESSAGE] = "";
   int64_t refused = -1;
   mps_material_block block = {.struct_size = sizeof block,
                               .dim = 3,
                               .count = 1,
                               .dt = duration / (double)steps,
-                              .history = history,
+                              .history = d->history,
                               .history_count = material->history_count,
                               .message = message,
                               .message_size = sizeof message,
                               .refused = &refused,
-                              .volume_ratio = &now.volume_ratio,
-                              .flags = &now.flags};
+                              .volume_ratio = &now->volume_ratio,
+                              .flags = &now->flags};
   for (int c = 0; c < 9; c++) {
     block.gradient[c] = &gradient[c];
-    block.deformation[c] = &now.deformation[c];
+    block.deformation[c] = &now->deformation[c];
   }
-  for (int c = 0; c < 6; c++) block.stress[c] = &now.stress[c];
-  for (int32_t c = 0; c < material->history_count; c++) history[c] = &now.history[c];
+  for (int c = 0; c < 6; c++) block.stress[c] = &now->stress[c];
+  for (int32_t c = 0; c < material->history_count; c++) d->history[c] = &now->history[c];
   for (int64_t step = 0; step < steps; step++) {
     block.time = point->time + duration * (double)(step + 1) / (double)steps;
     mps_status answer = mpsi_material_apply(material, &block);
     if (answer == MPS_OK) answer = mpsi_check_results(&block, material->history_count);
     if (answer != MPS_OK)
-      return mpsi_material_refused(context, __func__, material, answer, message, -1, step);
+      return mpsi_material_refused(context, function, material, answer, message, -1, step);
   }
-  now.time = point->time + duration;
-  *point = now;
+  now->time = point->time + duration;
+  *point = *now;
   return MPS_OK;
+}
+
+mps_status mps_material_point_drive(mps_context *context, const mps_material *material,
+                                    mps_material_point *point, const double gradient[9],
+                                    double duration, int64_t steps) {
+  if (!context) return mpsi_null(__func__, "context");
+  const mps_status status =
+      check_drive(context, __func__, material, point, gradient, duration, steps);
+  if (status != MPS_OK) return status;
+  drive *d = mpsi_alloc(context, 1, sizeof *d);
+  if (!d) return mpsi_fail_memory(context, __func__, sizeof *d);
+  const mps_status answer =
+      follow(context, __func__, material, point, gradient, duration, steps, d);
+  mpsi_free(context, d);
+  return answer;
 }
 
 /* ---- given stresses -------------------------------------------------------------------------- */
@@ -92,6 +110,7 @@ typedef struct control {
   mps_context *context;
   const mps_material *material;
   const mps_material_point *start;
+  mps_material_point *other; /* for differences */
   double gradient[9], dt;
   int n, component[COMPONENTS]; /* of the stress */
   double target[COMPONENTS];    /* of these, Pa */
@@ -174,11 +193,10 @@ static bool solve_shortest(int n, double (*a)[COMPONENTS], double *x) {
 static mps_status find_direction(const control *c, const double *rate, const double *miss,
                                  double *direction, bool *found) {
   double matrix[COMPONENTS][COMPONENTS] = {{0.0}}, other[COMPONENTS], moved[COMPONENTS], size;
-  mps_material_point point;
   memcpy(moved, rate, sizeof moved);
   for (int k = 0; k < c->n; k++) {
     moved[k] = rate[k] + c->small;
-    const mps_status status = try_rates(c, moved, &point, other, &size);
+    const mps_status status = try_rates(c, moved, c->other, other, &size);
     if (status != MPS_OK) return status;
     for (int i = 0; i < c->n; i++) matrix[i][k] = (other[i] - miss[i]) / (moved[k] - rate[k]);
     moved[k] = rate[k];
@@ -275,18 +293,20 @@ static mps_status take_step(control *c, double *rate, mps_material_point *point,
                    (long long)step, size, mps_material_name(c->material));
 }
 
-mps_status mps_material_point_control(mps_context *context, const mps_material *material,
-                                      mps_material_point *point, const double gradient[9],
-                                      uint32_t controlled, const double target[6], double duration,
-                                      int64_t steps, double found[9]) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  mps_status status = check_drive(context, function, material, point, gradient, duration, steps);
-  if (status == MPS_OK) status = check_targets(context, point, target, controlled);
-  if (status != MPS_OK) return status;
-  mps_material_point now = *point, next = *point;
+/* `room`: the points before and after a step, and one for differences. */
+static mps_status follow_targets(mps_context *context, const mps_material *material,
+                                 mps_material_point *point, const double gradient[9],
+                                 uint32_t controlled, const double target[6], double duration,
+                                 int64_t steps, mps_material_point *room, double found[9]) {
+  mps_material_point *now = &room[0], *next = &room[1];
+  mps_status status = MPS_OK;
   double rate[COMPONENTS] = {0.0};
-  control c = {
-      .context = context, .material = material, .start = &now, .dt = duration / (double)steps};
+  control c = {.context = context,
+               .material = material,
+               .start = now,
+               .other = &room[2],
+               .dt = duration / (double)steps};
+  *now = *next = *point;
   memcpy(c.gradient, gradient, sizeof c.gradient);
   for (int k = 0; k < COMPONENTS; k++) {
     if (!(controlled >> k & 1)) continue;
@@ -300,12 +320,28 @@ mps_status mps_material_point_control(mps_context *context, const mps_material *
       const int a = c.component[k];
       c.target[k] = point->stress[a] + share * (target[a] - point->stress[a]);
     }
-    status = mpsi_as(context, function, take_step(&c, rate, &next, step));
+    status = mpsi_as(context, function, take_step(&c, rate, next, step));
     if (status != MPS_OK) return status;
-    now = next;
+    *now = *next;
   }
-  now.time = point->time + duration;
+  now->time = point->time + duration;
   if (found) build_gradient(&c, rate, found);
-  *point = now;
+  *point = *now;
   return MPS_OK;
+}
+
+mps_status mps_material_point_control(mps_context *context, const mps_material *material,
+                                      mps_material_point *point, const double gradient[9],
+                                      uint32_t controlled, const double target[6], double duration,
+                                      int64_t steps, double found[9]) {
+  if (!context) return mpsi_null(__func__, "context");
+  mps_status status = check_drive(context, function, material, point, gradient, duration, steps);
+  if (status == MPS_OK) status = check_targets(context, point, target, controlled);
+  if (status != MPS_OK) return status;
+  mps_material_point *room = mpsi_alloc(context, 3, sizeof *room); /* too large for a small stack */
+  if (!room) return mpsi_fail_memory(context, function, 3 * sizeof *room);
+  status = follow_targets(context, material, point, gradient, controlled, target, duration, steps,
+                          room, found);
+  mpsi_free(context, room);
+  return status;
 }

@@ -26,17 +26,6 @@ typedef struct umat_law {
   double props[]; /* props_count, and behind them, for comparison, temperature and length */
 } umat_law;
 
-static const mps_material_umat_def umat_defaults = {.name = "umat",
-                                                    .wave_modulus = NAN,
-                                                    .length = 1.0,
-                                                    .keeps_strain = 1,
-                                                    .bulk_modulus = NAN,
-                                                    .shear_modulus = NAN};
-
-mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_material_umat_def, def, size, &umat_defaults);
-}
-
 /* ---- arguments --------------------------------------------------------------------------------
  * Matrices are Fortran's: element (i, j) at i + 3 j. Symmetric tensors are 11, 22, 33, 12, 13, 23,
  * which is the order of our columns; strains have engineering shear. */
@@ -145,6 +134,7 @@ static const char *call_umat(const umat_law *law, const mps_material_block *bloc
             &law->statev_count, law->props, &law->props_count, point->at, point->rotation, &factor,
             &law->length, point->before, point->after, &point->number, &one, &one, &one, step,
             &point->step, sizeof law->name);
+  if (factor == 0.0) return "the UMAT has ended the analysis (XIT, or a PNEWDT of 0)";
   if (factor < 1.0) return "the UMAT requests a smaller step (PNEWDT)";
   double sum = 0.0;
   for (int c = 0; c < ntens; c++) sum += fabs(point->stress[c]);
@@ -174,28 +164,6 @@ static mps_status update(void *user, const mps_material_block *block) {
 
 /* ---- creation -------------------------------------------------------------------------------- */
 
-static mps_status check_umat(mps_context *context, const char *function,
-                             const mps_material_umat_def *def) {
-  if (!def->umat) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "umat is NULL");
-  if (def->keeps_strain != 0 && def->keeps_strain != 1)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "keeps_strain is %d, must be 0 or 1",
-                     (int)def->keeps_strain);
-  if (def->statev_count < 0 || def->statev_count > STATEV_MOST)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "statev_count is %d, must be 0..%d",
-                     (int)def->statev_count, STATEV_MOST);
-  if (def->props_count < 0 || (def->props_count > 0 && !def->props))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "props_count is %d, must be >= 0%s",
-                     (int)def->props_count, def->props ? "" : ", and 0 where props is NULL");
-  for (int32_t c = 0; c < def->props_count; c++)
-    if (!isfinite(def->props[c]))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "props[%d] is %g, must be finite",
-                       (int)c, def->props[c]);
-  if (!isfinite(def->temperature))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "temperature is %g, must be finite",
-                     def->temperature);
-  return mpsi_check_range(context, function, "length", def->length, MPSI_RANGE_LENGTH);
-}
-
 static void fill_law(const mps_material_umat_def *def, umat_law *law) {
   law->call = def->umat;
   memset(law->name, ' ', sizeof law->name);
@@ -211,43 +179,50 @@ static void fill_law(const mps_material_umat_def *def, umat_law *law) {
   law->props[def->props_count + 1] = def->length;
 }
 
-/* The user's law that `update` is, with its columns of history: checks what is common to both. */
-static mps_status make_law(mps_context *context, const char *function,
-                           const mps_material_umat_def *def, mps_material **out) {
+/* Names and first values of the columns of history. */
+typedef struct columns {
   const char *names[STATEV_MOST + KEPT];
   char numbered[STATEV_MOST][24];
-  double initial[STATEV_MOST + KEPT] = {0.0};
+  double initial[STATEV_MOST + KEPT];
+} columns;
+
+/* The user's law that `update` is, with its columns of history: checks the names. */
+static mps_status make_law(mps_context *context, const char *function,
+                           const mps_material_umat_def *def, mps_material **out) {
+  columns *c = mpsi_alloc(context, 1, sizeof *c);
+  if (!c) return mpsi_fail_memory(context, function, sizeof *c);
   mps_material_user_def law = mps_material_user_defaults();
   law.history_count = def->statev_count + (def->keeps_strain ? KEPT : STRAIN);
   law.update = update;
   law.name = def->name;
-  law.history = names;
-  law.history_initial = initial;
+  law.history = c->names;
+  law.history_initial = c->initial;
   law.wave_modulus = def->wave_modulus;
   law.bulk_modulus = def->bulk_modulus;
   law.shear_modulus = def->shear_modulus;
   law.needs_deformation = def->needs_deformation;
-  for (int32_t c = 0; c < law.history_count; c++) {
-    if (c >= def->statev_count) {
-      names[c] = kept_names[c - def->statev_count];
+  for (int32_t k = 0; k < law.history_count; k++) {
+    if (k >= def->statev_count) {
+      c->names[k] = kept_names[k - def->statev_count];
       continue;
     }
-    (void)snprintf(numbered[c], sizeof numbered[c], "statev_%d", (int)c + 1);
-    names[c] = def->statev_names ? def->statev_names[c] : numbered[c];
-    if (def->statev_initial) initial[c] = def->statev_initial[c];
+    (void)snprintf(c->numbered[k], sizeof c->numbered[k], "statev_%d", (int)k + 1);
+    c->names[k] = def->statev_names ? def->statev_names[k] : c->numbered[k];
+    if (def->statev_initial) c->initial[k] = def->statev_initial[k];
   }
-  return mpsi_material_make_user(context, function, &law, out);
+  const mps_status status = mpsi_material_make_user(context, function, &law, out);
+  mpsi_free(context, c);
+  return status;
 }
 
 mps_status mps_material_create_umat(mps_context *context, const mps_material_umat_def *user_def,
                                     mps_material **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_material_umat_def def = umat_defaults;
+  mps_material_umat_def def = mps_material_umat_defaults();
   mps_material *material = NULL;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_material_umat_def, user_def, &def);
-  if (status == MPS_OK) status = check_umat(context, __func__, &def);
   if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
   if (status != MPS_OK) return status;
   const size_t size = sizeof(umat_law) + ((size_t)def.props_count + 2) * sizeof(double);
@@ -258,6 +233,8 @@ mps_status mps_material_create_umat(mps_context *context, const mps_material_uma
   }
   fill_law(&def, law);
   material->law.user = material->owned = law;
+  material->release = def.release;
+  material->release_user = def.user;
   material->owned_constants = law->props;
   material->owned_count = law->props_count + 2;
   *out = material;

@@ -287,7 +287,7 @@ static mps_status create(mps_context *context, const char *function, MPI_Comm co
   def.reduce_sum = reduce_sum;
   if (in_parts()) def.max_begin = max_begin, def.max_end = max_end;
   def.max_leave = max_leave;
-  def.destroy = destroy;
+  def.release = destroy;
   const mps_status status = mps_domain_create(context, &def, out);
   if (status != MPS_OK) destroy(t);
   return status;
@@ -296,7 +296,9 @@ static mps_status create(mps_context *context, const char *function, MPI_Comm co
 mps_status mps_petsc_domain_create_c2f(mps_context *context, int32_t communicator,
                                        mps_domain **out) {
   int running = 0, ended = 0;
-  if (!context || !out) return MPS_ERROR_ARGUMENT;
+  if (!context || !out)
+    return mps_context_set_error(context, MPS_ERROR_ARGUMENT, __func__,
+                                 context ? "out is NULL" : "context is NULL");
   *out = NULL;
   if (MPI_Initialized(&running) != 0 || MPI_Finalized(&ended) != 0 || !running || ended)
     return mps_context_set_error(context, MPS_ERROR_STATE, __func__,
@@ -307,7 +309,9 @@ mps_status mps_petsc_domain_create_c2f(mps_context *context, int32_t communicato
 }
 
 mps_status mps_petsc_domain_create_world(mps_context *context, mps_domain **out) {
-  if (!context || !out) return MPS_ERROR_ARGUMENT;
+  if (!context || !out)
+    return mps_context_set_error(context, MPS_ERROR_ARGUMENT, __func__,
+                                 context ? "out is NULL" : "context is NULL");
   *out = NULL;
   const mps_status status = mpsi_petsc_enter();
   return status == MPS_OK

@@ -103,14 +103,10 @@ static mps_status create(mps_context *context, const char *function, int32_t met
   s->method = method;
   s->patience = PATIENCE;
   (void)PetscOptionsGetReal(NULL, "mps_", "-patience", &s->patience, NULL);
-  s->counts = calloc(2 * (size_t)s->size, sizeof *s->counts);
-  s->places = s->counts ? s->counts + s->size : NULL;
   *out = s;
   mpsi_petsc_listen();
-  status = agree(s, "no memory is left", s->counts ? MPS_OK : MPS_ERROR_MEMORY);
-  if (status == MPS_OK)
-    status = agree(s, "PETSc lacks the method or refuses an option",
-                   configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
+  status = agree(s, "PETSc lacks the method or refuses an option",
+                 configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
   if (status != MPS_OK) mps_petsc_solver_destroy(out);
   return status;
 }
@@ -118,7 +114,7 @@ static mps_status create(mps_context *context, const char *function, int32_t met
 static mps_status check(mps_context *context, const char *function, int32_t method,
                         mps_petsc_solver **out) {
   char line[80];
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mps_context_set_error(NULL, MPS_ERROR_ARGUMENT, function, "context is NULL");
   if (!out) return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, "out is NULL");
   *out = NULL;
   snprintf(line, sizeof line, "method is %d, allowed are 0 and 1", method);
@@ -152,15 +148,6 @@ mps_status mps_petsc_solver_create_c2f(mps_context *context, int32_t method, int
              : status;
 }
 
-mps_status mpsi_petsc_refuse_ranks(const mps_petsc_solver *s, const char *function, int32_t ranks) {
-  char line[160];
-  snprintf(line, sizeof line,
-           "the solver is of %d processes, of which this is %d: they must be the %d ranks of the "
-           "domain in their order",
-           s->size, s->rank, (int)ranks);
-  return mps_context_set_error(s->context, MPS_ERROR_ARGUMENT, function, line);
-}
-
 static void drop(mps_petsc_solver *s) {
   (void)MatDestroy(&s->matrix);
   (void)VecDestroy(&s->x);
@@ -178,7 +165,6 @@ void mps_petsc_solver_destroy(mps_petsc_solver **solver) {
   (void)KSPDestroy(&s->ksp);
   drop(s);
   (void)MPI_Comm_free(&s->comm);
-  free(s->counts);
   free(s);
   mpsi_petsc_leave();
 }
@@ -192,7 +178,7 @@ typedef struct indices {
   PetscInt *copy;         /* or a copy */
 } indices;
 
-static mps_status convert(const mpsi_petsc_matrix *a, indices *x) {
+static mps_status convert(const mps_linear_matrix *a, indices *x) {
   const int64_t entries = a->start[a->rows];
   if (entries > PETSC_MAX_INT) return MPS_ERROR_UNSUPPORTED;
   x->start = malloc((size_t)(a->rows + 1) * sizeof *x->start);
@@ -216,7 +202,7 @@ static bool fill(Mat matrix, const indices *x, const double *value) {
 
 /* Orthonormal, as PETSc requires null spaces; motions that supports leave nothing of are left out.
  */
-static bool add_modes(const mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
+static bool add_modes(const mps_petsc_solver *s, const mps_linear_matrix *a) {
   Vec mode[6] = {NULL};
   PetscInt found = 0;
   MatNullSpace space = NULL;
@@ -247,20 +233,13 @@ static bool add_modes(const mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   return good;
 }
 
-static bool make_vector(const mps_petsc_solver *s, const mpsi_petsc_matrix *a, Vec *v) {
+static bool make_vector(const mps_petsc_solver *s, const mps_linear_matrix *a, Vec *v) {
   const PetscInt block = (PetscInt)a->block, rows = (PetscInt)a->rows, all = (PetscInt)a->all;
   if (s->size > 1) return VecCreateMPIWithArray(s->comm, block, rows, all, NULL, v) == 0;
   return VecCreateSeqWithArray(s->comm, block, rows, NULL, v) == 0;
 }
 
-/* Where the parts of the ranks lie in a whole vector. */
-static bool share_places(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
-  const int own[2] = {(int)a->rows, (int)a->first};
-  return MPI_Allgather(&own[0], 1, MPI_INT, s->counts, 1, MPI_INT, s->comm) == 0 &&
-         MPI_Allgather(&own[1], 1, MPI_INT, s->places, 1, MPI_INT, s->comm) == 0;
-}
-
-static bool make_matrix(mps_petsc_solver *s, const mpsi_petsc_matrix *a, const indices *x) {
+static bool make_matrix(mps_petsc_solver *s, const mps_linear_matrix *a, const indices *x) {
   const PetscInt rows = (PetscInt)a->rows, all = (PetscInt)a->all, block = (PetscInt)a->block;
   const int64_t former = s->all;
   drop(s);
@@ -270,7 +249,7 @@ static bool make_matrix(mps_petsc_solver *s, const mpsi_petsc_matrix *a, const i
       MatSetType(s->matrix, s->size > 1 ? MATMPIAIJ : MATSEQAIJ) == 0 &&
       MatSetBlockSize(s->matrix, block) == 0 && fill(s->matrix, x, a->value) &&
       MatSetOption(s->matrix, MAT_SPD, PETSC_TRUE) == 0 && (a->modes == 0 || add_modes(s, a)) &&
-      make_vector(s, a, &s->x) && make_vector(s, a, &s->b) && share_places(s, a);
+      make_vector(s, a, &s->x) && make_vector(s, a, &s->b);
   if (good && (s->forgets || a->all != former || a->rows != s->rows || a->modes != s->modes)) {
     s->forgets = false;
     s->modes = a->modes;
@@ -282,7 +261,7 @@ static bool make_matrix(mps_petsc_solver *s, const mpsi_petsc_matrix *a, const i
 
 void mpsi_petsc_forget(mps_petsc_solver *s) { s->forgets = true; }
 
-mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
+mps_status mpsi_petsc_take(mps_petsc_solver *s, const mps_linear_matrix *a) {
   indices x = {NULL, NULL, NULL};
   if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   mpsi_petsc_listen();
@@ -294,7 +273,7 @@ mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   free(x.copy);
   if (status != MPS_OK) return status;
   s->fresh = false;
-  s->all = a->all, s->first = a->first, s->rows = a->rows;
+  s->all = a->all, s->rows = a->rows;
   return MPS_OK;
 }
 
@@ -349,20 +328,17 @@ mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double toleran
   if (s->all == 0) return MPS_ERROR_STATE;
   if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   mpsi_petsc_listen();
-  for (int64_t i = s->first; i < s->first + s->rows; i++) mine = mine && b[i] == 0.0;
+  for (int64_t i = 0; i < s->rows; i++) mine = mine && b[i] == 0.0;
   if (MPI_Allreduce(&mine, &nothing, 1, MPI_INT, MPI_LAND, s->comm) != 0) return MPS_ERROR_IO;
   if (nothing) {
-    for (int64_t i = 0; i < s->all; i++) x[i] = 0.0;
+    for (int64_t i = 0; i < s->rows; i++) x[i] = 0.0;
     return MPS_OK;
   }
-  if (VecPlaceArray(s->b, b + s->first) != 0 || VecPlaceArray(s->x, x + s->first) != 0)
-    return MPS_ERROR_INTERNAL;
+  if (VecPlaceArray(s->b, b) != 0 || VecPlaceArray(s->x, x) != 0) return MPS_ERROR_INTERNAL;
   /* Slightly below the tolerance: the norm that the iteration carries on drifts. */
   const mps_status status = agree(s, "PETSc has failed, or its iterations do not converge",
                                   solve(s, 0.9 * tolerance, iterations));
   (void)VecResetArray(s->b);
   (void)VecResetArray(s->x);
-  if (status != MPS_OK || s->size == 1) return status;
-  return MPSI_PETSC_STATUS(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, s->counts,
-                                          s->places, MPI_DOUBLE, s->comm));
+  return status;
 }

@@ -18,32 +18,18 @@ struct mps_petsc_solver {
   KSP ksp;
   Mat matrix; /* the last one */
   Vec x, b;   /* without values of their own */
-  int64_t all, first, rows;
-  int *counts, *places; /* of the parts of all ranks */
+  int64_t all, rows;
   bool forgets;         /* the next matrix is as the first one */
   int32_t modes;        /* of the last one */
   bool fresh;           /* the preconditioner is of the last matrix */
   PetscInt first_count; /* iterations of its first solution, when it was fresh */
 };
 
-/* Rows [first, first + rows) of A, with both halves, ascending columns and the diagonal; it is
- * copied. Collective, as the solution is. */
-typedef struct mpsi_petsc_matrix {
-  int64_t all, first, rows, block; /* block: rows of a node, which follow one another */
-  const int64_t *start;
-  const int32_t *column;
-  const double *value;
-  int32_t modes;      /* motions that cost hardly any energy; 0: constants */
-  const double *mode; /* `rows` values each */
-} mpsi_petsc_matrix;
-
-/* The record of a solver whose processes are not the ranks of what it is to solve. */
-mps_status mpsi_petsc_refuse_ranks(const mps_petsc_solver *s, const char *function, int32_t ranks);
-mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a);
+/* The matrix is copied. Collective, as the solution is. */
+mps_status mpsi_petsc_take(mps_petsc_solver *s, const mps_linear_matrix *a);
 /* Nothing of former equations serves any more. */
 void mpsi_petsc_forget(mps_petsc_solver *s);
-/* x holds a start and receives the solution, both of all rows: |b - A x| <= tolerance |b|. Of b and
- * of the start only this rank's rows are read. */
+/* This rank's rows: x holds a start and receives the solution, |b - A x| <= tolerance |b|. */
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations);
 

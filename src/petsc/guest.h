@@ -6,7 +6,7 @@
 #include <petscksp.h>
 #include <petscsf.h>
 
-#include <mps/petsc.h>
+#include <mps/experimental/petsc.h>
 
 /* The status of a call of MPI or PETSc. */
 #define MPSI_PETSC_STATUS(call) ((call) == 0 ? MPS_OK : MPS_ERROR_IO)

@@ -7,17 +7,17 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "record_private.h"
 
-#define GAL 0.01             /* m/s2 */
 #define HEADER_LINES_MAX 64  /* some writers add lines */
 #define COUNT_MAX 2147483648 /* of an instrument of at most 32 bits */
 
 typedef struct header {
-  double frequency, duration, scale; /* Hz; s, 0 where not given; m/s2 for each count */
+  double frequency, duration, scale; /* Hz; s, 0 where not given; gal for each count */
 } header;
 
 bool mpsi_knet_matches(mpsi_text text) {
-  mpsi_slice line;
-  return mpsi_text_line(&text, &line) && mpsi_slice_starts(line, "Origin Time", NULL);
+  mpsi_slice line, after;
+  return mpsi_text_line(&text, &line) && mpsi_slice_starts(line, "Origin Time", &after) &&
+         !mpsi_slice_starts(after, ",", NULL); /* of a table with such lines before it */
 }
 
 /* The value of a header line that begins with `name` and perhaps a unit, as in "Duration Time(s)".
@@ -53,7 +53,7 @@ static mps_status read_scale(const mpsi_text *text, mpsi_slice value, double *sc
                           mpsi_slice_quote(unit).text);
   if ((status = positive(text, "the divisor of Scale Factor", &value, &counts)) != MPS_OK)
     return status;
-  *scale = gal / counts * GAL;
+  *scale = gal / counts;
   if (!isfinite(*scale) || *scale <= 0.0)
     return mpsi_text_fail(text, "Scale Factor is %g/%g, outside the range of a double", gal,
                           counts);
@@ -94,8 +94,12 @@ static mps_status check_duration(const mpsi_text *text, const header *h, int64_t
 }
 
 mps_status mpsi_knet_read(mpsi_text *text, mpsi_samples *samples) {
+  static const char gal[] = "gal";
   header h = {0};
   mps_status status = read_header(text, &h);
+  double step = 1.0 / h.frequency;
+  if (status == MPS_OK) status = mpsi_header_step(text, samples, &step);
+  samples->unit = mpsi_unit_find((mpsi_slice){gal, gal + 3});
   mpsi_slice line = {0}, word;
   while (status == MPS_OK && mpsi_text_word(text, &line, &word)) {
     double counts = 0.0;

@@ -1,16 +1,18 @@
-/* signal.c - functions of time: the object, its evaluation, and the analytic kinds (the Ricker
- * wavelet of Yoshida (9) with its integrals, sine, quintic ramp).
+/* signal.c - functions of time, motions and numbers: the object, its evaluation, and the analytic
+ * kinds (the Ricker wavelet of Yoshida (9) with its integrals, sine, quintic ramp).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
 #include "core/context/guard.h"
 #include "core/base/hash.h"
 #include "core/context/retain.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 #include <stdio.h>
 
 #define PI 3.14159265358979323846
+#define LARGEST 1e300      /* of |u|, |v|, |a|: factors of these stay finite */
+#define SHORTEST 1e-100    /* s, of a ramp, whose square is a divisor */
 #define FREQUENCY_MIN 1e-9 /* Hz: squares and their reciprocals stay far from overflow */
 #define FREQUENCY_MAX 1e9
 
@@ -38,7 +40,7 @@ void mps_signal_destroy(mps_signal **signal) {
   *signal = NULL;
   if (atomic_fetch_sub(&s->references, 1) != 1) return;
   mps_context *context = s->context;
-  if (s->release) s->release(s->user);
+  mpsi_release(s->release, s->user);
   mpsi_free(context, s->knots);
   mpsi_free(context, s);
   mpsi_context_release(context);
@@ -82,15 +84,48 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
   else if (signal)
     at = signal->at(signal, t);
   if (status != MPS_OK) return status;
+  if (signal && signal->value) at.v = at.a = 0.0;
   if (!isfinite(at.u) || !isfinite(at.v) || !isfinite(at.a)) {
     char what[160];
     describe(use, t, sizeof what, what);
-    status = mpsi_fail(use.context, use.function, MPS_ERROR_NUMERIC,
-                       "%s is u = %g m, v = %g m/s, a = %g m/s2: must be finite", what, at.u, at.v,
-                       at.a);
+    if (signal->value)
+      status = mpsi_fail(use.context, use.function, MPS_ERROR_NUMERIC, "%s is %g: must be finite",
+                         what, at.u);
+    else
+      status = mpsi_fail(use.context, use.function, MPS_ERROR_NUMERIC,
+                         "%s is u = %g m, v = %g m/s, a = %g m/s2: must be finite", what, at.u,
+                         at.v, at.a);
     return fail_use(use, status);
   }
   *out = at;
+  return MPS_OK;
+}
+
+mps_status mpsi_signal_factor(const mps_signal *signal, mpsi_signal_use use, double t,
+                              double *out) {
+  mpsi_signal_motion at = {.u = 1.0};
+  const mps_status status = signal ? mpsi_signal_evaluate(signal, use, t, &at) : MPS_OK;
+  if (status == MPS_OK) *out = at.u;
+  return status;
+}
+
+mps_status mpsi_signal_check(mps_context *context, const char *function, mpsi_signal_role role,
+                             int count, mps_signal *const *signal) {
+  for (int c = 0; c < count; c++) {
+    char component[16] = "";
+    if (count > 1) (void)snprintf(component, sizeof component, "[%d]", c);
+    if (!signal[c] || signal[c]->value == (role == MPSI_SIGNAL_NUMBER)) continue;
+    if (role == MPSI_SIGNAL_NUMBER)
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "signal%s is a motion, and a factor in time is a number: create it with "
+                       "MPS_SIGNAL_QUANTITY_VALUE",
+                       component);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "signal%s is a number in time (MPS_SIGNAL_QUANTITY_VALUE), and what moves "
+                     "needs a motion: create it with MPS_SIGNAL_QUANTITY_DISPLACEMENT, _VELOCITY "
+                     "or _ACCELERATION",
+                     component);
+  }
   return MPS_OK;
 }
 
@@ -99,16 +134,16 @@ bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->f
 /* Continues `hash` (core/base/hash.h) over the constants of a signal and samples of its motion. A
  * function of the caller adds its kind alone: its address differs between processes. */
 static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
-  const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;
+  const double kind = !signal ? 0.0 : (signal->fn ? 1.0 : 2.0) + (signal->value ? 2.0 : 0.0);
   hash = mpsi_hash(hash, &kind, sizeof kind);
-  if (kind < 2.0) return hash;
+  if (!signal || signal->fn) return hash;
   for (double t = 0.1; t < 20.0; t *= 5.0) { /* they distinguish the kinds */
     const mpsi_signal_motion m = signal->at(signal, t);
     const double sample[3] = {m.u, m.v, m.a};
     hash = mpsi_hash(hash, sample, sizeof sample);
   }
-  const double numbers[] = {signal->start, signal->end,   signal->peak,  signal->amplitude,
-                            signal->rate,  signal->shift, signal->coast, (double)signal->count};
+  const double numbers[] = {signal->start, signal->end,   signal->amplitude, signal->rate,
+                            signal->shift, signal->coast, (double)signal->count};
   hash = mpsi_hash(hash, numbers, sizeof numbers);
   return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
 }
@@ -117,28 +152,31 @@ void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *sign
   mpsi_give(list, name, mpsi_hash_short(hash_of(signal, MPSI_HASH)));
 }
 
-/* For the public queries, which return no status: NaN where the signal fails or is not finite. */
-static mpsi_signal_motion motion(const mps_signal *signal, double t) {
+/* For the public queries, which return no status: NaN where the signal fails, is not finite, or is
+ * not of the kind that is asked for. */
+static mpsi_signal_motion look(const mps_signal *signal, bool value, double t) {
   const mpsi_signal_use use = {.owner = "caller", .number = -1, .component = -1};
   mpsi_signal_motion at = {NAN, NAN, NAN};
   if (!signal) return (mpsi_signal_motion){0};
-  if (isfinite(t)) (void)mpsi_signal_evaluate(signal, use, t, &at);
+  if (isfinite(t) && signal->value == value) (void)mpsi_signal_evaluate(signal, use, t, &at);
   return at;
 }
 
-double mps_signal_displacement(const mps_signal *signal, double t) { return motion(signal, t).u; }
+double mps_signal_displacement(const mps_signal *signal, double t) {
+  return look(signal, false, t).u;
+}
 
-double mps_signal_velocity(const mps_signal *signal, double t) { return motion(signal, t).v; }
+double mps_signal_velocity(const mps_signal *signal, double t) { return look(signal, false, t).v; }
 
-double mps_signal_acceleration(const mps_signal *signal, double t) { return motion(signal, t).a; }
+double mps_signal_acceleration(const mps_signal *signal, double t) {
+  return look(signal, false, t).a;
+}
+
+double mps_signal_value(const mps_signal *signal, double t) { return look(signal, true, t).u; }
 
 void mps_signal_span(const mps_signal *signal, double *start, double *end) {
   if (start) *start = signal ? signal->start : 0.0;
   if (end) *end = signal ? signal->end : 0.0;
-}
-
-double mps_signal_peak_acceleration(const mps_signal *signal) {
-  return signal ? signal->peak : 0.0;
 }
 
 static mpsi_signal_motion ricker_at(const mps_signal *signal, double t) {
@@ -173,13 +211,25 @@ static mpsi_signal_motion ramp_at(const mps_signal *signal, double t) {
 
 /* ---- the analytic kinds ---------------------------------------------------------------------- */
 
+/* Of what is given by a formula or a function: a motion with its derivatives, or a number. */
+static mps_status check_quantity(mps_context *context, const char *function, int32_t quantity) {
+  if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT || quantity == MPS_SIGNAL_QUANTITY_VALUE)
+    return MPS_OK;
+  return mpsi_fail(
+      context, function, MPS_ERROR_ARGUMENT,
+      "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_DISPLACEMENT (2), a motion, and "
+      "MPS_SIGNAL_QUANTITY_VALUE (3), a number",
+      quantity);
+}
+
 /* Checks shared by the analytic kinds; `peaks` are the largest |u|, |v|, |a| of the motion. */
-static mps_status check_motion(mps_context *context, const char *function, double amplitude,
-                               mpsi_signal_motion peaks) {
+static mps_status check_motion(mps_context *context, const char *function, int32_t quantity,
+                               double amplitude, mpsi_signal_motion peaks) {
   if (!isfinite(amplitude))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "amplitude is %g, must be finite",
                      amplitude);
-  if (!isfinite(peaks.u) || !isfinite(peaks.v) || !isfinite(peaks.a))
+  if (quantity == MPS_SIGNAL_QUANTITY_VALUE) peaks.v = peaks.a = 0.0;
+  if (!(peaks.u <= LARGEST) || !(peaks.v <= LARGEST) || !(peaks.a <= LARGEST))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "amplitude %g is too large: the motion overflows (peaks %g m, %g m/s, "
                      "%g m/s2)",
@@ -196,7 +246,7 @@ static mps_status check_frequency(mps_context *context, const char *function, do
 
 mps_status mps_signal_create_ricker(mps_context *context, double frequency, double peak_time,
                                     double amplitude, mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = check_frequency(context, __func__, frequency);
@@ -206,7 +256,9 @@ mps_status mps_signal_create_ricker(mps_context *context, double frequency, doub
                      "peak_time: peak time is %g s, must be finite and >= 0", peak_time);
   const double c = PI * frequency * PI * frequency, peak = fabs(amplitude);
   const mpsi_signal_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
-  if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
+  if ((status = check_motion(context, __func__, MPS_SIGNAL_QUANTITY_DISPLACEMENT, amplitude,
+                             peaks)) != MPS_OK)
+    return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->at = ricker_at;
@@ -214,47 +266,51 @@ mps_status mps_signal_create_ricker(mps_context *context, double frequency, doub
   signal->rate = c;
   signal->shift = peak_time;
   signal->end = peak_time + sqrt(40.0 / c);
-  signal->peak = peak;
   *out = signal;
   return MPS_OK;
 }
 
-mps_status mps_signal_create_sine(mps_context *context, double frequency, double amplitude,
-                                  double phase, mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+mps_status mps_signal_create_sine(mps_context *context, int32_t quantity, double frequency,
+                                  double amplitude, double phase, mps_signal **out) {
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_frequency(context, __func__, frequency);
+  mps_status status = check_quantity(context, __func__, quantity);
+  if (status == MPS_OK) status = check_frequency(context, __func__, frequency);
   if (status != MPS_OK) return status;
   if (!isfinite(phase))
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "phase is %g rad, must be finite",
                      phase);
   const double w = 2.0 * PI * frequency, peak = fabs(amplitude);
   const mpsi_signal_motion peaks = {.u = peak, .v = peak * w, .a = peak * (w * w)};
-  if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
+  if ((status = check_motion(context, __func__, quantity, amplitude, peaks)) != MPS_OK)
+    return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->at = sine_at;
+  signal->value = quantity == MPS_SIGNAL_QUANTITY_VALUE;
   signal->amplitude = amplitude;
   signal->rate = w;
   signal->shift = phase;
   signal->end = INFINITY;
-  signal->peak = peaks.a;
   *out = signal;
   return MPS_OK;
 }
 
-mps_status mps_signal_create_ramp(mps_context *context, double start, double duration,
-                                  double amplitude, mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+mps_status mps_signal_create_ramp(mps_context *context, int32_t quantity, double start,
+                                  double duration, double amplitude, mps_signal **out) {
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
+  mps_status status = check_quantity(context, __func__, quantity);
+  if (status != MPS_OK) return status;
   if (!isfinite(start))
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "start is %g s, must be finite", start);
-  if (!isfinite(duration) || duration <= 0.0 || !isfinite(start + duration) ||
+  if (!isfinite(duration) || duration < SHORTEST || !isfinite(start + duration) ||
       start + duration <= start)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "duration is %g s, must be finite, > 0 and not lost in rounding beside the "
+                     "duration is %g s, must be finite, > 0 (at least 1e-100) and not lost in "
+                     "rounding beside the "
                      "start %g s",
                      duration, start);
   /* y = 1 - x: v has its largest value at x = 1/2, a at x y = 1/6 */
@@ -262,16 +318,16 @@ mps_status mps_signal_create_ramp(mps_context *context, double start, double dur
   const mpsi_signal_motion peaks = {.u = peak,
                                     .v = peak * 1.875 / duration,
                                     .a = peak * (10.0 / sqrt(3.0)) / duration / duration};
-  const mps_status status = check_motion(context, __func__, amplitude, peaks);
+  status = check_motion(context, __func__, quantity, amplitude, peaks);
   if (status != MPS_OK) return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->at = ramp_at;
+  signal->value = quantity == MPS_SIGNAL_QUANTITY_VALUE;
   signal->amplitude = amplitude;
   signal->rate = duration;
   signal->start = start;
   signal->end = start + duration;
-  signal->peak = peaks.a;
   *out = signal;
   return MPS_OK;
 }
@@ -287,16 +343,19 @@ mps_status mpsi_signal_create_owned(mps_context *context, const char *function, 
   signal->user = user;
   signal->start = -INFINITY;
   signal->end = INFINITY;
-  signal->peak = NAN;
   *out = signal;
   return MPS_OK;
 }
 
-mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn, void *user,
-                                  mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+mps_status mps_signal_create_user(mps_context *context, int32_t quantity, mps_signal_fn fn,
+                                  void *user, mps_release_fn release, mps_signal **out) {
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
+  mps_status status = check_quantity(context, __func__, quantity);
+  if (status != MPS_OK) return status;
   if (!fn) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "fn is NULL");
-  return mpsi_signal_create_owned(context, __func__, fn, NULL, user, out);
+  status = mpsi_signal_create_owned(context, __func__, fn, release, user, out);
+  if (status == MPS_OK) (*out)->value = quantity == MPS_SIGNAL_QUANTITY_VALUE;
+  return status;
 }

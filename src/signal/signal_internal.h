@@ -28,6 +28,14 @@ typedef struct mpsi_signal_use {
  * signal, its owner and the time, and *out stays. */
 mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, double t,
                                 mpsi_signal_motion *out);
+/* Number at time t; 1 without a signal: a factor in time. Otherwise as mpsi_signal_evaluate. */
+mps_status mpsi_signal_factor(const mps_signal *signal, mpsi_signal_use use, double t, double *out);
+
+typedef enum mpsi_signal_role { MPSI_SIGNAL_NUMBER, MPSI_SIGNAL_MOTION } mpsi_signal_role;
+/* Checks that the signals (NULL: none) of a definition, its member `signal` of `count` components,
+ * are numbers, or motions. Every definition that takes signals asks here. */
+mps_status mpsi_signal_check(mps_context *context, const char *function, mpsi_signal_role role,
+                             int count, mps_signal *const *signal);
 /* Whether the caller may refuse: the signal is a function of the caller. NULL: no. */
 bool mpsi_signal_may_fail(const mps_signal *signal);
 /* A signal of a function, on behalf of the public `function`; `release` (NULL: none) is called with

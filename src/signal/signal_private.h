@@ -9,6 +9,9 @@
 
 #include <mps/signal.h>
 
+/* Times of a table (s): terms of its cubics stay finite. */
+#define MPSI_SIGNAL_LATEST 1e15
+
 /* Start of a cubic piece: u(t + s) = u + v s + a s^2/2 + j s^3/6 up to the next knot. */
 typedef struct mpsi_knot {
   double t, u, v, a, j;
@@ -19,11 +22,11 @@ struct mps_signal {
   atomic_int references;
   mpsi_signal_motion (*at)(const mps_signal *signal, double t); /* any finite t */
   double start, end;                                            /* s */
-  double peak;                                                  /* m/s2 */
+  bool value; /* a number, u of the motion, and no motion */
   /* The caller's own function; NULL: `at` is the motion. */
   mps_signal_fn fn;
   void *user;
-  void (*release)(void *user); /* NULL: the caller keeps `user` */
+  mps_release_fn release;
   /* The analytic kinds: amplitude, and c (1/s2) and tp (s) of a Ricker wavelet, the angular
    * frequency (rad/s) and the phase of a sine, or the duration (s) of a ramp. */
   double amplitude, rate, shift;
@@ -32,6 +35,8 @@ struct mps_signal {
   double knots_per_second;
   double coast; /* velocity after the table, m/s */
   mpsi_knot *knots;
+  /* Of a file; count 0: the signal is not of one. */
+  mps_signal_record_report record;
 };
 
 /* An empty signal of one owner, or NULL after recording that memory is short. */

@@ -3,6 +3,7 @@
  *   accelerations, linear between samples:  j = (a1 - a0)/h, and v, u by exact integration;
  *   velocities, linear between samples:     a = (v1 - v0)/h, j = 0, and u by exact integration;
  *   displacements, natural cubic spline:    a at the samples solves a tridiagonal system.
+ * A number is kept likewise as u, with the slope v = (u1 - u0)/h, or 0 where it changes in steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
@@ -43,7 +44,8 @@ static mpsi_signal_motion table_at(const mps_signal *signal, double t) {
                               .a = k->a + s * k->j};
 }
 
-/* ---- the three quantities -------------------------------------------------------------------- */
+/* ---- the quantities ---------------------------------------------------------------------------
+ */
 
 static void integrate_accelerations(mpsi_knot *knots, int64_t count, const double *values) {
   knots[0].a = values[0];
@@ -111,13 +113,20 @@ static mps_status fit_displacements(mps_context *context, const char *function, 
   return MPS_OK;
 }
 
+static void interpolate_values(mpsi_knot *knots, int64_t count, const double *values, bool steps) {
+  for (int64_t i = 0; i < count; i++) knots[i].u = values[i];
+  for (int64_t i = 0; !steps && i + 1 < count; i++)
+    knots[i].v = (values[i + 1] - values[i]) / (knots[i + 1].t - knots[i].t);
+}
+
 /* ---- creation -------------------------------------------------------------------------------- */
 
 static mps_status check_table(mps_context *context, const char *function, int32_t quantity,
                               int64_t count, const double *times, const double *values) {
-  if (quantity < MPS_SIGNAL_QUANTITY_ACCELERATION || quantity > MPS_SIGNAL_QUANTITY_DISPLACEMENT)
+  if (quantity < MPS_SIGNAL_QUANTITY_ACCELERATION || quantity > MPS_SIGNAL_QUANTITY_VALUE_STEPS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "quantity is %d, allowed are 0 (acceleration), 1 (velocity), 2 (displacement)",
+                     "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_ACCELERATION (0), _VELOCITY "
+                     "(1), _DISPLACEMENT (2), _VALUE (3) and _VALUE_STEPS (4)",
                      quantity);
   if (count < 2 || count >= INT32_MAX)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",
@@ -130,6 +139,9 @@ static mps_status check_table(mps_context *context, const char *function, int32_
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s[%lld] is %g, must be finite",
                        isfinite(times[i]) ? "values" : "times", (long long)i,
                        isfinite(times[i]) ? values[i] : times[i]);
+    if (fabs(times[i]) > MPSI_SIGNAL_LATEST)
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "times[%lld] is %g s, must be within 1e15", (long long)i, times[i]);
     if (i > 0 && times[i] <= times[i - 1])
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "times[%lld] is %.17g s, must be after times[%lld] = %.17g s", (long long)i,
@@ -138,10 +150,13 @@ static mps_status check_table(mps_context *context, const char *function, int32_
   return MPS_OK;
 }
 
+/* Terms of the cubics, over at most 2e15 s, stay finite. */
+static bool small(double value) { return fabs(value) <= 1e250; }
+
 static mps_status check_finite(mps_context *context, const char *function, const mpsi_knot *knots,
                                int64_t count) {
   for (const mpsi_knot *k = knots; k < knots + count; k++)
-    if (!isfinite(k->u) || !isfinite(k->v) || !isfinite(k->a) || !isfinite(k->j))
+    if (!small(k->u) || !small(k->v) || !small(k->a) || !small(k->j))
       return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
                        "the motion overflows at or after t = %g s: u = %g m, v = %g m/s, "
                        "a = %g m/s2, da/dt = %g m/s3",
@@ -157,8 +172,10 @@ static mps_status fill_knots(mps_context *context, const char *function, int32_t
     integrate_accelerations(knots, count, values);
   else if (quantity == MPS_SIGNAL_QUANTITY_VELOCITY)
     integrate_velocities(knots, count, values);
-  else
+  else if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT)
     status = fit_displacements(context, function, knots, count, values);
+  else
+    interpolate_values(knots, count, values, quantity == MPS_SIGNAL_QUANTITY_VALUE_STEPS);
   return status == MPS_OK ? check_finite(context, function, knots, count) : status;
 }
 
@@ -183,22 +200,23 @@ mps_status mpsi_signal_from_table(mps_context *context, const char *function, in
   signal->at = table_at;
   signal->start = times[0];
   signal->end = times[count - 1];
-  signal->coast = quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT ? 0.0 : signal->knots[count - 1].v;
+  const bool integrated = quantity < MPS_SIGNAL_QUANTITY_DISPLACEMENT;
+  signal->value = quantity >= MPS_SIGNAL_QUANTITY_VALUE;
+  signal->coast = integrated ? signal->knots[count - 1].v : 0.0;
   signal->count = count;
   signal->knots_per_second = (double)(count - 1) / (signal->end - signal->start);
-  if (quantity != MPS_SIGNAL_QUANTITY_DISPLACEMENT && signal->start < 0.0) {
+  if (integrated && signal->start < 0.0) {
     const double before = table_at(signal, 0.0).u; /* displaces nothing at t = 0 */
     for (int64_t i = 0; i < count; i++) signal->knots[i].u -= before;
   }
   /* |a| is linear between samples, so it is largest at one of them */
-  for (int64_t i = 0; i < count; i++) signal->peak = fmax(signal->peak, fabs(signal->knots[i].a));
   *out = signal;
   return MPS_OK;
 }
 
 mps_status mps_signal_create_table(mps_context *context, int32_t quantity, int64_t count,
                                    const double *times, const double *values, mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   return mpsi_signal_from_table(context, __func__, quantity, count, times, values, out);

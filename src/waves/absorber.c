@@ -17,8 +17,7 @@
  *
  * C(w) and c0(w) the transfers of a piston (dispersion.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
-#include "core/base/members.h"
+#include "core/definition/digits.h"
 #include "dispersion.h"
 #include "waves_private.h"
 
@@ -32,40 +31,17 @@ struct mps_absorber {
   int64_t limited;
 };
 
-static const mps_absorber_def defaults = {
-    .struct_size = sizeof(mps_absorber_def),
-    .depth = NAN,
-    .gravity = 9.81,
-    .period = NAN,
-    .high_pass = NAN,
-    .leak = NAN,
-    .stroke = NAN,
-    .acceleration = NAN,
-};
-
-mps_status mps_absorber_def_init(mps_absorber_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_absorber_def, def, size, &defaults);
-}
-
-static bool unset_or_least(double value) { return isnan(value) || (value >= 0.0 && value <= 1e12); }
-
 static mps_status check_def(mps_context *context, const mps_absorber_def *d) {
+  static const char function[] = "mps_absorber_create";
   const mps_waves *w = d->waves;
-  const mpsi_member checks[] = {
-      {"form", "0 or 1", d->form, d->form == 0 || d->form == 1},
-      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
-      {"depth", "that of waves", d->depth, !w || d->depth == w->def.depth},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
-      {"gravity", "that of waves", d->gravity, !w || d->gravity == w->def.gravity},
-      {"period", "in (0, 1e12] s, as there are no waves", d->period,
-       mpsi_waves_positive(d->period) || (w && isnan(d->period))},
-      {"high_pass", "in 0 to 1e12 rad/s", d->high_pass, unset_or_least(d->high_pass)},
-      {"leak", "in 0 to 1e12 1/s", d->leak, unset_or_least(d->leak)},
-      {"stroke", "in (0, 1e12] m", d->stroke, mpsi_waves_positive_or_unset(d->stroke)},
-      {"acceleration", "in (0, 1e12] m/s2", d->acceleration,
-       mpsi_waves_positive_or_unset(d->acceleration)},
-  };
-  return MPSI_CHECK_MEMBERS(context, "mps_absorber_create", "the absorber", checks);
+  if (!w) return MPS_OK;
+  if (d->depth != w->def.depth || d->gravity != w->def.gravity)
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT, "%s is %g %s, must be that of waves, %g",
+        d->depth != w->def.depth ? "depth" : "gravity",
+        d->depth != w->def.depth ? d->depth : d->gravity, d->depth != w->def.depth ? "m" : "m/s2",
+        d->depth != w->def.depth ? w->def.depth : w->def.gravity);
+  return MPS_OK;
 }
 
 /* The rates that are not given, and the gain. */
@@ -85,19 +61,18 @@ static mps_status complete(mps_absorber *a) {
   const double least = a->gain * a->near;
   if (isnan(d->high_pass)) d->high_pass = fmax(0.15 * omega, 2.0 * least);
   if (d->high_pass > least) return MPS_OK;
-  return mpsi_fail(
-      a->context, "mps_absorber_create", MPS_ERROR_ARGUMENT,
-      "high_pass of the absorber is %s rad/s, must be above %g: the piston would run away",
-      mpsi_outside(d->high_pass, least, INFINITY).text, least);
+  return mpsi_fail(a->context, "mps_absorber_create", MPS_ERROR_ARGUMENT,
+                   "high_pass is %s rad/s, must be above %g: the piston would run away",
+                   mpsi_outside(d->high_pass, least, INFINITY).text, least);
 }
 
 mps_status mps_absorber_create(mps_context *context, const mps_absorber_def *user_def,
                                mps_absorber **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!user_def || !out)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", user_def ? "out" : "def");
   *out = NULL;
-  mps_absorber_def def = defaults;
+  mps_absorber_def def;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_absorber_def, user_def, &def);
   if (status == MPS_OK) status = check_def(context, &def);
   if (status == MPS_OK && isnan(def.period)) def.period = def.waves->period;
@@ -144,16 +119,16 @@ static double correct(mps_absorber *a, double asked, double level, double moved,
 
 mps_status mps_absorber_advance(mps_absorber *a, double t, double dt, double level,
                                 double *displacement, double *velocity) {
-  if (!a) return MPS_ERROR_ARGUMENT;
+  if (!a) return mpsi_null(__func__, "absorber");
   if (!displacement || !velocity)
     return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      displacement ? "velocity" : "displacement");
   if (!(fabs(t) <= 1e12))
     return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "t is %s s, must be within 1e12",
                      mpsi_outside(t, -1e12, 1e12).text);
-  if (!(dt > 0.0 && dt <= 1e12))
-    return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "dt is %s s, must be in (0, 1e12]",
-                     mpsi_outside(dt, 0.0, 1e12).text);
+  if (!mpsi_waves_positive(dt))
+    return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT,
+                     "dt is %s s, must be in 1e-12 to 1e12", mpsi_outside(dt, 1e-12, 1e12).text);
   if (!isnan(level) && !(fabs(level) <= 1e12))
     return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT,
                      "level is %s m, must be within 1e12, or NaN where there is none",
@@ -183,7 +158,7 @@ mps_status mps_absorber_advance(mps_absorber *a, double t, double dt, double lev
 /* ---- queries --------------------------------------------------------------------------------- */
 
 mps_status mps_absorber_get_reflection(const mps_absorber *a, double period, double *reflection) {
-  if (!a) return MPS_ERROR_ARGUMENT;
+  if (!a) return mpsi_null(__func__, "absorber");
   if (!reflection) return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "reflection is NULL");
   const double depth = a->def.depth, g = a->def.gravity;
   const mps_status status = mpsi_waves_check_range(a->context, __func__, period, depth, g);
@@ -202,13 +177,13 @@ mps_status mps_absorber_get_reflection(const mps_absorber *a, double period, dou
 
 mps_status mps_absorber_get_report_sized(const mps_absorber *a, mps_absorber_report *out,
                                          size_t size) {
-  if (!a) return MPS_ERROR_ARGUMENT;
+  if (!a) return mpsi_null(__func__, "absorber");
   const mps_absorber_report report = {a->displacement, a->velocity, a->correction, a->limited};
   return mpsi_out_write(a->context, __func__, out, size, &report, sizeof report);
 }
 
 mps_status mps_absorber_get_memory(const mps_absorber *a, double *values) {
-  if (!a) return MPS_ERROR_ARGUMENT;
+  if (!a) return mpsi_null(__func__, "absorber");
   if (!values) return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "values is NULL");
   const double all[MPS_ABSORBER_MEMORY] = {a->displacement, a->velocity, a->correction, a->pass,
                                            (double)a->limited};
@@ -217,7 +192,7 @@ mps_status mps_absorber_get_memory(const mps_absorber *a, double *values) {
 }
 
 mps_status mps_absorber_set_memory(mps_absorber *a, const double *values) {
-  if (!a) return MPS_ERROR_ARGUMENT;
+  if (!a) return mpsi_null(__func__, "absorber");
   if (!values) return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "values is NULL");
   for (int k = 0; k < MPS_ABSORBER_MEMORY; k++)
     if (!(fabs(values[k]) <= 1e15))

@@ -39,10 +39,10 @@ static double table_density(const mps_waves_def *def, double f) {
 
 /* Any scale. */
 static double density(const mps_waves_def *def, double fp, double f) {
-  if (def->kind == MPS_WAVES_KIND_SPECTRUM) return table_density(def, f);
+  if (def->kind == MPS_WAVES_SPECTRUM) return table_density(def, f);
   const double r = f / fp, width = r <= 1.0 ? 0.07 : 0.09;
   const double peak = exp(-0.5 * (r - 1.0) * (r - 1.0) / (width * width));
-  const double gamma = def->kind == MPS_WAVES_KIND_JONSWAP ? def->gamma : 1.0;
+  const double gamma = def->kind == MPS_WAVES_JONSWAP ? def->gamma : 1.0;
   return pow(r, -5.0) * exp(-1.25 * pow(r, -4.0)) * pow(gamma, peak);
 }
 
@@ -144,8 +144,14 @@ static mps_status make_spectrum(mps_waves *w, const mps_waves_def *def) {
   if (status == MPS_OK && !(sum > 0.0 && isfinite(sum)))
     status = mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                        "density has a sum of %g m2 over the band, must be finite and > 0", sum);
-  const double scale = isnan(def->height) ? 1.0 : def->height * def->height / 16.0 / sum;
-  for (int64_t n = 0; n < w->count; n++) s[n] *= scale;
+  /* FOCUSED takes its size from the crest; the height's square may underflow */
+  const double energy = def->height * def->height / 16.0, scale = energy / sum;
+  const bool focused = def->phases == MPS_WAVES_PHASES_FOCUSED;
+  for (int64_t n = 0; n < w->count && status == MPS_OK && !isnan(def->height); n++)
+    if (scale > 1e-200 && scale < 1e200)
+      s[n] *= scale;
+    else if (!focused)
+      s[n] = s[n] / sum * energy;
   if (status == MPS_OK) combine(w, s);
   mpsi_free(w->context, s);
   return status;
@@ -200,7 +206,7 @@ static mps_status make_record(mps_waves *w, const mps_waves_def *def) {
 }
 
 mps_status mpsi_waves_make_components(mps_waves *w, const mps_waves_def *def) {
-  if (def->kind == MPS_WAVES_KIND_REGULAR) return make_regular(w);
-  if (def->kind == MPS_WAVES_KIND_RECORD) return make_record(w, def);
+  if (def->kind == MPS_WAVES_REGULAR) return make_regular(w);
+  if (def->kind == MPS_WAVES_RECORD) return make_record(w, def);
   return make_spectrum(w, def);
 }

@@ -3,7 +3,7 @@
  * tan qd = -omega^2/g. SPDX-License-Identifier: BSD-3-Clause */
 #include "dispersion.h"
 
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 #include "waves_private.h"
 
 #define MODES 60 /* of the sum at the piston; its tail is added in closed form */
@@ -63,9 +63,10 @@ mps_status mpsi_waves_check_range(mps_context *context, const char *function, do
     double value;
   } given[] = {{"period", "s", period}, {"depth", "m", depth}, {"gravity", "m/s2", gravity}};
   for (int k = 0; k < 3; k++)
-    if (!(given[k].value > 0.0 && given[k].value <= 1e12))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s %s, must be in (0, 1e12]",
-                       given[k].name, mpsi_outside(given[k].value, 0.0, 1e12).text, given[k].unit);
+    if (!mpsi_waves_positive(given[k].value))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "%s is %s %s, must be in 1e-12 to 1e12", given[k].name,
+                       mpsi_outside(given[k].value, 1e-12, 1e12).text, given[k].unit);
   const double omega = 2.0 * MPSI_WAVES_PI / period, y = omega * omega * depth / gravity;
   if (!(y >= MPSI_WAVES_SHALLOWEST && y <= MPSI_WAVES_DEEPEST))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -74,24 +75,3 @@ mps_status mpsi_waves_check_range(mps_context *context, const char *function, do
   return MPS_OK;
 }
 
-mps_status mps_waves_find_number(mps_context *context, double period, double depth, double gravity,
-                                 double *number) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  if (!number) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
-  const mps_status status = mpsi_waves_check_range(context, __func__, period, depth, gravity);
-  if (status != MPS_OK) return status;
-  const double omega = 2.0 * MPSI_WAVES_PI / period;
-  *number = mpsi_waves_depths(omega * omega * depth / gravity) / depth;
-  return MPS_OK;
-}
-
-mps_status mps_waves_find_piston(mps_context *context, double period, double depth, double gravity,
-                                 double *progressive, double *evanescent) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_waves_check_range(context, __func__, period, depth, gravity);
-  if (status != MPS_OK) return status;
-  const double omega = 2.0 * MPSI_WAVES_PI / period, y = omega * omega * depth / gravity;
-  if (progressive) *progressive = mpsi_waves_far(mpsi_waves_depths(y));
-  if (evanescent) *evanescent = mpsi_waves_near(y);
-  return MPS_OK;
-}

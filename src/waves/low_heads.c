@@ -6,56 +6,11 @@
  *
  * the second as a discharge q over the wall sends a long wave of the height -q/(g depth)^(1/2) back
  * from it. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/members.h"
 #include "waves_private.h"
 
-#include <mps/wave_loads.h>
+#include <mps/experimental/wave_loads.h>
 
-#define FUNCTION "mps_overtopping_find_sized"
 #define ITERATIONS 60 /* of Newton's, which converges from above: a few are needed */
-
-static const mps_overtopping_def defaults = {
-    .struct_size = sizeof(mps_overtopping_def),
-    .resolved = NAN,
-    .depth = NAN,
-    .gravity = 9.81,
-};
-
-mps_status mps_overtopping_def_init(mps_overtopping_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_overtopping_def, def, size, &defaults);
-}
-
-/* ---- checks ---------------------------------------------------------------------------------- */
-
-static mps_status check_numbers(mps_context *context, const mps_overtopping_def *d) {
-  const mpsi_member checks[] = {
-      {"samples", "2 to 2^28", (double)d->samples, d->samples >= 2 && d->samples <= 1 << 28},
-      {"resolved", "in (0, 1e12] m", d->resolved, mpsi_waves_positive(d->resolved)},
-      {"pause", "in [0, 1e12] s", d->pause, d->pause >= 0.0 && d->pause <= 1e12},
-      {"depth", "in (0, 1e12] m, or NaN", d->depth, mpsi_waves_positive_or_unset(d->depth)},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
-  };
-  const mps_status status = MPSI_CHECK_MEMBERS(context, FUNCTION, "the record", checks);
-  if (status != MPS_OK || (d->times && d->heads)) return status;
-  return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT, "%s is NULL",
-                   d->times ? "heads" : "times");
-}
-
-static mps_status check_samples(mps_context *context, const mps_overtopping_def *d) {
-  for (int64_t k = 0; k < d->samples; k++) {
-    if (!(fabs(d->times[k]) <= 1e12 && (k == 0 || d->times[k] > d->times[k - 1])))
-      return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT,
-                       "times[%lld] is %g s, must be within 1e12 and above the one before",
-                       (long long)k, d->times[k]);
-    if (d->heads[k] > 1e12)
-      return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT,
-                       "heads[%lld] is %g m, must be at most 1e12", (long long)k, d->heads[k]);
-    if (d->volumes && !(fabs(d->volumes[k]) <= 1e12))
-      return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT,
-                       "volumes[%lld] is %g m2, must be within 1e12", (long long)k, d->volumes[k]);
-  }
-  return MPS_OK;
-}
 
 /* ---- events ---------------------------------------------------------------------------------- */
 
@@ -124,17 +79,15 @@ static void add_up(const mps_overtopping_def *d, int64_t count, double *thin,
 mps_status mps_overtopping_find_sized(mps_context *context, const mps_overtopping_def *user_def,
                                       int64_t capacity, double *thin, mps_overtopping *out,
                                       size_t size) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!user_def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   if (capacity < 0)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                      (long long)capacity);
-  mps_overtopping_def d = defaults;
+  mps_overtopping_def d = mps_overtopping_defaults();
   mps_overtopping r = {.counted = 0.0};
   mps_status status = MPSI_DEF_READ(context, __func__, mps_overtopping_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_numbers(context, &d);
-  if (status == MPS_OK) status = check_samples(context, &d);
   if (status != MPS_OK) return status;
   add_up(&d, !thin ? 0 : capacity < d.samples ? capacity : d.samples, thin, &r);
   return mpsi_out_write(context, __func__, out, size, &r, sizeof r);

@@ -119,7 +119,7 @@ static mps_status find_bound(const mps_waves *w, const char *function, double x,
 
 mps_status mps_waves_get_levels(const mps_waves *w, double station, int64_t count, const double *t,
                                 double *linear, double *level) {
-  if (!w) return MPS_ERROR_ARGUMENT;
+  if (!w) return mpsi_null(__func__, "waves");
   if (!(station >= 0.0 && station <= 1e12))
     return mpsi_fail(w->context, __func__, MPS_ERROR_ARGUMENT,
                      "station is %g m from the piston, must be in 0 to 1e12", station);
@@ -144,7 +144,7 @@ mps_status mps_waves_get_levels(const mps_waves *w, double station, int64_t coun
 mps_status mps_waves_get_piston(const mps_waves *w, int64_t count, const double *t,
                                 double *displacement, double *velocity, double *acceleration,
                                 double *level) {
-  if (!w) return MPS_ERROR_ARGUMENT;
+  if (!w) return mpsi_null(__func__, "waves");
   const mps_status status = check_times(w, __func__, count, t);
   if (status != MPS_OK) return status;
   double *const out[4] = {displacement, velocity, acceleration, level};
@@ -159,7 +159,7 @@ mps_status mps_waves_get_piston(const mps_waves *w, int64_t count, const double 
 
 mps_status mps_waves_get_components(const mps_waves *w, int64_t capacity, int64_t *count,
                                     double *frequency, double *amplitude, double *phase) {
-  if (!w) return MPS_ERROR_ARGUMENT;
+  if (!w) return mpsi_null(__func__, "waves");
   if (!count) return mpsi_fail(w->context, __func__, MPS_ERROR_ARGUMENT, "count is NULL");
   if (capacity < 0)
     return mpsi_fail(w->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",

@@ -11,13 +11,10 @@
  * d11 = .93 (B/L - .12) + .36 ((h - d)/h - .6) and d22 = -.36 (B/L - .12) + .93 ((h - d)/h - .6),
  * d1 = 20 or 15 d11 and d2 = 4.9 or 3 d22 where these are negative or positive, aI1 = cos d2/cosh
  * d1 for d2 <= 0, else 1/(cosh d1 (cosh d2)^1/2). SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/members.h"
 #include "dispersion.h"
 #include "waves_private.h"
 
-#include <mps/wave_loads.h>
-
-#define HALF_PI (0.5 * MPSI_WAVES_PI)
+#include <mps/experimental/wave_loads.h>
 
 static double wave_number(double period, double depth, double gravity) {
   const double omega = 2.0 * MPSI_WAVES_PI / period;
@@ -26,40 +23,22 @@ static double wave_number(double period, double depth, double gravity) {
 
 /* ---- Sainflou -------------------------------------------------------------------------------- */
 
-static const mps_sainflou_def sainflou_defaults = {
-    .struct_size = sizeof(mps_sainflou_def),
-    .height = NAN,
-    .period = NAN,
-    .depth = NAN,
-    .density = 1000.0,
-    .gravity = 9.81,
-};
-
-mps_status mps_sainflou_def_init(mps_sainflou_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_sainflou_def, def, size, &sainflou_defaults);
-}
-
 static mps_status check_sainflou(mps_context *context, const mps_sainflou_def *d) {
-  const mpsi_member checks[] = {
-      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
-      {"density", "in (0, 1e12] kg/m3", d->density, mpsi_waves_positive(d->density)},
-  };
   const char *function = "mps_sainflou_evaluate_sized";
-  mps_status status = MPSI_CHECK_MEMBERS(context, function, "the waves", checks);
-  if (status == MPS_OK)
-    status = mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
+  const mps_status status =
+      mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
   if (status != MPS_OK) return status;
   const double k = wave_number(d->period, d->depth, d->gravity);
   const double most = 0.142 * 2.0 * MPSI_WAVES_PI / k * tanh(k * d->depth);
   if (d->height > most)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "height of the waves is %g m, must be at most the breaking height %g m: "
+                     "height is %g m, must be at most the breaking height %g m: "
                      "Sainflou's waves do not break",
                      d->height, most);
   const double rise = 0.5 * k * d->height * d->height / tanh(k * d->depth);
   if (d->height - rise >= d->depth)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "height of the waves is %g m: the trough, %g m below the water at rest, would "
+                     "height is %g m: the trough, %g m below the water at rest, would "
                      "be at the bed in a depth of %g m",
                      d->height, d->height - rise, d->depth);
   return MPS_OK;
@@ -73,8 +52,8 @@ static void triangle(double top, double bed, double *force, double *moment) {
 
 mps_status mps_sainflou_evaluate_sized(mps_context *context, const mps_sainflou_def *user_def,
                                        mps_sainflou *out, size_t size) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  mps_sainflou_def d = sainflou_defaults;
+  if (!context) return mpsi_null(__func__, "context");
+  mps_sainflou_def d;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_sainflou_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
   if (status == MPS_OK) status = check_sainflou(context, &d);
@@ -91,55 +70,13 @@ mps_status mps_sainflou_evaluate_sized(mps_context *context, const mps_sainflou_
 
 /* ---- Goda ------------------------------------------------------------------------------------ */
 
-static const mps_goda_def goda_defaults = {
-    .struct_size = sizeof(mps_goda_def),
-    .height = NAN,
-    .period = NAN,
-    .depth = NAN,
-    .seaward = NAN,
-    .berm_depth = NAN,
-    .base = NAN,
-    .crest = NAN,
-    .width = NAN,
-    .weight = NAN,
-    .arm = NAN,
-    .friction = 0.6,
-    .density = 1000.0,
-    .gravity = 9.81,
-};
-
-mps_status mps_goda_def_init(mps_goda_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_goda_def, def, size, &goda_defaults);
-}
-
 static mps_status check_goda(mps_context *context, const char *function, mps_goda_def *d) {
   mps_status status = mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
   if (status != MPS_OK) return status;
   if (isnan(d->seaward)) d->seaward = d->depth;
   if (isnan(d->berm_depth)) d->berm_depth = d->depth;
   if (isnan(d->base)) d->base = d->depth;
-  const mpsi_member checks[] = {
-      {"impulsive", "0 or 1", d->impulsive, d->impulsive == 0 || d->impulsive == 1},
-      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
-      {"seaward", "depth or more, to 1e12 m", d->seaward,
-       d->seaward >= d->depth && d->seaward <= 1e12},
-      {"berm_depth", "above 0 and at most depth", d->berm_depth,
-       d->berm_depth > 0.0 && d->berm_depth <= d->depth},
-      {"base", "in berm_depth to depth", d->base, d->base >= d->berm_depth && d->base <= d->depth},
-      {"crest", "in (0, 1e12] m", d->crest, mpsi_waves_positive(d->crest)},
-      {"width", "in (0, 1e12] m", d->width, mpsi_waves_positive(d->width)},
-      {"berm_width", "in 0 to 1e12 m", d->berm_width,
-       d->berm_width >= 0.0 && d->berm_width <= 1e12},
-      {"angle", "in 0 to pi/2", d->angle, d->angle >= 0.0 && d->angle <= HALF_PI},
-      {"weight", "in (0, 1e15] N/m", d->weight,
-       isnan(d->weight) || (d->weight > 0.0 && d->weight <= 1e15)},
-      {"arm", "above 0 and at most width", d->arm,
-       isnan(d->arm) || (d->arm > 0.0 && d->arm <= d->width)},
-      {"friction", "in (0, 1e12]", d->friction, mpsi_waves_positive(d->friction)},
-      {"density", "in (0, 1e12] kg/m3", d->density, mpsi_waves_positive(d->density)},
-  };
-  status = MPSI_CHECK_MEMBERS(context, function, "the caisson", checks);
-  if (status == MPS_OK && isnan(d->arm)) d->arm = 0.5 * d->width;
+  if (isnan(d->arm)) d->arm = 0.5 * d->width;
   return status;
 }
 
@@ -175,8 +112,8 @@ static void find_pressures(const mps_goda_def *d, mps_goda *r) {
 
 mps_status mps_goda_evaluate_sized(mps_context *context, const mps_goda_def *user_def,
                                    mps_goda *out, size_t size) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  mps_goda_def d = goda_defaults;
+  if (!context) return mpsi_null(__func__, "context");
+  mps_goda_def d;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_goda_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
   if (status == MPS_OK) status = check_goda(context, __func__, &d);

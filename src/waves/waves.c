@@ -1,7 +1,5 @@
 /* waves.c - the sea as an object: its definition, what is refused before it is made, its limits,
  * the signal of its piston. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
-#include "core/base/members.h"
 #include "core/context/retain.h"
 #include "dispersion.h"
 #include "signal/signal_internal.h"
@@ -12,97 +10,12 @@
 #define SCAN                                                                                       \
   32 /* instants a period of the shortest component at which the piston's motion is examined */
 #define MOST_SCAN 400000 /* of them */
-
-static const mps_waves_def defaults = {
-    .struct_size = sizeof(mps_waves_def),
-    .depth = NAN,
-    .gravity = 9.81,
-    .height = NAN,
-    .period = NAN,
-    .gamma = 3.3,
-    .repeat = NAN,
-    .lower = 0.6,
-    .upper = 2.5,
-    .crest = NAN,
-    .time = NAN,
-    .ramp = NAN,
-    .stroke = NAN,
-    .speed = NAN,
-    .seed = 1,
-};
-
-mps_status mps_waves_def_init(mps_waves_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_waves_def, def, size, &defaults);
-}
+#define BREAKING 0.142   /* height over L tanh(k depth), Miche (1944) */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static mps_status check_numbers(mps_context *context, const mps_waves_def *d) {
-  const int32_t kind = d->kind;
-  const bool regular = kind == MPS_WAVES_KIND_REGULAR, record = kind == MPS_WAVES_KIND_RECORD;
-  const bool table = kind == MPS_WAVES_KIND_SPECTRUM, focus = d->phases == MPS_WAVES_PHASES_FOCUSED;
-  const mpsi_member checks[] = {
-      {"kind", "0 to 4", kind, kind >= 0 && kind <= MPS_WAVES_KIND_RECORD},
-      {"phases", "0, 1 or 2", d->phases, d->phases >= 0 && d->phases <= 2},
-      {"phases", "RANDOM (0) with a regular wave or a record", d->phases,
-       !(regular || record) || d->phases == 0},
-      {"theory", "0, 1 or 2", d->theory, d->theory >= 0 && d->theory <= 2},
-      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
-      {"height", "in (0, 1e12] m", d->height,
-       mpsi_waves_positive(d->height) || record || focus || (table && isnan(d->height))},
-      {"period", "in (0, 1e12] s", d->period,
-       mpsi_waves_positive(d->period) || ((table || record) && isnan(d->period))},
-      {"gamma", "in 1 to 20", d->gamma, d->gamma >= 1.0 && d->gamma <= 20.0},
-      {"repeat", "in (0, 1e12] s", d->repeat, mpsi_waves_positive_or_unset(d->repeat)},
-      {"lower", "above 0 and below upper", d->lower, d->lower > 0.0 && d->lower < d->upper},
-      {"upper", "at most 10", d->upper, d->upper <= 10.0},
-      {"crest", "in (0, 1e12] m", d->crest, !focus || mpsi_waves_positive(d->crest)},
-      {"position", "in 0 to 1e12 m", d->position, d->position >= 0.0 && d->position <= 1e12},
-      {"time", "within 1e12 s", d->time, !focus || fabs(d->time) <= 1e12},
-      {"ramp", "in 0 to 1e12 s", d->ramp, isnan(d->ramp) || (d->ramp >= 0.0 && d->ramp <= 1e12)},
-      {"stroke", "in (0, 1e12] m", d->stroke, mpsi_waves_positive_or_unset(d->stroke)},
-      {"speed", "in (0, 1e12] m/s", d->speed, mpsi_waves_positive_or_unset(d->speed)},
-  };
-  return MPSI_CHECK_MEMBERS(context, "mps_waves_create", "the waves", checks);
-}
-
-static mps_status check_repeat(mps_context *context, const mps_waves_def *d) {
-  const bool read = d->kind != MPS_WAVES_KIND_REGULAR && d->kind != MPS_WAVES_KIND_RECORD;
-  if (!read || isnan(d->repeat) || isnan(d->period) || d->repeat >= 2.0 * d->period) return MPS_OK;
-  return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                   "repeat of the waves is %s s, must be %g s or more, two periods",
-                   mpsi_outside(d->repeat, 2.0 * d->period, INFINITY).text, 2.0 * d->period);
-}
-
-static mps_status check_table(mps_context *context, const mps_waves_def *d) {
-  if (d->kind != MPS_WAVES_KIND_SPECTRUM) return MPS_OK;
-  if (d->count < 2 || !d->frequency || !d->density)
-    return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                     "count is %lld with frequency %s and density %s, must be 2 or more rows",
-                     (long long)d->count, d->frequency ? "given" : "NULL",
-                     d->density ? "given" : "NULL");
-  for (int64_t k = 0; k < d->count; k++) {
-    const double f = d->frequency[k], last = k ? d->frequency[k - 1] : 0.0;
-    if (!(f > last && f <= 1e12))
-      return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                       "frequency[%lld] is %g Hz, must be above %g and at most 1e12", (long long)k,
-                       f, last);
-    if (!(d->density[k] >= 0.0 && d->density[k] <= 1e100))
-      return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                       "density[%lld] is %g m2 s, must be in 0 to 1e100", (long long)k,
-                       d->density[k]);
-  }
-  return MPS_OK;
-}
-
 static mps_status check_record(mps_context *context, const mps_waves_def *d) {
-  if (d->kind != MPS_WAVES_KIND_RECORD) return MPS_OK;
-  if (d->samples < 8 || !d->times || !d->levels)
-    return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                     "samples is %lld with times %s and levels %s, must be 8 or more samples",
-                     (long long)d->samples, d->times ? "given" : "NULL",
-                     d->levels ? "given" : "NULL");
+  if (d->kind != MPS_WAVES_RECORD) return MPS_OK;
   const double step = (d->times[d->samples - 1] - d->times[0]) / (double)(d->samples - 1);
   for (int64_t k = 0; k < d->samples; k++) {
     const double even = d->times[0] + step * (double)k;
@@ -110,18 +23,48 @@ static mps_status check_record(mps_context *context, const mps_waves_def *d) {
       return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                        "times[%lld] is %g s, must be %g: a record has even intervals", (long long)k,
                        d->times[k], even);
-    if (!(fabs(d->levels[k]) <= 1e12))
-      return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                       "levels[%lld] is %g m, must be within 1e12", (long long)k, d->levels[k]);
   }
+  return MPS_OK;
+}
+
+/* Higher waves than any depth carries: crest and trough of a record, Hm0 of a sea. `levels`: of the
+ * record. */
+static mps_status check_sea(const mps_waves *w, const double *levels) {
+  const mps_waves_def *d = &w->def;
+  const mps_waves_report *r = &w->report;
+  const double most =
+      BREAKING * 2.0 * MPSI_WAVES_PI / r->wave_number * tanh(r->wave_number * d->depth);
+  const double deepest = BREAKING * 2.0 * MPSI_WAVES_PI * d->depth; /* of long waves */
+  double low = 0.0, high = 0.0;
+  for (int64_t k = 0; d->kind == MPS_WAVES_RECORD && k < d->samples; k++)
+    low = fmin(low, levels[k]), high = fmax(high, levels[k]);
+  if (low <= -d->depth || high - low > deepest)
+    return mpsi_fail(
+        w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
+        "levels are from %g to %g m, must be above the bed at -%g m and less than %g m "
+        "from trough to crest, the breaking height of long waves: are they in m?",
+        low, high, d->depth, deepest);
+  if (d->phases == MPS_WAVES_PHASES_FOCUSED && 2.0 * d->crest > deepest)
+    return mpsi_fail(
+        w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
+        "crest is %g m, must be at most %g m, half the breaking height of long waves in "
+        "a depth of %g m",
+        d->crest, 0.5 * deepest, d->depth);
+  if (d->phases != MPS_WAVES_PHASES_FOCUSED && r->height > most)
+    return mpsi_fail(
+        w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
+        "height Hm0 %g m of the sea is above the breaking height %g m of a period of %g "
+        "s in a depth of %g m",
+        r->height, most, r->period, d->depth);
   return MPS_OK;
 }
 
 /* Breaking, and crests of the second order's own. */
 static mps_status check_height(const mps_waves *w) {
   const mps_waves_def *d = &w->def;
-  if (d->kind != MPS_WAVES_KIND_REGULAR) return MPS_OK;
-  const double k = w->wave[0].k, L = 2.0 * MPSI_WAVES_PI / k, most = 0.142 * L * tanh(k * d->depth);
+  if (d->kind != MPS_WAVES_REGULAR) return MPS_OK;
+  const double k = w->wave[0].k, L = 2.0 * MPSI_WAVES_PI / k,
+               most = BREAKING * L * tanh(k * d->depth);
   const double ratio = d->height * L * L / (d->depth * d->depth * d->depth);
   if (d->height > most)
     return mpsi_fail(
@@ -145,6 +88,14 @@ static mps_status check_motion(const mps_waves *w, double t, const double m[3]) 
                      "stroke is %g m, but these waves need a piston that is %g m from its mean "
                      "position at t = %g s",
                      w->def.stroke, fabs(m[0]), t);
+  /* the tip of water that a wall leaves behind runs at 2 c (Ritter) */
+  const double fastest = 2.0 * sqrt(w->def.gravity * w->def.depth);
+  if (fabs(m[1]) > fastest)
+    return mpsi_fail(
+        w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
+        "these waves need a piston that has %g m/s at t = %g s, must be at most %g m/s, "
+        "2 (gravity depth)^1/2: water does not follow a faster one",
+        fabs(m[1]), t, fastest);
   if (fabs(m[1]) > w->def.speed)
     return mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                      "speed is %g m/s, but these waves need a piston that has %g m/s at t = %g s",
@@ -173,7 +124,7 @@ static mps_status examine(mps_waves *w) {
 
 static void summarise(mps_waves *w) {
   mps_waves_report *r = &w->report;
-  const bool regular = w->def.kind == MPS_WAVES_KIND_REGULAR;
+  const bool regular = w->def.kind == MPS_WAVES_REGULAR;
   double sum = 0.0;
   for (int64_t n = 0; n < w->count; n++) sum += 0.5 * pow(cabs(w->wave[n].a), 2.0);
   r->components = w->count;
@@ -207,15 +158,12 @@ static mps_status make_second_order(mps_waves *w) {
 }
 
 mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def, mps_waves **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!user_def || !out)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", user_def ? "out" : "def");
   *out = NULL;
-  mps_waves_def def = defaults;
+  mps_waves_def def;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_waves_def, user_def, &def);
-  if (status == MPS_OK) status = check_numbers(context, &def);
-  if (status == MPS_OK) status = check_repeat(context, &def);
-  if (status == MPS_OK) status = check_table(context, &def);
   if (status == MPS_OK) status = check_record(context, &def);
   if (status != MPS_OK) return status;
   mps_waves *w = mpsi_alloc(context, 1, sizeof *w);
@@ -227,8 +175,9 @@ mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def,
   status = mpsi_waves_make_components(w, &def);
   if (status == MPS_OK) status = check_height(w);
   if (status == MPS_OK) w->ramp = isnan(def.ramp) ? 2.0 * w->period : def.ramp;
-  if (status == MPS_OK) status = make_second_order(w);
   if (status == MPS_OK) summarise(w);
+  if (status == MPS_OK) status = check_sea(w, def.levels);
+  if (status == MPS_OK) status = make_second_order(w);
   if (status == MPS_OK) status = examine(w);
   if (status != MPS_OK) {
     release(w);
@@ -255,7 +204,7 @@ void mps_waves_destroy(mps_waves **waves) {
 }
 
 mps_status mps_waves_get_report_sized(const mps_waves *w, mps_waves_report *out, size_t size) {
-  if (!w) return MPS_ERROR_ARGUMENT;
+  if (!w) return mpsi_null(__func__, "waves");
   return mpsi_out_write(w->context, __func__, out, size, &w->report, sizeof w->report);
 }
 
@@ -274,7 +223,7 @@ static void drop_waves(void *user) {
 }
 
 mps_status mps_signal_create_waves(mps_context *context, mps_waves *waves, mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!waves || !out)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", waves ? "out" : "waves");
   *out = NULL;

@@ -5,18 +5,16 @@
 
 #include "core/internal.h"
 
-#include <mps/waves.h>
+#include <mps/experimental/waves.h>
 
 #include <complex.h>
 #include <math.h>
 
 #define MPSI_WAVES_PI 3.14159265358979323846
 
-/* Whether a member of a definition is in (0, 1e12]; or NaN. */
-static inline bool mpsi_waves_positive(double value) { return value > 0.0 && value <= 1e12; }
-static inline bool mpsi_waves_positive_or_unset(double value) {
-  return isnan(value) || mpsi_waves_positive(value);
-}
+/* Whether a member of a definition is in 1e-12 to 1e12, of which products and ratios are numbers
+ * that neither overflow nor vanish; or NaN. */
+static inline bool mpsi_waves_positive(double value) { return value >= 1e-12 && value <= 1e12; }
 
 /* A wave of first order: Re A exp(i (omega t - k x)). */
 typedef struct mpsi_wave {

@@ -10,7 +10,10 @@
  *   state.c     the state of each object, in parts that have names and hashes
  *   check.c     before and after a call
  *   names.c     the arguments of each function, from the headers
- *   hooks.c     memory, hooks of a context, callbacks, and their faults
+ *   plan.h      what the callbacks of a call do
+ *   callbacks.c the callbacks: memory, hooks of a context, laws, signals, solvers
+ *   hooks.c     their faults, drawn before a call
+ *   record.c    writes the calls as a C program; its wrappers are made by make_record.py
  *   calls_*.c   one function for each function of the interface, in tables
  *   table.c     all tables; names that are deliberately in none
  *   main.c      seeds, shrinking, the command line
@@ -18,8 +21,7 @@
 #ifndef TESTS_API_API_H
 #define TESTS_API_API_H
 
-#include <mps/context.h>
-#include <mps/particles.h>
+#include "plan.h"
 
 #include <setjmp.h>
 #include <stdatomic.h>
@@ -93,22 +95,9 @@ typedef enum api_change {
   API_CHANGES_ALL
 } api_change;
 
-/* Fault of a callback, once, in one call. */
-typedef enum api_fault {
-  API_FAULT_NONE,
-  API_FAULT_STATUS,    /* returns an error */
-  API_FAULT_NO_STATUS, /* returns a number that is no status */
-  API_FAULT_VALUE,     /* writes NaN */
-  API_FAULT_FORBIDDEN, /* calls what a callback may not call */
-  API_FAULTS
-} api_fault;
-
-typedef struct api_memory {
-  atomic_llong live, calls, refused;
-  atomic_llong refuse_from, refuse_to; /* calls by number, from 1; 0: none */
-} api_memory;
-
 typedef struct api {
+  api_plan plan; /* of the callbacks of the present call */
+
   /* the sequence */
   uint64_t seed, random;
   int64_t call; /* number of the present call */
@@ -129,16 +118,9 @@ typedef struct api {
   const char *wrong_name;
   bool picked;         /* the first object, whose context gets the record */
   int context;         /* its slot; -1 none */
+  bool own_record;     /* an error is what the caller gave: it has no record */
   api_change change;   /* on an error */
   bool reads, queries; /* changes nothing whatever the outcome; has no status */
-  api_fault fault;
-  int64_t fault_at;        /* call of a callback that misbehaves, from 1 */
-  int64_t callbacks;       /* so far in this call */
-  mps_status fault_status; /* what it returned */
-  bool faulted;
-  api_object *running; /* solver whose call runs */
-  api_kind running_kind;
-  int64_t cancel_at, cancels; /* call of the cancel hook that returns "stop"; number so far */
   size_t length;
   char line[API_LINE];
 
@@ -174,6 +156,11 @@ int64_t api_whole(api *a, const char *name, int64_t lo, int64_t hi);
 int64_t api_least(api *a, const char *name, int64_t lo, int64_t hi);
 /* Of an enumeration with values 0 to count - 1. */
 int32_t api_choice(api *a, const char *name, int32_t count);
+/* Draws members of a definition, "young 1e6, lode, slip? 0.1, ...", each beside the value behind
+ * its name (without one: any) in the range of its table, in an absurd mood outside. One with ? keeps
+ * its default most of the time; an array gets the value in component `dim` - 1 or, where all are
+ * alike, everywhere. Wrong is what the tables refuse: other members are set before. */
+void api_define(api *a, int32_t kind, void *def, int32_t dim, const char *members);
 /* struct_size of a definition of `size` bytes. */
 uint32_t api_struct_size(api *a, size_t size);
 /* Bytes of a definition that is to be filled, which has room for 4096. */
@@ -193,6 +180,8 @@ extern const char *const api_kind_names[API_KINDS];
 api_object *api_any(api *a, api_kind kind);
 /* The same where NULL is allowed. */
 void *api_maybe(api *a, api_kind kind, const char *name);
+/* A signal or NULL: a number or a motion as the definition wants it, but in an absurd mood. */
+mps_signal *api_signal(api *a, bool number);
 int api_alive(const api *a, api_kind kind);
 /* Registers the object made by a function (NULL: none). */
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
@@ -231,15 +220,33 @@ void api_print_log(const api *a, int descriptor);
 /* ---- names.c --------------------------------------------------------------------------------- */
 /* Whether the message has the name of a parameter of the function, or of a member of one. */
 bool api_names_argument(const char *function, const char *message);
+/* The name under which a function of one solver is exported where all solvers share it
+ * (mps/solver.h): mps_solver_step for mps_mpm_step; else `name`. */
+void api_shared_name(const char *name, char *shared, size_t size);
 /* Does it refuse a value that, as it is printed, is within the bounds that it gives? */
 bool api_prints_allowed(const char *message);
 
 /* ---- hooks.c --------------------------------------------------------------------------------- */
 void api_hooks(api *a, mps_context_def *def);
-/* In a callback on the thread of the call: makes the fault if it is due. */
-mps_status api_callback(api *a, double *values, int count);
 void api_arm(api *a);
 void api_run_solver(api *a, api_kind kind, api_object *object);
+
+/* ---- record.c: the sequence as a C program (of builds without Python: nothing) ----------------
+ */
+#ifdef API_FOLDER
+bool api_record_begin(const api *a, const char *path);
+/* A file that the test has written. */
+void api_record_file(const char *path, const void *bytes, size_t size);
+void api_record_end(void);
+void api_record_crash(void); /* from a handler of signals */
+#else
+static inline bool api_record_begin(const api *a, const char *path) { return (void)a, !path; }
+static inline void api_record_file(const char *path, const void *bytes, size_t size) {
+  (void)path, (void)bytes, (void)size;
+}
+static inline void api_record_end(void) {}
+static inline void api_record_crash(void) {}
+#endif
 
 /* ---- table.c --------------------------------------------------------------------------------- */
 typedef struct api_call {
@@ -263,19 +270,6 @@ void api_scene(api *a);
 void api_do(api *a, const char *name); /* the call of that name */
 void api_print_counts(void);
 
-/* A function that fills a definition. */
-#define API_INIT(type)                                                                             \
-  static void init_##type(api *a) {                                                                \
-    union {                                                                                        \
-      mps_##type def;                                                                              \
-      char room[4096];                                                                             \
-    } u;                                                                                           \
-    api_begin(a, "mps_" #type "_init");                                                            \
-    const size_t size = api_size_of(a, sizeof u.def);                                              \
-    const mps_status status = mps_##type##_init(api_null(a, "def") ? NULL : &u.def, size);         \
-    if (status == MPS_OK && u.def.struct_size != size) api_broken(a, "sets no size");              \
-    (void)api_end(a, status);                                                                      \
-  }
 /* A query of a number of one object. */
 #define API_QUERY(function, kind)                                                                  \
   static void query_##function(api *a) {                                                           \

@@ -3,6 +3,10 @@
 #include "api.h"
 
 #include <mps/mps.h>
+#include <mps/experimental/coupling.h>
+#include <mps/experimental/domain.h>
+#include <mps/experimental/neighbours.h>
+#include <mps/experimental/waves.h>
 
 #include <stdio.h>
 #include <string.h>

@@ -2,15 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls.h"
 
+#include "body/body_internal.h"
+
 #include <float.h>
 
 #include <mps/body.h>
 
 #include <stdio.h>
 #include <stdlib.h>
-
-API_INIT(body_def)
-API_INIT(body_motion)
 
 /* A body below, above or within the particles' box. */
 static void draw_def(api *a, mps_body_def *def, int dim) {
@@ -159,6 +158,7 @@ static void body_create_stl(api *a) {
   if (file) {
     (void)!fwrite(text, 1, length, file);
     (void)fclose(file);
+    api_record_file(path, text, length);
   }
   const double scale = api_real(a, "scale", 5e-324, 1e300, 1.0);
   const mps_status status =
@@ -170,13 +170,12 @@ static void body_create_stl(api *a) {
 
 API_DESTROY(body_destroy, API_BODY)
 API_QUERY(body_dim, API_BODY)
-API_QUERY(body_part_count, API_BODY)
 
 static void body_drive(api *a) {
   api_begin(a, "mps_body_drive");
   mps_body *body = api_any(a, API_BODY)->handle;
   const int32_t component = api_choice(a, "component", 6);
-  mps_signal *signal = api_maybe(a, API_SIGNAL, "signal");
+  mps_signal *signal = api_signal(a, false);
   const double factor = api_near(a, "factor", 1.0, 0.5);
   api_arm(a);
   (void)api_end(a, mps_body_drive(body, component, signal, factor));
@@ -237,11 +236,12 @@ static void body_advance(api *a) {
   }
 GETTER(get_state, mps_body_state)
 GETTER(get_totals, mps_body_totals)
+GETTER(get_def, mps_body_def)
 
 static void body_get_reaction_sized(api *a) {
   api_begin(a, "mps_body_get_reaction_sized");
   mps_body *body = api_any(a, API_BODY)->handle;
-  const int32_t parts = mps_body_part_count(body);
+  const int32_t parts = body ? body->parts : 0;
   const int32_t part = (int32_t)api_whole(a, "part", -1, parts > 0 ? parts - 1 : -1);
   API_SIZED(a, mps_reaction, size, out);
   const mps_status status = mps_body_get_reaction_sized(body, part, out, size);
@@ -290,8 +290,6 @@ static void body_part(api *a) {
 }
 
 static const api_call calls[] = {
-    {"mps_body_def_init", 1, API_NOTHING, init_body_def},
-    {"mps_body_motion_init", 1, API_NOTHING, init_body_motion},
     {"mps_body_create_polygon", 2, API_CONTEXT, body_create_polygon},
     {"mps_body_create_box", 4, API_CONTEXT, body_create_box},
     {"mps_body_create_disc", 2, API_CONTEXT, body_create_disc},
@@ -310,10 +308,10 @@ static const api_call calls[] = {
     {"mps_body_advance", 4, API_BODY, body_advance},
     {"mps_body_get_state_sized", 1, API_BODY, body_get_state_sized},
     {"mps_body_get_totals_sized", 1, API_BODY, body_get_totals_sized},
+    {"mps_body_get_def_sized", 1, API_BODY, body_get_def_sized},
     {"mps_body_get_reaction_sized", 2, API_BODY, body_get_reaction_sized},
     {"mps_body_distance", 4, API_BODY, body_distance},
     {"mps_body_name_part", 2, API_BODY, body_name_part},
     {"mps_body_find_part", 1, API_BODY, body_part},
-    {"mps_body_part_count", 1, API_BODY, query_body_part_count},
 };
 const api_table api_body_calls = API_TABLE(calls);

@@ -3,14 +3,31 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls.h"
 
+#include "core/definition/definition.h"
+
 #include <mps/mps.h>
+#include <mps/experimental/neighbours.h>
 
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- contexts -------------------------------------------------------------------------------- */
 
-API_INIT(context_def)
+/* Definitions of all kinds, and of one that there is not. */
+static void def_init(api *a) {
+  union {
+    uint32_t size;
+    char room[4096];
+  } u;
+  api_begin(a, "mps_def_init");
+  const int32_t kind = (int32_t)api_below(a, a->mood == API_ABSURD ? 100 : 55);
+  const mpsi_definition *definition = mpsi_definition_of(kind);
+  if (!definition) api_wrong(a, "kind");
+  const size_t size = api_size_of(a, definition ? definition->size : 64);
+  const mps_status status = mps_def_init(kind, api_null(a, "def") ? NULL : &u, size);
+  if (status == MPS_OK && u.size != size) api_broken(a, "sets no size");
+  (void)api_end(a, status);
+}
 
 static void context_create(api *a) {
   api_begin(a, "mps_context_create");
@@ -40,8 +57,37 @@ static void context_create(api *a) {
 
 API_DESTROY(context_destroy, API_CONTEXT)
 API_QUERY(context_error, API_CONTEXT)
-API_QUERY(context_instruction_level, API_CONTEXT)
 API_QUERY(context_threads, API_CONTEXT)
+
+/* Allowed without a context too: the record of the thread. */
+static void context_get_error(api *a) {
+  api_begin(a, "mps_context_get_error_sized");
+  mps_error record;
+  if (mps_context_get_error_sized(api_context(a), &record, sizeof record) != MPS_OK ||
+      !memchr(record.message, '\0', sizeof record.message))
+    api_broken(a, "no record of an error");
+  api_end_query(a);
+}
+
+static void context_get_warning_sized(api *a) {
+  api_begin(a, "mps_context_get_warning_sized");
+  mps_context *context = api_context(a);
+  const int64_t count = mps_context_warning_count(context);
+  const int64_t index = api_whole(a, "index", 0, count - 1);
+  API_SIZED(a, mps_context_warning, size, out);
+  const mps_status status = mps_context_get_warning_sized(context, index, out, size);
+  API_SIZED_END(a, status, size, out, count > 0);
+}
+
+static void context_clear_warnings(api *a) {
+  api_begin(a, "mps_context_clear_warnings");
+  mps_context *context = api_context(a);
+  mps_context_clear_warnings(context);
+  if (mps_context_warning_count(context) != 0) api_broken(a, "leaves warnings");
+  api_end_query(a);
+}
+
+API_QUERY(context_warning_count, API_CONTEXT)
 
 static void context_clear_error(api *a) {
   api_begin(a, "mps_context_clear_error");
@@ -71,25 +117,19 @@ static void context_set_hook(api *a, const char *name, int which) {
   mps_context_def def = mps_context_defaults();
   if (!api_chance(a, 30)) api_hooks(a, &def);
   api_say(a, def.log ? "hook, " : "NULL, ");
-  if (which == 0) mps_context_set_log(context, def.log, a);
-  if (which == 1) mps_context_set_progress(context, def.progress, a);
-  if (which == 2) mps_context_set_cancel(context, def.cancel, a);
+  if (which == 0) mps_context_set_log(context, def.log, &a->plan, NULL);
+  if (which == 1) mps_context_set_progress(context, def.progress, &a->plan, NULL);
+  if (which == 2) mps_context_set_cancel(context, def.cancel, &a->plan, NULL);
   api_end_query(a);
   if (which != 2 || def.cancel) return;
   mps_context_def hooks = mps_context_defaults(); /* it ends runs that would take for ever */
   api_hooks(a, &hooks);
-  mps_context_set_cancel(context, hooks.cancel, a);
+  mps_context_set_cancel(context, hooks.cancel, &a->plan, NULL);
 }
 
 static void context_set_log(api *a) { context_set_hook(a, "mps_context_set_log", 0); }
 static void context_set_progress(api *a) { context_set_hook(a, "mps_context_set_progress", 1); }
 static void context_set_cancel(api *a) { context_set_hook(a, "mps_context_set_cancel", 2); }
-
-static void count_unit(void *task, int64_t index, int32_t worker) {
-  atomic_llong *sum = task;
-  atomic_fetch_add(sum, index + 1);
-  (void)worker;
-}
 
 static void context_parallel_for(api *a) {
   api_begin(a, "mps_context_parallel_for");
@@ -98,7 +138,7 @@ static void context_parallel_for(api *a) {
   int64_t count = api_chance(a, 10) ? 0 : (int64_t)api_below(a, 50);
   if (a->mood == API_ABSURD && api_chance(a, 30)) count = -1, api_wrong(a, "count");
   api_say(a, "%d, ", (int)count);
-  const mps_context_task_fn task = api_null(a, "task") ? NULL : count_unit;
+  const mps_context_task_fn task = api_null(a, "task") ? NULL : api_count_unit;
   if (count == 0) a->wrong = a->wrong && !context;
   const mps_status status = mps_context_parallel_for(context, count, task, &sum);
   if (status == MPS_OK && count > 0 && atomic_load(&sum) != count * (count + 1) / 2)
@@ -114,15 +154,11 @@ static void library(api *a) {
   const int32_t number = numbers[api_below(a, API_COUNT(numbers))];
   api_begin(a, "mps_library_has");
   const int32_t has = mps_library_has(number);
-  const char *name = mps_library_feature_name(number);
-  if ((has != 0 && has != 1) || (has && !name)) api_broken(a, "%d of feature %d", has, number);
+  if (has != 0 && has != 1) api_broken(a, "%d of feature %d", has, number);
   api_end_query(a);
-  api_begin(a, "mps_library_feature_name");
-  if (name && !name[0]) api_broken(a, "an empty name of %d", number);
-  api_end_query(a);
-  api_begin(a, "mps_library_has_level");
-  if (mps_library_has_level(number) && number != 1 && number != 3 && number != 4)
-    api_broken(a, "level %d", number);
+  api_begin(a, "mps_enumerator_name");
+  const char *name = mps_enumerator_name("mps_boundary_kind", number);
+  if ((name != NULL) != (number >= 0 && number <= MPS_BOUNDARY_OPEN)) api_broken(a, "%d", number);
   api_end_query(a);
   api_begin(a, "mps_status_text");
   if (!mps_status_text((mps_status)number)) api_broken(a, "no text");
@@ -166,41 +202,7 @@ static void kernel_weight(api *a) {
   api_end_query(a);
 }
 
-static void kernel_moment(api *a) {
-  api_begin(a, "mps_kernel_moment");
-  double moment = -1.0;
-  mps_context *context = api_context(a);
-  const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
-  const int32_t dim = (int32_t)api_whole(a, "dim", 1, 3);
-  const int32_t order = (int32_t)api_whole(a, "order", 0, 4);
-  const mps_status status =
-      mps_kernel_moment(context, kernel, dim, order, api_null(a, "out") ? NULL : &moment);
-  if (status == MPS_OK && !isfinite(moment)) api_broken(a, "moment %g", moment);
-  a->reads = true;
-  (void)api_end(a, status);
-}
-
-/* Spacings of a hundredth of the radius are a sum over 30 000 sites in the plane. */
-static void kernel_density(api *a) {
-  api_begin(a, "mps_kernel_density");
-  double density = -1.0;
-  mps_context *context = api_context(a);
-  const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
-  const int32_t dim = (int32_t)api_whole(a, "dim", 2, 3);
-  const double radius = mps_kernel_radius(kernel) > 0.0 ? mps_kernel_radius(kernel) : 1.0;
-  double spacing = api_real(a, "spacing", radius / 10.0, 1e12, radius / 2.5);
-  if (spacing > 0.0 && spacing < radius / 10.0) spacing = radius / 10.0, a->wrong = 0;
-  if (spacing > 1e12 && isfinite(spacing)) a->wrong = 0;
-  const mps_status status =
-      mps_kernel_density(context, kernel, dim, spacing, api_null(a, "out") ? NULL : &density);
-  if (status == MPS_OK && !isfinite(density)) api_broken(a, "density %g", density);
-  a->reads = true;
-  (void)api_end(a, status);
-}
-
 /* ---- neighbours ------------------------------------------------------------------------------ */
-
-API_INIT(neighbours_def)
 
 static void neighbours_create(api *a) {
   api_begin(a, "mps_neighbours_create");
@@ -245,21 +247,23 @@ static void neighbours_lists(api *a) {
 }
 
 static const api_call calls[] = {
-    {"mps_context_def_init", 1, API_NOTHING, init_context_def},
+    {"mps_def_init", 8, API_NOTHING, def_init},
     {"mps_context_create", 1, API_NOTHING, context_create},
     {"mps_context_destroy", 1, API_CONTEXT, destroy_context_destroy},
     {"mps_context_error", 1, API_CONTEXT, query_context_error},
+    {"mps_context_get_error_sized", 1, API_CONTEXT, context_get_error},
+    {"mps_context_warning_count", 1, API_CONTEXT, query_context_warning_count},
+    {"mps_context_get_warning_sized", 1, API_CONTEXT, context_get_warning_sized},
+    {"mps_context_clear_warnings", 1, API_CONTEXT, context_clear_warnings},
     {"mps_context_clear_error", 1, API_CONTEXT, context_clear_error},
     {"mps_context_set_error", 1, API_CONTEXT, context_set_error},
     {"mps_context_set_log", 1, API_CONTEXT, context_set_log},
     {"mps_context_set_progress", 1, API_CONTEXT, context_set_progress},
     {"mps_context_set_cancel", 1, API_CONTEXT, context_set_cancel},
-    {"mps_context_instruction_level", 1, API_CONTEXT, query_context_instruction_level},
     {"mps_context_threads", 1, API_CONTEXT, query_context_threads},
     {"mps_context_parallel_for", 2, API_CONTEXT, context_parallel_for},
     {"mps_library_has", 1, API_NOTHING, library},
-    {"mps_library_feature_name", 0, API_NOTHING, library},
-    {"mps_library_has_level", 0, API_NOTHING, library},
+    {"mps_enumerator_name", 0, API_NOTHING, library},
     {"mps_status_text", 0, API_NOTHING, library},
     {"mps_version", 0, API_NOTHING, library},
     {"mps_version_number", 0, API_NOTHING, library},
@@ -269,9 +273,6 @@ static const api_call calls[] = {
     {"mps_kernel_radius", 1, API_KERNEL, query_kernel_radius},
     {"mps_kernel_weight", 2, API_KERNEL, kernel_weight},
     {"mps_kernel_derivative", 0, API_KERNEL, kernel_weight},
-    {"mps_kernel_moment", 3, API_KERNEL, kernel_moment},
-    {"mps_kernel_density", 2, API_KERNEL, kernel_density},
-    {"mps_neighbours_def_init", 1, API_NOTHING, init_neighbours_def},
     {"mps_neighbours_create", 3, API_CONTEXT, neighbours_create},
     {"mps_neighbours_destroy", 1, API_NEIGHBOURS, destroy_neighbours_destroy},
     {"mps_neighbours_build", 5, API_NEIGHBOURS, neighbours_build},

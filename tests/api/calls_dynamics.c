@@ -2,8 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 #include <mps/mps.h>
+#include <mps/experimental/dynamics_predict.h>
 
 #include <float.h>
 
@@ -20,15 +21,14 @@ static bool has_step(const mps_dynamics *dynamics) {
   return mps_dynamics_get_def(dynamics, &def) == MPS_OK && def.dt > 0.0;
 }
 
+#define SOLVER_DEF MPS_DEF_DYNAMICS
+#define SOLVER_BOUNDARY MPS_DEF_DYNAMICS_BOUNDARY
+#define SOLVER_LOAD MPS_DEF_DYNAMICS_LOAD
 #define SOLVER_GRAVITY(s, account) (void)(account);
 #define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) has_step(s)
 #define SOLVER_DT(s) step_of(s)
 API_SOLVER(dynamics, API_DYNAMICS)
-API_INIT(dynamics_def)
-API_INIT(dynamics_boundary_def)
-API_INIT(dynamics_load_def)
-API_INIT(dynamics_predict_def)
 
 static void dynamics_create(api *a) {
   api_begin(a, "mps_dynamics_create");
@@ -51,7 +51,7 @@ static void dynamics_create(api *a) {
   def.period_x =
       !a->latest && api_chance(a, 10) ? api_real(a, "period_x", 5e-324, 1e300, 0.6) : NAN;
   if (a->wrong && isnan(def.period_x) && strcmp(a->wrong_name, "period_x") == 0) a->wrong--;
-  def.divergence = api_real(a, "divergence", 5e-324, DBL_MAX, 1e15);
+  def.divergence = api_real(a, "divergence", 5e-324, DBL_MAX, NAN);
   def.measure = api_real(a, "measure", 1e-9, 1e9, 1.0);
   if (api_chance(a, 20)) def.material = api_maybe(a, API_MATERIAL, "material");
   if (!a->latest && api_chance(a, 10)) def.kernel = api_maybe(a, API_KERNEL, "kernel");
@@ -69,10 +69,8 @@ static void dynamics_set_material(api *a) {
   mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int64_t count =
       api_chance(a, 60) ? api_ids(a, mps_dynamics_particles(dynamics), 8, ids) : 0;
-  (void)api_end(a, mps_dynamics_set_material(dynamics, material, count, count ? ids : NULL));
+  (void)api_end(a, mps_dynamics_set_material(dynamics, material, count ? ids : NULL, count));
 }
-
-API_QUERY(dynamics_pairs, API_DYNAMICS)
 
 /* A list of ids, or a box. */
 static void draw_place(api *a, mps_particles *set, const int64_t **ids, int64_t *count,
@@ -101,7 +99,7 @@ static void draw_boundary(api *a, mps_dynamics *dynamics, mps_dynamics_boundary_
   const uint32_t dofs[] = {MPS_DOF_X, MPS_DOF_Y, MPS_DOF_X | MPS_DOF_Y,
                            MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION};
   def->dofs = dofs[api_below(a, 4)];
-  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+  if (api_chance(a, 40)) def->signal[0] = api_signal(a, false);
 }
 
 static void dynamics_add_boundary(api *a) {
@@ -143,7 +141,7 @@ static void draw_load(api *a, mps_dynamics *dynamics, mps_dynamics_load_def *def
   } else {
     api_vector(a, "acceleration", 2, 0.0, 10.0, def->acceleration);
   }
-  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+  if (api_chance(a, 40)) def->signal[0] = api_signal(a, true);
 }
 
 static void dynamics_add_load(api *a) {
@@ -169,7 +167,7 @@ static void dynamics_set_load(api *a) {
 static void dynamics_add_free_field(api *a) {
   api_begin(a, "mps_dynamics_add_free_field");
   mps_particles *set = api_any(a, API_SET)->handle;
-  const int32_t side = (int32_t)api_whole(a, "side", 1, 2);
+  const int32_t side = (int32_t)api_whole(a, "side", MPS_SIDE_X_LOWER, MPS_SIDE_X_UPPER);
   (void)api_end(a, mps_dynamics_add_free_field(set, side, (int32_t)api_least(a, "gap", 2, 5)));
 }
 
@@ -199,12 +197,8 @@ static void dynamics_predict_sized(api *a) {
   api_begin(a, "mps_dynamics_predict_sized");
   mps_context *context = api_context(a);
   mps_dynamics_predict_def def = mps_dynamics_predict_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.integrator = api_choice(a, "integrator", 2);
-  def.spacing = api_real(a, "spacing", 1e-12, 1e12, 0.1);
-  def.shear_velocity = api_real(a, "shear_velocity", 5e-324, 1e300, 100.0);
-  def.pressure_velocity = api_real(a, "pressure_velocity", 5e-324, 1e300, 200.0);
-  def.damping = api_real(a, "damping", 0.0, 1e300, 0.02);
+  api_define(a, MPS_DEF_DYNAMICS_PREDICT, &def, 0,
+             "integrator, spacing 0.1, shear_velocity 100, pressure_velocity 200, damping 0.02");
   API_SIZED(a, mps_dynamics_prediction, size, out);
   const mps_status status = mps_dynamics_predict_sized(context, &def, out, size);
   if (status == MPS_OK && size >= sizeof *out && !(out->dt > 0.0 && isfinite(out->omega)))
@@ -220,13 +214,8 @@ static void experimental_printed_torque(api *a) {
 
 static const api_call calls[] = {
     API_SOLVER_CALLS(dynamics, API_DYNAMICS),
-    {"mps_dynamics_def_init", 1, API_NOTHING, init_dynamics_def},
-    {"mps_dynamics_boundary_def_init", 1, API_NOTHING, init_dynamics_boundary_def},
-    {"mps_dynamics_load_def_init", 1, API_NOTHING, init_dynamics_load_def},
-    {"mps_dynamics_predict_def_init", 1, API_NOTHING, init_dynamics_predict_def},
     {"mps_dynamics_create", 6, API_SET, dynamics_create},
     {"mps_dynamics_set_material", 2, API_DYNAMICS, dynamics_set_material},
-    {"mps_dynamics_pairs", 1, API_DYNAMICS, query_dynamics_pairs},
     {"mps_dynamics_add_boundary", 4, API_DYNAMICS, dynamics_add_boundary},
     {"mps_dynamics_set_boundary", 3, API_DYNAMICS, dynamics_set_boundary},
     {"mps_dynamics_add_load", 3, API_DYNAMICS, dynamics_add_load},

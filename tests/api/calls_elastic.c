@@ -2,20 +2,18 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
-#include <mps/elastic_solver.h>
-#include <mps/experimental.h>
+#include <mps/experimental/linear_solver.h>
+#include <mps/experimental/papers.h>
 #include <mps/mps.h>
 
+#define SOLVER_DEF MPS_DEF_ELASTIC
+#define SOLVER_BOUNDARY MPS_DEF_ELASTIC_BOUNDARY
+#define SOLVER_LOAD MPS_DEF_ELASTIC_LOAD
 #define SOLVER_GRAVITY(s, account) (void)(account);
 #define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_elastic_dt(s)
 API_SOLVER(elastic, API_ELASTIC)
-API_INIT(elastic_def)
-API_INIT(elastic_boundary_def)
-API_INIT(elastic_load_def)
-API_INIT(elastic_motion_def)
-API_INIT(elastic_solver_def)
 
 enum { MOST = 128 }; /* particles or facets that arrays here have room for */
 
@@ -77,13 +75,6 @@ static void experimental_published(api *a) {
   create(a, true);
 }
 
-static void elastic_update_material(api *a) {
-  api_begin(a, "mps_elastic_update_material");
-  api_object *o = api_any(a, API_ELASTIC);
-  o->drags = true;
-  (void)api_end(a, mps_elastic_update_material(o->handle));
-}
-
 static void elastic_set_material(api *a) {
   api_begin(a, "mps_elastic_set_material");
   int64_t ids[8] = {0};
@@ -92,7 +83,7 @@ static void elastic_set_material(api *a) {
   o->drags = o->drags || !a->latest;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int64_t count = api_chance(a, 60) ? api_ids(a, mps_elastic_particles(e), 8, ids) : 0;
-  (void)api_end(a, mps_elastic_set_material(e, material, count, count ? ids : NULL));
+  (void)api_end(a, mps_elastic_set_material(e, material, count ? ids : NULL, count));
 }
 
 /* Ids of the particles in the lowest layer. */
@@ -113,10 +104,11 @@ static void elastic_cut(api *a) {
   const int32_t axis = mps_particles_dim(set) == 3 ? 2 : 1;
   int64_t count = base(set, ids);
   if (count == 0 || api_chance(a, 20)) count = api_ids(a, set, 4, ids);
-  const int32_t side = api_chance(a, 80) ? -1 : (int32_t)api_whole(a, "side", -1, 1);
-  if (a->mood == API_ABSURD && side == 0) api_wrong(a, "side");
-  api_say(a, "axis = %d, side = %d, %d ids, ", axis, side, (int)count);
-  (void)api_end(a, mps_elastic_cut(e, axis, side, count, ids));
+  const int32_t side = api_chance(a, 80)
+                           ? mps_side_of(axis, 0)
+                           : (int32_t)api_whole(a, "side", 0, 2 * mps_particles_dim(set) - 1);
+  api_say(a, "side = %d, %d ids, ", side, (int)count);
+  (void)api_end(a, mps_elastic_cut(e, side, ids, count));
 }
 
 /* ---- boundaries and loads -------------------------------------------------------------------- */
@@ -141,7 +133,7 @@ static void draw_boundary(api *a, mps_elastic *e, mps_elastic_boundary_def *def,
       for (int64_t k = 0; k < 3 * def->id_count && k < 3 * MOST; k++) values[k] = 1e-4;
       def->values = values;
     }
-    if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+    if (api_chance(a, 40)) def->signal[0] = api_signal(a, false);
   }
   api_say(a, "%d ids, ", (int)def->id_count);
 }
@@ -175,12 +167,6 @@ static void elastic_set_boundary(api *a) {
   (void)api_end(a, mps_elastic_set_boundary(e, number, &def));
 }
 
-static mps_status traction(void *user, const double *x, const double *normal, double *out) {
-  (void)x;
-  out[0] = 10.0 * normal[0], out[1] = -10.0;
-  return api_callback(user, out, 2);
-}
-
 static void draw_load(api *a, mps_elastic *e, mps_elastic_load_def *def, int64_t *ids) {
   *def = mps_elastic_load_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
@@ -194,10 +180,11 @@ static void draw_load(api *a, mps_elastic *e, mps_elastic_load_def *def, int64_t
     if (a->mood == API_ABSURD && api_chance(a, 10)) ids[0] = facets, api_wrong(a, "ids");
   }
   def->ids = def->id_count ? ids : NULL;
+  def->all = !def->ids;
   api_vector(a, "force", mps_particles_dim(mps_elastic_particles(e)), 0.0, 100.0, def->force);
   if (def->kind >= MPS_ELASTIC_LOAD_PRESSURE && a->wrong == 1) a->wrong = 0;
-  if (def->kind == MPS_ELASTIC_LOAD_FUNCTION) def->function = traction, def->user = a;
-  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+  if (def->kind == MPS_ELASTIC_LOAD_FUNCTION) def->function = api_traction, def->user = &a->plan;
+  if (api_chance(a, 40)) def->signal[0] = api_signal(a, true);
 }
 
 static void elastic_add_load(api *a) {
@@ -244,15 +231,13 @@ static void elastic_select_facets(api *a) {
   api_begin(a, "mps_elastic_select_facets");
   int64_t facets[MOST + 1], count = -1;
   const mps_elastic *e = api_any(a, API_ELASTIC)->handle;
-  const int32_t axis = (int32_t)api_whole(a, "axis", 0, a->dim - 1);
-  const int32_t side = (int32_t)api_whole(a, "side", -1, 1);
-  if (a->wrong == 1 && axis == 2) a->wrong = !e; /* of a scene in space */
-  if (a->wrong == 1 && side == 0) a->wrong = !e; /* no axis is requested */
+  const int32_t side = (int32_t)api_whole(a, "side", MPS_SIDE_ANY, 2 * a->dim - 1);
+  if (a->wrong == 1 && side >= 4 && side <= 5) a->wrong = !e; /* of a scene in space */
   int64_t capacity = (int64_t)api_below(a, MOST);
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   facets[capacity < 0 ? 0 : capacity] = -7;
   const mps_status status =
-      mps_elastic_select_facets(e, axis, side, NULL, NULL, capacity, &count, facets);
+      mps_elastic_select_facets(e, side, NULL, NULL, capacity, &count, facets);
   if (facets[capacity < 0 ? 0 : capacity] != -7) api_broken(a, "writes behind the capacity");
   a->reads = true;
   (void)api_end(a, status);
@@ -271,7 +256,7 @@ static void elastic_get_facets_sized(api *a) {
   for (int k = 0; k < 4; k++) facets[k] = all > 0 ? (int64_t)api_below(a, (uint32_t)all) : 0;
   if (a->mood == API_ABSURD && count > 0 && api_chance(a, 20))
     facets[0] = -1, api_wrong(a, "facet");
-  const mps_status status = mps_elastic_get_facets_sized(e, count, facets, &arrays,
+  const mps_status status = mps_elastic_get_facets_sized(e, facets, count, &arrays,
                                                          api_chance(a, 90) ? sizeof arrays : 8);
   a->reads = true;
   (void)api_end(a, status);
@@ -303,6 +288,7 @@ static void elastic_solve_cases(api *a) {
   for (int k = 0; k < 2 * 3 * MOST; k++) loads[k] = 1.0 - 0.01 * k;
   if (a->mood == API_ABSURD && n > 0 && api_chance(a, 20)) loads[0] = NAN;
   api_run_solver(a, API_ELASTIC, o);
+  a->change = API_CHANGES_ORDER; /* edited moduli are read before the solution */
   const mps_status status = mps_elastic_solve_cases(o->handle, count, loads, displacements);
   for (int64_t k = 0; status == MPS_OK && k < 3 * n * count; k++)
     if (!isfinite(displacements[k]))
@@ -333,17 +319,6 @@ static void elastic_section(api *a) {
   (void)api_end(a, status);
 }
 
-static void elastic_energy(api *a) {
-  api_begin(a, "mps_elastic_get_energy");
-  double strain = NAN, stabilising = NAN;
-  mps_elastic *e = api_any(a, API_ELASTIC)->handle;
-  const mps_status status =
-      mps_elastic_get_energy(e, &strain, api_chance(a, 80) ? &stabilising : NULL);
-  if (status == MPS_OK && !isfinite(strain)) api_broken(a, "energy %g", strain);
-  a->reads = true;
-  (void)api_end(a, status);
-}
-
 static void elastic_modes(api *a) {
   api_begin(a, "mps_elastic_modes");
   static double omega[4], shapes[4 * 3 * MOST];
@@ -364,12 +339,8 @@ static void elastic_start(api *a) {
   api_begin(a, "mps_elastic_start");
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic_motion_def def = mps_elastic_motion_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.dt = api_real(a, "dt", 1e-30, 1e30, 1e-3);
-  def.rho_inf = api_real(a, "rho_inf", 0.0, 1.0, 1.0);
-  def.mass_damping = api_real(a, "mass_damping", 0.0, 1e300, 0.0);
-  def.stiffness_damping = api_real(a, "stiffness_damping", 0.0, 1e300, 0.0);
-  def.time = api_near(a, "time", 0.0, 0.0);
+  api_define(a, MPS_DEF_ELASTIC_MOTION, &def, 0,
+             "dt 1e-3, rho_inf 1, mass_damping? 1, stiffness_damping? 1e-4, time 0");
   /* momenta are those of forces at both ends of a step, with Newmark's average acceleration */
   o->drags = o->drags || def.rho_inf != 1.0 || def.mass_damping != 0.0;
   o->exact = o->exact && def.rho_inf == 1.0 && def.stiffness_damping == 0.0;
@@ -377,44 +348,17 @@ static void elastic_start(api *a) {
   (void)api_end(a, mps_elastic_start(o->handle, api_null(a, "def") ? NULL : &def));
 }
 
-/* ---- a foreign solver: Jacobi's iteration, seldom enough ------------------------------------- */
-
-static mps_status take_matrix(void *user, const mps_elastic_matrix *matrix, size_t size) {
-  (void)matrix, (void)size;
-  return api_callback(user, NULL, 0);
-}
-
-static mps_status give_nothing(void *user, const double *b, double tolerance, double *x,
-                               int64_t *iterations) {
-  (void)b, (void)tolerance;
-  *iterations = 1;
-  return api_callback(user, x, 1);
-}
-
-static void elastic_set_solver(api *a) {
-  api_begin(a, "mps_elastic_set_solver");
+static void elastic_set_linear_solver(api *a) {
+  api_begin(a, "mps_solver_set_linear_solver");
   api_object *o = api_any(a, API_ELASTIC);
-  mps_elastic *e = o->handle;
   o->exact = false;
-  mps_elastic_solver_def def = mps_elastic_solver_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.user = a;
-  def.matrix = api_null(a, "matrix") ? NULL : take_matrix;
-  def.solve = api_null(a, "solve") ? NULL : give_nothing;
-  const bool out = a->wrong == 0 && api_chance(a, 60);
-  (void)api_end(a, mps_elastic_set_solver(e, out ? NULL : &def));
+  api_set_linear_solver(a, mps_elastic_solver(o->handle), MPS_LINEAR_EQUATION_STIFFNESS);
 }
 
 static const api_call calls[] = {
     API_SOLVER_CALLS(elastic, API_ELASTIC),
-    {"mps_elastic_def_init", 1, API_NOTHING, init_elastic_def},
-    {"mps_elastic_boundary_def_init", 1, API_NOTHING, init_elastic_boundary_def},
-    {"mps_elastic_load_def_init", 1, API_NOTHING, init_elastic_load_def},
-    {"mps_elastic_motion_def_init", 1, API_NOTHING, init_elastic_motion_def},
-    {"mps_elastic_solver_def_init", 1, API_NOTHING, init_elastic_solver_def},
     {"mps_elastic_create", 5, API_SET, elastic_create},
     {"mps_experimental_elastic_published", 1, API_SET, experimental_published},
-    {"mps_elastic_update_material", 2, API_ELASTIC, elastic_update_material},
     {"mps_elastic_set_material", 2, API_ELASTIC, elastic_set_material},
     {"mps_elastic_cut", 2, API_ELASTIC, elastic_cut},
     {"mps_elastic_add_boundary", 3, API_ELASTIC, elastic_add_boundary},
@@ -431,9 +375,8 @@ static const api_call calls[] = {
     {"mps_elastic_get_report_sized", 1, API_ELASTIC, elastic_get_report_sized},
     {"mps_elastic_update_stress", 3, API_ELASTIC, elastic_stress},
     {"mps_elastic_get_section", 1, API_ELASTIC, elastic_section},
-    {"mps_elastic_get_energy", 1, API_ELASTIC, elastic_energy},
     {"mps_elastic_modes", 1, API_ELASTIC, elastic_modes},
     {"mps_elastic_start", 6, API_ELASTIC, elastic_start},
-    {"mps_elastic_set_solver", 1, API_ELASTIC, elastic_set_solver},
+    {"mps_solver_set_linear_solver", 1, API_ELASTIC, elastic_set_linear_solver},
 };
 const api_table api_elastic_calls = API_TABLE(calls);

@@ -3,22 +3,20 @@
 #include "calls_solver.h"
 
 #include <float.h>
-#include <mps/experimental.h>
-#include <mps/fluid_rock.h>
-#include <mps/fluid_solver.h>
+#include <mps/experimental/papers.h>
+#include <mps/experimental/fluid_rock.h>
+#include <mps/experimental/linear_solver.h>
 #include <mps/mps.h>
+#include <mps/experimental/fluid_parts.h>
 
+#define SOLVER_DEF MPS_DEF_FLUID
+#define SOLVER_BOUNDARY MPS_DEF_FLUID_BOUNDARY
+#define SOLVER_LOAD MPS_DEF_FLUID_LOAD
 #define SOLVER_GRAVITY(s, account) (void)(account);
 #define SOLVER_MOMENTUM false
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_fluid_dt(s)
 API_SOLVER(fluid, API_FLUID)
-API_INIT(fluid_def)
-API_INIT(fluid_boundary_def)
-API_INIT(fluid_load_def)
-API_INIT(fluid_rock_def)
-API_INIT(fluid_contact_def)
-API_INIT(fluid_solver_def)
 
 static void fluid_create(api *a) {
   api_begin(a, "mps_fluid_create");
@@ -48,15 +46,6 @@ static void fluid_create(api *a) {
   (void)api_end_made(a, status, API_FLUID, made, NULL);
 }
 
-static void fluid_set_material(api *a) {
-  api_begin(a, "mps_fluid_set_material");
-  int64_t ids[8] = {0};
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  mps_material *material = api_any(a, API_MATERIAL)->handle;
-  const int64_t count = api_chance(a, 30) ? api_ids(a, mps_fluid_particles(fluid), 8, ids) : 0;
-  (void)api_end(a, mps_fluid_set_material(fluid, material, count, count ? ids : NULL));
-}
-
 /* ---- walls ----------------------------------------------------------------------------------- */
 
 static void draw_boundary(api *a, mps_fluid_boundary_def *def, int which, double nodes[6]) {
@@ -71,7 +60,7 @@ static void draw_boundary(api *a, mps_fluid_boundary_def *def, int which, double
     def->normal[c] = a->latest ? normals[which][c] : api_near(a, "normal", normals[which][c], 0.1);
   }
   api_say(a, "wall %d, ", which);
-  if (api_chance(a, 30)) def->signal = api_maybe(a, API_SIGNAL, "signal");
+  if (api_chance(a, 30)) def->signal = api_signal(a, false);
   if (def->signal) def->factor = api_near(a, "factor", 1.0, 0.5);
   if (!def->signal && !a->latest && api_chance(a, 20)) {
     const double along[] = {def->point[0],
@@ -128,8 +117,8 @@ static void fluid_set_boundary(api *a) {
   (void)api_end(a, mps_fluid_set_boundary(fluid, number, &def));
 }
 
-static void fluid_set_wall_motion(api *a) {
-  api_begin(a, "mps_fluid_set_wall_motion");
+static void fluid_set_boundary_motion(api *a) {
+  api_begin(a, "mps_fluid_set_boundary_motion");
   double s[2], v[2];
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
@@ -139,22 +128,22 @@ static void fluid_set_wall_motion(api *a) {
   if (isfinite(s[0]) && isfinite(v[0])) a->wrong = before; /* most walls have one node */
   if (api_chance(a, 30)) {
     a->wrong = before + !isfinite(v[0]);
-    (void)api_end(a, mps_fluid_set_wall_motion(fluid, number, NULL, v));
+    (void)api_end(a, mps_fluid_set_boundary_motion(fluid, number, NULL, v));
   } else {
-    (void)api_end(a, mps_fluid_set_wall_motion(fluid, number, s, v));
+    (void)api_end(a, mps_fluid_set_boundary_motion(fluid, number, s, v));
   }
 }
 
 static void fluid_get_wall(api *a) {
-  api_begin(a, "mps_fluid_get_wall");
+  api_begin(a, "mps_fluid_get_boundary_points");
   double x[3 * 33], pressure[33];
   int64_t count = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 3);
   int64_t capacity = (int64_t)api_below(a, 33);
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
-  const mps_status status =
-      mps_fluid_get_wall(fluid, number, capacity, &count, api_chance(a, 80) ? x : NULL, pressure);
+  const mps_status status = mps_fluid_get_boundary_points(fluid, number, capacity, &count,
+                                                          api_chance(a, 80) ? x : NULL, pressure);
   for (int64_t k = 0; status == MPS_OK && k < count && k < capacity; k++)
     if (!isfinite(pressure[k])) api_broken(a, "pressure %g", pressure[k]);
   a->reads = false; /* readings before a step fill `surface_rise` and others */
@@ -222,23 +211,14 @@ static void fluid_add_contact(api *a) {
   api_object *o = api_any(a, API_FLUID);
   mps_body *body = api_any(a, API_BODY)->handle;
   mps_fluid_contact_def def = mps_fluid_contact_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.kind = api_choice(a, "kind", 3); /* a body is HELD or ROLLER, not DRIVEN between them */
-  def.kind = def.kind == 1 ? MPS_BOUNDARY_ROLLER : def.kind == 2 ? MPS_BOUNDARY_DRIVEN : def.kind;
-  if (api_chance(a, 20)) def.floats = (int32_t)api_below(a, 2);
+  if (api_chance(a, 50)) def.kind = MPS_BOUNDARY_ROLLER;
+  api_define(a, MPS_DEF_FLUID_CONTACT, &def, 0, api_chance(a, 20) ? "kind" : "mover?");
   const bool kept = api_chance(a, 80);
   const mps_status status = mps_fluid_add_contact(
       o->handle, body, a->wrong == 0 && api_chance(a, 10) ? NULL : &def, kept ? &made : NULL);
   if (kept && (status == MPS_OK) != (made != NULL)) api_broken(a, "a contact, or none");
   (void)api_adopt(a, API_CONTACT, made, a->context, o);
   (void)api_end(a, status);
-}
-
-static void fluid_float_body(api *a) {
-  api_begin(a, "mps_fluid_float_body");
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  mps_contact *contact = api_any(a, API_CONTACT)->handle;
-  (void)api_end(a, mps_fluid_float_body(fluid, contact, (int32_t)api_below(a, 2)));
 }
 
 static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t *ids) {
@@ -252,6 +232,8 @@ static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t
     const int before = a->wrong;
     def->lower[1] = api_near(a, "lower", 0.3, 0.2);
     a->wrong = before;
+  } else {
+    def->all = 1;
   }
   if (def->kind == MPS_FLUID_LOAD_PRESSURE)
     def->pressure = api_real(a, "pressure", -1e12, 1e12, 100.0);
@@ -259,7 +241,7 @@ static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t
     def->rate = api_real(a, "rate", 0.0, 1e6, 5.0);
   else
     api_vector(a, "acceleration", 2, 0.0, 1.0, def->acceleration);
-  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+  if (api_chance(a, 40)) def->signal[0] = api_signal(a, true);
 }
 
 static void fluid_add_load(api *a) {
@@ -290,17 +272,14 @@ static void fluid_add_rock(api *a) {
   int32_t number = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   mps_fluid_rock_def def = mps_fluid_rock_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
   const double x = api_near(a, "corner", 0.3, 0.2);
   const double all[] = {x, 0.0, 0.0, x + 0.2, 0.0, 0.0, x + 0.2, 0.3, 0.0, x, 0.3, 0.0};
   memcpy(corners, all, sizeof all);
-  def.corners = api_null(a, "corners") ? NULL : corners;
-  def.corner_count = (int32_t)api_least(a, "corner_count", 3, 4);
-  if (def.corner_count > 4 && def.corner_count <= 10000) def.corner_count = 4;
-  def.porosity = api_real(a, "porosity", 0.1, 1.0, 0.5);
-  def.diameter = api_real(a, "diameter", 1e-6, 100.0, 0.02);
-  def.alpha = api_real(a, "alpha", 0.0, 1e6, 1000.0);
-  def.gamma = api_real(a, "gamma", 0.0, 10.0, 0.34);
+  def.corners = corners;
+  api_define(
+      a, MPS_DEF_FLUID_ROCK, &def, 0,
+      "corner_count 4, porosity 0.5, diameter 0.02, alpha 1000, beta? 1.1, KC? 10, gamma 0.34, "
+      "viscosity? 1e-6");
   api_arm(a);
   (void)api_end(a, mps_fluid_add_rock(fluid, api_null(a, "def") ? NULL : &def, &number));
 }
@@ -351,35 +330,10 @@ static void fluid_abandon_step(api *a) {
 API_GETTER(fluid_get_report_sized, mps_fluid_get_report_sized, API_FLUID, mps_fluid,
            mps_fluid_report)
 
-/* ---- a foreign solver, which does not solve -------------------------------------------------- */
-
-static mps_status take_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
-                              const double *value) {
-  (void)rows, (void)start, (void)column, (void)value;
-  return api_callback(user, NULL, 0);
-}
-
-static mps_status give_start(void *user, const double *b, double tolerance, double *x,
-                             int64_t *iterations) {
-  (void)b, (void)tolerance;
-  *iterations = 1;
-  return api_callback(user, x, 1);
-}
-
-static mps_status forget(void *user) { return api_callback(user, NULL, 0); }
-
-static void fluid_set_solver(api *a) {
-  api_begin(a, "mps_fluid_set_solver");
+static void fluid_set_linear_solver(api *a) {
+  api_begin(a, "mps_solver_set_linear_solver");
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  mps_fluid_solver_def def = mps_fluid_solver_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.user = a;
-  def.matrix = api_null(a, "matrix") ? NULL : take_matrix;
-  def.solve = api_null(a, "solve") ? NULL : give_start;
-  def.least = api_least(a, "least", 0, 40);
-  if (api_chance(a, 50)) def.forget = forget;
-  const bool out = a->wrong == 0 && api_chance(a, 60);
-  (void)api_end(a, mps_fluid_set_solver(fluid, out ? NULL : &def));
+  api_set_linear_solver(a, mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE);
 }
 
 static void experimental_classical(api *a) {
@@ -390,26 +344,18 @@ static void experimental_classical(api *a) {
 
 static const api_call calls[] = {
     API_SOLVER_CALLS(fluid, API_FLUID),
-    {"mps_fluid_def_init", 1, API_NOTHING, init_fluid_def},
-    {"mps_fluid_boundary_def_init", 1, API_NOTHING, init_fluid_boundary_def},
-    {"mps_fluid_load_def_init", 1, API_NOTHING, init_fluid_load_def},
-    {"mps_fluid_rock_def_init", 1, API_NOTHING, init_fluid_rock_def},
-    {"mps_fluid_contact_def_init", 1, API_NOTHING, init_fluid_contact_def},
-    {"mps_fluid_solver_def_init", 1, API_NOTHING, init_fluid_solver_def},
     {"mps_fluid_create", 5, API_SET, fluid_create},
     {"mps_fluid_add_boundary", 4, API_FLUID, fluid_add_boundary},
     {"mps_fluid_set_boundary", 3, API_FLUID, fluid_set_boundary},
-    {"mps_fluid_set_wall_motion", 4, API_FLUID, fluid_set_wall_motion},
-    {"mps_fluid_get_wall", 1, API_FLUID, fluid_get_wall},
+    {"mps_fluid_set_boundary_motion", 4, API_FLUID, fluid_set_boundary_motion},
+    {"mps_fluid_get_boundary_points", 1, API_FLUID, fluid_get_wall},
     {"mps_fluid_get_pressure", 2, API_FLUID, fluid_get_pressure},
     {"mps_fluid_get_body_pressure", 1, API_FLUID, fluid_get_body_pressure},
     {"mps_fluid_get_segments", 1, API_FLUID, fluid_get_segments},
     {"mps_fluid_get_levels", 1, API_FLUID, fluid_get_levels},
     {"mps_fluid_add_rock", 1, API_FLUID, fluid_add_rock},
     {"mps_fluid_remove_rock", 1, API_FLUID, fluid_remove_rock},
-    {"mps_fluid_set_material", 2, API_FLUID, fluid_set_material},
     {"mps_fluid_add_contact", 3, API_FLUID, fluid_add_contact},
-    {"mps_fluid_float_body", 2, API_FLUID, fluid_float_body},
     {"mps_fluid_add_load", 3, API_FLUID, fluid_add_load},
     {"mps_fluid_set_load", 2, API_FLUID, fluid_set_load},
     {"mps_fluid_begin_step", 4, API_FLUID, fluid_begin_step},
@@ -417,7 +363,7 @@ static const api_call calls[] = {
     {"mps_fluid_end_step", 5, API_FLUID, fluid_end_step},
     {"mps_fluid_abandon_step", 2, API_FLUID, fluid_abandon_step},
     {"mps_fluid_get_report_sized", 1, API_FLUID, fluid_get_report_sized},
-    {"mps_fluid_set_solver", 1, API_FLUID, fluid_set_solver},
+    {"mps_solver_set_linear_solver", 1, API_FLUID, fluid_set_linear_solver},
     {"mps_experimental_fluid_classical", 1, API_FLUID, experimental_classical},
 };
 const api_table api_fluid_calls = API_TABLE(calls);

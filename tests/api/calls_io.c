@@ -3,10 +3,9 @@
 #include "calls_solver.h"
 
 #include <mps/mps.h>
+#include <mps/experimental/domain.h>
 
 #include <stdlib.h>
-
-API_INIT(recorder_def)
 
 static void recorder_create(api *a) {
   api_begin(a, "mps_recorder_create");
@@ -36,13 +35,11 @@ static void recorder_create(api *a) {
 static void recorder_write(api *a) {
   api_begin(a, "mps_recorder_write");
   mps_recorder *recorder = api_any(a, API_RECORDER)->handle;
-  const double frames = (double)mps_recorder_frames(recorder);
-  const mps_status status = mps_recorder_write(recorder, api_near(a, "time", frames, 0.4));
+  const mps_status status = mps_recorder_write(recorder, api_near(a, "time", (double)a->call, 0.4));
   if (status == MPS_ERROR_IO) a->change = API_CHANGES_ALL;
   (void)api_end(a, status);
 }
 
-API_QUERY(recorder_frames, API_RECORDER)
 API_DESTROY(recorder_destroy, API_RECORDER)
 
 static void recorder_close(api *a) {
@@ -58,37 +55,14 @@ static void recorder_close(api *a) {
 
 /* ---- checkpoints ----------------------------------------------------------------------------- */
 
-API_INIT(checkpoint)
-
-static void draw_info(api *a, mps_checkpoint *info, char *data) {
-  *info = mps_checkpoint_defaults();
-  info->struct_size = api_struct_size(a, sizeof *info);
-  info->time = api_near(a, "time", 0.0, 1.0);
-  info->step = api_least(a, "step", 0, 9);
-  info->dt = api_real(a, "dt", 0.0, 1.7e308, 1e-3);
-  if (info->dt > 1.7e308 && !isinf(info->dt)) a->wrong--;
-  if (api_chance(a, 30)) info->user_data = data, info->user_bytes = 8;
-}
-
-static void checkpoint_write(api *a) {
-  api_begin(a, "mps_checkpoint_write");
-  char path[300], data[8] = "results";
-  mps_checkpoint info;
-  mps_particles *set = api_any(a, API_SET)->handle;
-  draw_info(a, &info, data);
-  api_path(a, path, "set");
-  const mps_status status = mps_checkpoint_write(set, api_null(a, "path") ? NULL : path,
-                                                 api_null(a, "info") ? NULL : &info);
-  a->reads = true;
-  (void)api_end(a, status);
-}
+static const char *const solvers[] = {"mpm", "dynamics", "elastic", "fluid"}; /* that write files */
 
 static void checkpoint_info(api *a) {
   api_begin(a, "mps_checkpoint_info");
   char path[300];
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_context *context = api_context(a);
-  api_path(a, path, "set");
+  api_path(a, path, solvers[api_below(a, 4)]);
   api_damage(a, path);
   a->reads = true;
   (void)api_end(a, mps_checkpoint_info(context, path, api_null(a, "info") ? NULL : &info));
@@ -99,80 +73,13 @@ static void checkpoint_read(api *a) {
   char path[300], data[8];
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_particles *set = api_any(a, API_SET)->handle;
-  static const char *const kinds[] = {"set", "set", "set", "mpm", "fluid"};
-  api_path(a, path, kinds[api_below(a, 5)]);
+  api_path(a, path, solvers[api_below(a, 4)]);
   api_damage(a, path);
   if (api_chance(a, 50)) info.user_data = data, info.user_bytes = sizeof data;
   (void)api_end(a, mps_checkpoint_read(set, path, &info));
 }
 
 /* ---- domains of one rank --------------------------------------------------------------------- */
-
-API_INIT(domain_def)
-
-typedef struct star {
-  int64_t guests, *index;
-} star;
-
-static mps_status rendezvous(void *user, int32_t count, const mps_domain_message *messages,
-                             mps_domain_room_fn room, void *room_user) {
-  for (int32_t k = 0; k < count; k++) {
-    void *to = room(room_user, 0, messages[k].bytes);
-    if (!to && messages[k].bytes > 0) return MPS_ERROR_MEMORY;
-    if (to) memcpy(to, messages[k].data, (size_t)messages[k].bytes);
-  }
-  return api_callback(user, NULL, 0);
-}
-
-static mps_status star_create(void *user, int64_t own, int64_t guests, const int32_t *rank,
-                              const int64_t *index, void **out) {
-  (void)own, (void)rank;
-  star *s = malloc(sizeof *s);
-  if (!s) return MPS_ERROR_MEMORY;
-  s->guests = guests;
-  s->index = malloc((size_t)(guests + 1) * sizeof *s->index);
-  if (s->index && guests > 0) memcpy(s->index, index, (size_t)guests * sizeof *s->index);
-  const mps_status status = s->index ? api_callback(user, NULL, 0) : MPS_ERROR_MEMORY;
-  if (status == MPS_OK) {
-    *out = s;
-    return MPS_OK;
-  }
-  free(s->index);
-  free(s);
-  return status;
-}
-
-static mps_status star_begin(void *user, void *given, int32_t item_bytes, const void *own,
-                             void *guests) {
-  const star *s = given;
-  const size_t bytes = (size_t)item_bytes;
-  for (int64_t k = 0; k < s->guests; k++)
-    memcpy((char *)guests + (size_t)k * bytes, (const char *)own + (size_t)s->index[k] * bytes,
-           bytes);
-  return api_callback(user, NULL, 0);
-}
-
-static mps_status star_end(void *user, void *given) {
-  (void)given;
-  return api_callback(user, NULL, 0);
-}
-
-static void star_destroy(void *user, void *given) {
-  (void)user;
-  free(((star *)given)->index);
-  free(given);
-}
-
-static mps_status reduce_max(void *user, int32_t count, double *values) {
-  for (int32_t k = 0; k < count; k++)
-    if (isnan(values[k])) api_broken(user, "reduces a NaN");
-  return api_callback(user, NULL, 0);
-}
-
-static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
-  (void)count, (void)values;
-  return api_callback(user, NULL, 0);
-}
 
 static void domain_create(api *a) {
   api_begin(a, "mps_domain_create");
@@ -182,11 +89,11 @@ static void domain_create(api *a) {
   def.struct_size = api_struct_size(a, sizeof def);
   def.size = (int32_t)api_whole(a, "size", 1, 1);
   if (def.size > 1 && def.size <= 1000000) def.size = 0;
-  def.user = a;
-  def.rendezvous = api_null(a, "rendezvous") ? NULL : rendezvous;
-  def.star_create = star_create, def.star_begin = star_begin, def.star_end = star_end;
-  def.star_destroy = api_null(a, "star_destroy") ? NULL : star_destroy;
-  def.reduce_max = reduce_max, def.reduce_sum = reduce_sum;
+  def.user = &a->plan;
+  def.rendezvous = api_null(a, "rendezvous") ? NULL : api_rendezvous;
+  def.star_create = api_star_create, def.star_begin = api_star_begin, def.star_end = api_star_end;
+  def.star_destroy = api_null(a, "star_destroy") ? NULL : api_star_destroy;
+  def.reduce_max = api_reduce_max, def.reduce_sum = api_reduce_sum;
   api_arm(a);
   const mps_status status = mps_domain_create(context, &def, api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_DOMAIN, made, NULL);
@@ -204,7 +111,7 @@ static void domain_agree(api *a) {
   api_arm(a);
   const mps_status status = mps_domain_agree(domain, given);
   if (domain && given != MPS_OK && status == MPS_OK) api_broken(a, "makes an error of none");
-  if (status == given && given != MPS_OK) a->context = -1; /* the record is the caller's own */
+  if (status == given && given != MPS_OK) a->own_record = true;
   (void)api_end(a, status);
 }
 
@@ -231,21 +138,19 @@ static void domain_create_particles(api *a) {
   (void)api_end_made(a, status, API_SET, made, NULL);
 }
 
-static void gather(api *a, const char *name, bool some) {
-  api_begin(a, name);
+static void domain_gather_fields(api *a) {
+  api_begin(a, "mps_domain_gather_fields");
   mps_particles *whole = NULL;
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;
   mps_particles *set = api_any(a, API_SET)->handle;
   const char *names[1] = {"density"};
+  const bool some = api_chance(a, 50);
   if (some) names[0] = api_field(a, set);
   api_arm(a);
-  const mps_status status = some ? mps_domain_gather_fields(domain, set, 1, names, &whole)
-                                 : mps_domain_gather(domain, set, &whole);
+  const mps_status status =
+      mps_domain_gather_fields(domain, set, some, some ? names : NULL, &whole);
   (void)api_end_made(a, status, API_SET, whole, NULL);
 }
-
-static void domain_gather(api *a) { gather(a, "mps_domain_gather", false); }
-static void domain_gather_fields(api *a) { gather(a, "mps_domain_gather_fields", true); }
 
 static void domain_get_field(api *a) {
   api_begin(a, "mps_domain_get_field");
@@ -257,23 +162,18 @@ static void domain_get_field(api *a) {
   const int64_t count = api_ids(a, set, 4, ids);
   if (count == 0) a->wrong = !domain || !set;
   api_arm(a);
-  const mps_status status = mps_domain_get_field(domain, set, name, count, ids, values);
+  const mps_status status = mps_domain_get_field(domain, set, name, ids, count, values);
   a->reads = true;
   (void)api_end(a, status);
 }
 
 static const api_call calls[] = {
-    {"mps_recorder_def_init", 1, API_NOTHING, init_recorder_def},
     {"mps_recorder_create", 2, API_SET, recorder_create},
     {"mps_recorder_write", 4, API_RECORDER, recorder_write},
-    {"mps_recorder_frames", 1, API_RECORDER, query_recorder_frames},
     {"mps_recorder_close", 1, API_RECORDER, recorder_close},
     {"mps_recorder_destroy", 1, API_RECORDER, destroy_recorder_destroy},
-    {"mps_checkpoint_init", 1, API_NOTHING, init_checkpoint},
-    {"mps_checkpoint_write", 2, API_SET, checkpoint_write},
     {"mps_checkpoint_info", 2, API_CONTEXT, checkpoint_info},
     {"mps_checkpoint_read", 3, API_SET, checkpoint_read},
-    {"mps_domain_def_init", 1, API_NOTHING, init_domain_def},
     {"mps_domain_create", 1, API_CONTEXT, domain_create},
     {"mps_domain_destroy", 1, API_DOMAIN, destroy_domain_destroy},
     {"mps_domain_rank", 1, API_DOMAIN, query_domain_rank},
@@ -281,7 +181,6 @@ static const api_call calls[] = {
     {"mps_domain_agree", 1, API_DOMAIN, domain_agree},
     {"mps_domain_max", 1, API_DOMAIN, domain_max},
     {"mps_domain_create_particles", 1, API_DOMAIN, domain_create_particles},
-    {"mps_domain_gather", 2, API_DOMAIN, domain_gather},
     {"mps_domain_gather_fields", 2, API_DOMAIN, domain_gather_fields},
     {"mps_domain_get_field", 2, API_DOMAIN, domain_get_field},
 };

@@ -2,9 +2,16 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
+#include "body/contact_internal.h"
+
 #include <float.h>
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 #include <mps/mps.h>
+#include <mps/experimental/mpm_energy.h>
+#include <mps/experimental/linear_solver.h>
+#include <mps/experimental/pore_water.h>
+#include <mps/experimental/pore_water.h>
+#include <mps/experimental/settle.h>
 
 /* Water that has drained takes its mass from the particles. */
 static double drained_from(const mps_mpm *mpm) {
@@ -28,17 +35,14 @@ static void mpm_gravity(mps_mpm *mpm, api_account *account) {
   account->pushed = account->pushed || def.local_damping != 0.0 || def.viscous_damping != 0.0;
   account->radial = def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
 }
+#define SOLVER_DEF MPS_DEF_MPM
+#define SOLVER_BOUNDARY MPS_DEF_MPM_BOUNDARY
+#define SOLVER_LOAD MPS_DEF_MPM_LOAD
 #define SOLVER_GRAVITY(s, account) mpm_gravity(s, account);
 #define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_mpm_dt(s)
 API_SOLVER(mpm, API_MPM)
-API_INIT(mpm_def)
-API_INIT(mpm_boundary_def)
-API_INIT(mpm_load_def)
-API_INIT(mpm_settle_def)
-API_INIT(contact_def)
-API_QUERY(mpm_kernel, API_MPM)
 API_QUERY(mpm_grid, API_MPM)
 
 static void draw_choices(api *a, mps_mpm_def *def) {
@@ -46,7 +50,7 @@ static void draw_choices(api *a, mps_mpm_def *def) {
   def->volumetric = api_choice(a, "volumetric", 4);
   def->step_from = api_choice(a, "step_from", 2);
   def->budget = (int32_t)api_below(a, 2);
-  def->walls = api_choice(a, "walls", 2);
+  def->edge = api_choice(a, "edge", 2);
   if (api_chance(a, 20)) def->local_damping = api_real(a, "local_damping", 0.0, 0.999, 0.1);
   if (api_chance(a, 20)) def->viscous_damping = api_real(a, "viscous_damping", 0.0, 1e300, 1.0);
   if (api_chance(a, 20)) def->flip_time = api_real(a, "flip_time", 0.0, 1e9, 1e-3);
@@ -94,7 +98,7 @@ static void mpm_set_material(api *a) {
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int64_t count = api_chance(a, 60) ? api_ids(a, mps_mpm_particles(mpm), 8, ids) : 0;
-  (void)api_end(a, mps_mpm_set_material(mpm, material, count, count ? ids : NULL));
+  (void)api_end(a, mps_mpm_set_material(mpm, material, count ? ids : NULL, count));
 }
 
 /* ---- boundaries and loads -------------------------------------------------------------------- */
@@ -119,7 +123,7 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
   if (!side) def->dofs = api_below(a, 4);
   if (api_chance(a, 30)) {
     const int c = (int)api_below(a, 2);
-    def->signal[c] = api_maybe(a, API_SIGNAL, "signal");
+    def->signal[c] = api_signal(a, false);
     def->factor[c] = api_near(a, "factor", 1.0, 0.5);
     if (!def->signal[c] && !isfinite(def->factor[c])) a->wrong = 0;
   }
@@ -158,14 +162,18 @@ static void mpm_set_boundary(api *a) {
 static void draw_load(api *a, mps_mpm *mpm, mps_mpm_load_def *def, int64_t *ids, double *area) {
   *def = mps_mpm_load_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
-  def->id_count = api_ids(a, mps_mpm_particles(mpm), 4, ids);
-  def->ids = ids;
-  if (api_chance(a, 30)) {
+  if (api_chance(a, 20)) {
+    def->all = 1;
+  } else {
+    def->id_count = api_ids(a, mps_mpm_particles(mpm), 4, ids);
+    def->ids = ids;
+  }
+  if (def->ids && api_chance(a, 30)) {
     for (int k = 0; k < 4; k++) area[k] = k < def->id_count ? api_near(a, "area", 0.1, 0.05) : 0.0;
     def->area = area;
   }
   api_vector(a, "traction", mps_particles_dim(mps_mpm_particles(mpm)), 0.0, 100.0, def->traction);
-  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+  if (api_chance(a, 40)) def->signal[0] = api_signal(a, true);
   if (api_chance(a, 30)) def->factor[1] = api_near(a, "factor", 1.0, 0.5);
 }
 
@@ -188,23 +196,20 @@ static void mpm_set_load(api *a) {
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   draw_load(a, mpm, &def, ids, area);
-  if (api_chance(a, 30)) def.ids = NULL, def.id_count = 0;
-  if (!def.ids && def.area) def.area = NULL, a->wrong = 0;
   (void)api_end(a, mps_mpm_set_load(mpm, number, &def));
 }
 
 /* ---- sums and equilibrium -------------------------------------------------------------------- */
 
-API_GETTER(mpm_get_usage_sized, mps_mpm_get_usage_sized, API_MPM, mps_mpm, mps_mpm_usage)
-API_GETTER(mpm_get_losses_sized, mps_mpm_get_losses_sized, API_MPM, mps_mpm, mps_mpm_losses)
+API_GETTER(mpm_get_usage_sized, mps_mpm_get_report_sized, API_MPM, mps_mpm, mps_mpm_report)
+API_GETTER(mpm_get_energy_report_sized, mps_mpm_get_energy_report_sized, API_MPM, mps_mpm,
+           mps_mpm_energy_report)
 
 static void mpm_settle_sized(api *a) {
   api_begin(a, "mps_mpm_settle_sized");
   api_object *o = api_any(a, API_MPM);
   mps_mpm_settle_def def = mps_mpm_settle_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.max_steps = api_least(a, "max_steps", 1, 30);
-  def.tolerance = api_optional(a, "tolerance", 5e-324, 1.0 - 0x1p-53, 1e-2);
+  api_define(a, MPS_DEF_MPM_SETTLE, &def, 0, "max_steps 30, tolerance? 1e-2");
   mps_mpm_settled out[2];
   memset(out, 0x5a, sizeof out);
   const size_t size = api_size(a, sizeof *out);
@@ -218,9 +223,6 @@ static void mpm_settle_sized(api *a) {
 
 /* ---- pore water ------------------------------------------------------------------------------ */
 
-API_INIT(pore_water_def)
-API_INIT(pore_face_def)
-API_INIT(pore_solver_def)
 API_GETTER(mpm_get_pore_water_sized, mps_mpm_get_pore_water_sized, API_MPM, mps_mpm,
            mps_pore_water_def)
 API_GETTER(mpm_get_pore_budget_sized, mps_mpm_get_pore_budget_sized, API_MPM, mps_mpm,
@@ -232,12 +234,9 @@ static void mpm_add_pore_water(api *a) {
   api_begin(a, "mps_mpm_add_pore_water");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   mps_pore_water_def def = mps_pore_water_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.porosity = api_optional(a, "porosity", 5e-324, 1.0 - 0x1p-53, 0.3);
-  def.permeability = api_optional(a, "permeability", 5e-324, 1.0, 1e-4);
-  def.bulk = api_optional(a, "bulk", 5e-324, 1e15, 1e6);
-  def.density = api_real(a, "density", 5e-324, 1e6, 1.0);
-  def.exponent = api_real(a, "exponent", 0.0, 100.0, 1.0);
+  api_define(a, MPS_DEF_PORE_WATER, &def, 0,
+             "scheme, porosity? 0.3, permeability? 1e-4, bulk? 1e6, density 1, exponent 1, "
+             "ratio_slope? 1");
   a->change = API_CHANGES_ORDER;
   (void)api_end(a, mps_mpm_add_pore_water(mpm, &def));
 }
@@ -252,10 +251,7 @@ static void mpm_set_pore_level(api *a) {
 
 static mps_pore_face_def draw_face(api *a) {
   mps_pore_face_def def = mps_pore_face_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.kind = api_choice(a, "kind", 2);
-  def.at_rest = api_choice(a, "at_rest", 2);
-  def.pressure = api_real(a, "pressure", -1e15, 1e15, 100.0);
+  api_define(a, MPS_DEF_PORE_FACE, &def, 0, "kind, at_rest?, pressure? 100");
   return def;
 }
 
@@ -275,32 +271,10 @@ static void mpm_set_pore_face(api *a) {
   (void)api_end(a, mps_mpm_set_pore_face(mpm, number, &def));
 }
 
-/* A solver that does not solve. */
-static mps_status take_pore_rows(void *user, int64_t all, int64_t first, int64_t rows,
-                                 const int64_t *start, const int32_t *column, const double *value) {
-  (void)all, (void)first, (void)rows, (void)start, (void)column, (void)value;
-  return api_callback(user, NULL, 0);
-}
-static mps_status give_pore_start(void *user, const double *b, double tolerance, double *x,
-                                  int64_t *iterations) {
-  (void)b, (void)tolerance;
-  *iterations = 1;
-  return api_callback(user, x, 1);
-}
-static mps_status forget_pores(void *user) { return api_callback(user, NULL, 0); }
-
-static void mpm_set_pore_solver(api *a) {
-  api_begin(a, "mps_mpm_set_pore_solver");
+static void mpm_set_linear_solver(api *a) {
+  api_begin(a, "mps_solver_set_linear_solver");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
-  mps_pore_solver_def def = mps_pore_solver_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.user = a;
-  def.rows = api_null(a, "rows") ? NULL : take_pore_rows;
-  def.solve = api_null(a, "solve") ? NULL : give_pore_start;
-  def.least = api_least(a, "least", 0, 40);
-  if (api_chance(a, 50)) def.forget = forget_pores;
-  const bool out = a->wrong == 0 && api_chance(a, 60);
-  (void)api_end(a, mps_mpm_set_pore_solver(mpm, out ? NULL : &def));
+  api_set_linear_solver(a, mps_mpm_solver(mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE);
 }
 
 static void mpm_get_pore_flow(api *a) {
@@ -319,25 +293,14 @@ static void mpm_add_contact(api *a) {
   api_object *o = api_any(a, API_MPM);
   mps_body *body = api_any(a, API_BODY)->handle;
   mps_contact_def def = mps_contact_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  if (!a->latest) {
-    def.mover = api_choice(a, "mover", 2);
-    def.method = api_choice(a, "method", 2);
-    def.sweeps = (int32_t)api_whole(a, "sweeps", 0, 30);
-    if (def.sweeps > 30 && def.sweeps <= 1000) a->wrong = 0;
-    def.inside = api_choice(a, "inside", 3);
-    def.thin = (int32_t)api_below(a, 2);
-    def.friction = api_real(a, "friction", 0.0, 1e3, 0.3);
-    if (def.method == MPS_CONTACT_METHOD_PENALTY)
-      def.penalty = api_optional(a, "penalty", 5e-324, 1e300, 1e5);
-    def.offset = api_optional(a, "offset", 0.0, 1e300, 0.05);
-    def.depth = api_optional(a, "depth", 5e-324, INFINITY, 0.2);
-    if (def.method == MPS_CONTACT_METHOD_IMPULSE) {
-      def.adhesion = api_real(a, "adhesion", 0.0, 1e300, 0.0);
-      def.strength = api_optional(a, "strength", 5e-324, 1e300, 100.0);
-      def.corner = api_real(a, "corner", 0.0, 1e300, api_chance(a, 70) ? 0.0 : 0.02);
-    }
-  }
+  if (!a->latest)
+    api_define(
+        a, MPS_DEF_CONTACT, &def, 0,
+        api_chance(a, 60)
+            ? "mover, sweeps 30, inside, thin, friction 0.3, offset? 0.05, depth? 0.2, "
+              "adhesion? 1, strength? 100, corner? 0.02, tolerance? 0.1"
+            : "mover, method, sweeps 30, inside, thin, friction 0.3, penalty? 1e5, offset? 0.05, "
+              "depth? 0.2");
   const bool kept = api_chance(a, 80);
   const mps_status status = mps_mpm_add_contact(
       o->handle, body, a->wrong == 0 && api_chance(a, 10) ? NULL : &def, kept ? &made : NULL);
@@ -347,12 +310,11 @@ static void mpm_add_contact(api *a) {
 }
 
 API_DESTROY(contact_destroy, API_CONTACT)
-API_QUERY(contact_body, API_CONTACT)
 
 static void contact_get_reaction_sized(api *a) {
   api_begin(a, "mps_contact_get_reaction_sized");
   mps_contact *contact = api_any(a, API_CONTACT)->handle;
-  const int32_t parts = mps_body_part_count(mps_contact_body(contact));
+  const int32_t parts = contact ? contact->body->parts : 0;
   const int32_t part = (int32_t)api_whole(a, "part", -1, parts > 0 ? parts - 1 : -1);
   API_SIZED(a, mps_reaction, size, out);
   const mps_status status = mps_contact_get_reaction_sized(contact, part, out, size);
@@ -405,13 +367,6 @@ static void grid_get_nodes(api *a) {
   a->reads = true;
   a->change = API_CHANGES_ORDER;
   (void)api_end(a, status);
-}
-
-static void grid_fill(api *a) {
-  api_begin(a, "mps_grid_fill");
-  mps_grid *g = grid(a);
-  mps_particles *set = api_any(a, API_SET)->handle;
-  (void)api_end(a, mps_grid_fill(g, set));
 }
 
 /* 0 also where the set lacks the field. */
@@ -474,42 +429,31 @@ static void experimental_standard(api *a) {
 
 static const api_call calls[] = {
     API_SOLVER_CALLS(mpm, API_MPM),
-    {"mps_mpm_def_init", 1, API_NOTHING, init_mpm_def},
-    {"mps_mpm_boundary_def_init", 1, API_NOTHING, init_mpm_boundary_def},
-    {"mps_mpm_load_def_init", 1, API_NOTHING, init_mpm_load_def},
-    {"mps_mpm_settle_def_init", 1, API_NOTHING, init_mpm_settle_def},
-    {"mps_pore_water_def_init", 1, API_NOTHING, init_pore_water_def},
-    {"mps_pore_face_def_init", 1, API_NOTHING, init_pore_face_def},
-    {"mps_pore_solver_def_init", 1, API_NOTHING, init_pore_solver_def},
     {"mps_mpm_add_pore_water", 2, API_MPM, mpm_add_pore_water},
     {"mps_mpm_get_pore_water_sized", 1, API_MPM, mpm_get_pore_water_sized},
     {"mps_mpm_set_pore_level", 1, API_MPM, mpm_set_pore_level},
     {"mps_mpm_add_pore_face", 2, API_MPM, mpm_add_pore_face},
     {"mps_mpm_set_pore_face", 1, API_MPM, mpm_set_pore_face},
-    {"mps_mpm_set_pore_solver", 1, API_MPM, mpm_set_pore_solver},
+    {"mps_solver_set_linear_solver", 1, API_MPM, mpm_set_linear_solver},
     {"mps_mpm_get_pore_flow", 1, API_MPM, mpm_get_pore_flow},
     {"mps_mpm_get_pore_budget_sized", 1, API_MPM, mpm_get_pore_budget_sized},
     {"mps_mpm_get_pore_report_sized", 1, API_MPM, mpm_get_pore_report_sized},
-    {"mps_contact_def_init", 1, API_NOTHING, init_contact_def},
     {"mps_mpm_create", 8, API_MATERIAL, mpm_create},
-    {"mps_mpm_kernel", 1, API_MPM, query_mpm_kernel},
     {"mps_mpm_grid", 1, API_MPM, query_mpm_grid},
     {"mps_mpm_set_material", 4, API_MPM, mpm_set_material},
     {"mps_mpm_add_boundary", 4, API_MPM, mpm_add_boundary},
     {"mps_mpm_set_boundary", 5, API_MPM, mpm_set_boundary},
     {"mps_mpm_add_load", 3, API_MPM, mpm_add_load},
     {"mps_mpm_set_load", 3, API_MPM, mpm_set_load},
-    {"mps_mpm_get_usage_sized", 1, API_MPM, mpm_get_usage_sized},
-    {"mps_mpm_get_losses_sized", 1, API_MPM, mpm_get_losses_sized},
+    {"mps_mpm_get_report_sized", 1, API_MPM, mpm_get_usage_sized},
+    {"mps_mpm_get_energy_report_sized", 1, API_MPM, mpm_get_energy_report_sized},
     {"mps_mpm_settle_sized", 2, API_MPM, mpm_settle_sized},
     {"mps_mpm_add_contact", 6, API_MPM, mpm_add_contact},
     {"mps_contact_destroy", 1, API_CONTACT, destroy_contact_destroy},
-    {"mps_contact_body", 1, API_CONTACT, query_contact_body},
     {"mps_contact_get_reaction_sized", 2, API_CONTACT, contact_get_reaction_sized},
     {"mps_contact_get_particles", 3, API_CONTACT, contact_get_particles},
     {"mps_grid_get_info_sized", 1, API_MPM, grid_get_info_sized},
     {"mps_grid_get_nodes", 2, API_MPM, grid_get_nodes},
-    {"mps_grid_fill", 2, API_MPM, grid_fill},
     {"mps_grid_evaluate", 3, API_MPM, grid_evaluate},
     {"mps_experimental_mpm_transfer", 1, API_MPM, experimental_transfer},
     {"mps_experimental_mpm_strain", 1, API_MPM, experimental_strain},

@@ -4,13 +4,11 @@
 
 #include <float.h>
 
-#include <mps/geostatic.h>
 #include <mps/soil.h>
 #include <mps/material.h>
+#include <mps/experimental/soil.h>
 
 #include <stdlib.h>
-
-API_INIT(particles_def)
 
 static void particles_create(api *a) {
   api_begin(a, "mps_particles_create");
@@ -93,12 +91,6 @@ static void particles_fill_polygon(api *a) {
   (void)api_end(a, mps_particles_fill_polygon(set, vertices, api_null(a, "xy") ? NULL : xy, NULL));
 }
 
-static mps_status inside_disc(void *user, const double *x, int32_t *inside) {
-  api *a = user;
-  *inside = (x[0] - 0.4) * (x[0] - 0.4) + (x[1] - 0.4) * (x[1] - 0.4) < 0.09;
-  return api_callback(a, NULL, 0);
-}
-
 static void particles_fill_where(api *a) {
   api_begin(a, "mps_particles_fill_where");
   double lo[3], hi[3];
@@ -109,8 +101,9 @@ static void particles_fill_where(api *a) {
   a->mood = mood;
   if (mood == API_ABSURD && api_chance(a, 30)) hi[0] = NAN, api_wrong(a, "hi");
   api_arm(a);
-  (void)api_end(a, mps_particles_fill_where(set, lo, hi, api_null(a, "inside") ? NULL : inside_disc,
-                                            a, NULL));
+  (void)api_end(a, mps_particles_fill_where(set, lo, hi,
+                                            api_null(a, "inside") ? NULL : api_inside_disc,
+                                            &a->plan, NULL));
 }
 
 static void particles_append(api *a) {
@@ -137,7 +130,7 @@ static void particles_remove(api *a) {
   mps_particles *set = api_any(a, API_SET)->handle;
   const int64_t count = api_ids(a, set, 1 + api_below(a, 3), ids);
   const bool none = count > 0 && api_null(a, "ids");
-  (void)api_end(a, mps_particles_remove(set, count, none ? NULL : ids));
+  (void)api_end(a, mps_particles_remove(set, none ? NULL : ids, count));
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
@@ -342,13 +335,6 @@ static void particles_nearest(api *a) {
 
 /* ---- stress ---------------------------------------------------------------------------------- */
 
-API_INIT(geostatic_def)
-
-static mps_status flat(void *user, const double *x, double *level) {
-  *level = 1.0 + 0.1 * x[0];
-  return api_callback(user, level, 1);
-}
-
 static void particles_set_geostatic(api *a) {
   api_begin(a, "mps_particles_set_geostatic");
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -371,14 +357,12 @@ static void particles_set_geostatic(api *a) {
   if (api_chance(a, 30))
     def.surface = api_near(a, "surface", 1.0, 0.5), a->wrong -= isnan(def.surface);
   if (api_chance(a, 20)) def.surface_line = line, def.surface_points = 3, api_say(a, "line, ");
-  if (api_chance(a, 30)) def.surface_level = flat, def.user = a, api_say(a, "level, ");
+  if (api_chance(a, 30)) def.surface_level = api_flat, def.user = &a->plan, api_say(a, "level, ");
   if (api_chance(a, 20)) def.vertical = (int32_t)api_whole(a, "vertical", -1, 2);
   api_arm(a);
   api_loosen(a);
   (void)api_end(a, mps_particles_set_geostatic(set, &def));
 }
-
-API_INIT(consolidation_def)
 
 static void particles_set_consolidation(api *a) {
   api_begin(a, "mps_particles_set_consolidation");
@@ -387,7 +371,7 @@ static void particles_set_consolidation(api *a) {
   mps_consolidation_def def = mps_consolidation_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.ocr = api_real(a, "ocr", 1.0, 1000.0, 2.0);
-  def.pop = api_real(a, "pop", 0.0, 1e12, 0.0);
+  def.pop = api_real(a, "pop", 0.0, 1e18, 0.0);
   api_loosen(a);
   (void)api_end(a, mps_particles_set_consolidation(set, material, &def));
 }
@@ -396,14 +380,9 @@ static void particles_set_profile(api *a) {
   api_begin(a, "mps_particles_set_profile");
   mps_particles *set = api_any(a, API_SET)->handle;
   double depth[2] = {api_near(a, "depth", 0.5, 0.5), 2.0}, value[2] = {0.5, 1.5};
-  value[0] = api_real(a, "value", 0.0, 1e9, 0.5);
+  value[0] = api_near(a, "value", 0.5, 0.4);
   api_loosen(a);
   (void)api_end(a, mps_particles_set_profile(set, "strength_factor", 2, depth, value, NULL));
-}
-
-static mps_status some_stress(void *user, const double *x, double *stress) {
-  for (int k = 0; k < 4; k++) stress[k] = -100.0 * x[1];
-  return api_callback(user, stress, 4);
 }
 
 static void particles_set_stress(api *a) {
@@ -411,10 +390,9 @@ static void particles_set_stress(api *a) {
   mps_particles *set = api_any(a, API_SET)->handle;
   api_arm(a);
   api_loosen(a);
-  (void)api_end(a, mps_particles_set_stress(set, api_null(a, "stress") ? NULL : some_stress, a));
+  (void)api_end(
+      a, mps_particles_set_stress(set, api_null(a, "stress") ? NULL : api_some_stress, &a->plan));
 }
-
-API_INIT(table_def)
 
 static void particles_set_table(api *a) {
   api_begin(a, "mps_particles_set_table");
@@ -442,11 +420,10 @@ static void particles_set_material(api *a) {
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   const double density = api_real(a, "density", 1e-9, 1e9, 1000.0);
   const int64_t count = !a->latest && api_chance(a, 40) ? api_ids(a, set, 8, ids) : 0;
-  (void)api_end(a, mps_particles_set_material(set, material, density, count, count ? ids : NULL));
+  (void)api_end(a, mps_particles_set_material(set, material, density, count ? ids : NULL, count));
 }
 
 static const api_call calls[] = {
-    {"mps_particles_def_init", 1, API_NOTHING, init_particles_def},
     {"mps_particles_create", 3, API_CONTEXT, particles_create},
     {"mps_particles_destroy", 1, API_SET, destroy_particles_destroy},
     {"mps_particles_count", 1, API_SET, query_particles_count},
@@ -470,9 +447,6 @@ static const api_call calls[] = {
     {"mps_particles_select_box", 3, API_SET, particles_select_box},
     {"mps_particles_index", 2, API_SET, particles_index},
     {"mps_particles_nearest", 2, API_SET, particles_nearest},
-    {"mps_geostatic_def_init", 1, API_NOTHING, init_geostatic_def},
-    {"mps_consolidation_def_init", 1, API_NOTHING, init_consolidation_def},
-    {"mps_table_def_init", 1, API_NOTHING, init_table_def},
     {"mps_particles_set_table", 3, API_SET, particles_set_table},
     {"mps_particles_set_profile", 1, API_SET, particles_set_profile},
     {"mps_particles_set_consolidation", 1, API_SET, particles_set_consolidation},

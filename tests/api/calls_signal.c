@@ -2,12 +2,25 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls.h"
 
-#include <mps/couple.h>
+#include <mps/experimental/coupling.h>
 #include <mps/signal.h>
 
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* A motion, or a number. */
+static int32_t draw_quantity(api *a) {
+  const int32_t quantity = api_choice(a, "quantity", 2);
+  return quantity >= 0 && quantity < 2 ? quantity + MPS_SIGNAL_QUANTITY_DISPLACEMENT : -1;
+}
+
+#define DRAW_ricker (void)0
+#define OF_ricker
+#define DRAW_sine const int32_t quantity = draw_quantity(a)
+#define OF_sine quantity,
+#define DRAW_ramp const int32_t quantity = draw_quantity(a)
+#define OF_ramp quantity,
 
 /* A signal of three numbers, each drawn by `draw_...`. */
 #define SIGNAL_OF_THREE(name, x, draw_x, y, draw_y, z, draw_z)                                     \
@@ -15,9 +28,10 @@
     api_begin(a, "mps_signal_create_" #name);                                                      \
     mps_signal *made = NULL;                                                                       \
     mps_context *context = api_context(a);                                                         \
+    DRAW_##name;                                                                                   \
     const double x = draw_x, y = draw_y, z = draw_z;                                               \
     mps_signal **out = api_null(a, "out") ? NULL : &made;                                          \
-    const mps_status status = mps_signal_create_##name(context, x, y, z, out);                     \
+    const mps_status status = mps_signal_create_##name(context, OF_##name x, y, z, out);           \
     (void)api_end_made(a, status, API_SIGNAL, made, NULL);                                         \
   }
 SIGNAL_OF_THREE(ricker, frequency, api_real(a, "frequency", 1e-9, 1e9, 20.0), peak,
@@ -34,7 +48,7 @@ static void signal_table(api *a) {
   double times[6], values[6];
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
-  const int32_t quantity = api_choice(a, "quantity", 3);
+  const int32_t quantity = api_choice(a, "quantity", 5);
   const int64_t count = api_least(a, "count", 2, 6);
   const double start = api_chance(a, 70) ? 0.0 : -0.1;
   for (int k = 0; k < 6; k++) {
@@ -48,23 +62,23 @@ static void signal_table(api *a) {
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
-static mps_status motion(void *user, double t, double values[3]) {
-  values[0] = 0.01 * sin(20.0 * t), values[1] = 0.2 * cos(20.0 * t),
-  values[2] = -4.0 * sin(20.0 * t);
-  return api_callback(user, values, 3);
-}
-
 static void signal_user(api *a) {
   api_begin(a, "mps_signal_create_user");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
-  const mps_signal_fn fn = api_null(a, "fn") ? NULL : motion;
-  const mps_status status =
-      mps_signal_create_user(context, fn, a, api_null(a, "out") ? NULL : &made);
+  const int32_t quantity = draw_quantity(a);
+  const mps_signal_fn some = quantity == MPS_SIGNAL_QUANTITY_VALUE ? api_number : api_motion;
+  const mps_signal_fn fn = api_null(a, "fn") ? NULL : some;
+  const mps_status status = mps_signal_create_user(context, quantity, fn, &a->plan, NULL,
+                                                   api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
-API_INIT(signal_record_def)
+mps_signal *api_signal(api *a, bool number) {
+  mps_signal *signal = api_maybe(a, API_SIGNAL, "signal");
+  const bool fits = signal && isnan(mps_signal_value(signal, 0.0)) != number;
+  return fits || a->mood == API_ABSURD ? signal : NULL;
+}
 
 /* A record of a usual form, with some damage. */
 static void write_record(api *a, const char *path) {
@@ -81,6 +95,7 @@ static void write_record(api *a, const char *path) {
   if (!file) return;
   (void)!fwrite(text, 1, length, file);
   (void)fclose(file);
+  api_record_file(path, text, length);
 }
 
 static void signal_record(api *a) {
@@ -91,7 +106,7 @@ static void signal_record(api *a) {
   mps_signal_record_def def = mps_signal_record_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   if (api_chance(a, 50)) {
-    def.format = api_choice(a, "format", 4);
+    def.format = api_choice(a, "format", 6);
     def.quantity = api_choice(a, "quantity", 3);
     def.baseline = api_choice(a, "baseline", 5);
     if (def.quantity != MPS_SIGNAL_QUANTITY_ACCELERATION && def.baseline < 0) a->wrong = 0;
@@ -111,6 +126,16 @@ static void signal_record(api *a) {
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
+/* Of a signal that is not of a file MPS_ERROR_STATE. */
+static void signal_get_record_sized(api *a) {
+  api_begin(a, "mps_signal_get_record_sized");
+  const mps_signal *signal = api_any(a, API_SIGNAL)->handle;
+  API_SIZED(a, mps_signal_record_report, size, out);
+  const mps_status status =
+      mps_signal_get_record_sized(signal, api_null(a, "out") ? NULL : out, size);
+  API_SIZED_END(a, status, size, out, true);
+}
+
 API_DESTROY(signal_destroy, API_SIGNAL)
 
 static void signal_values(api *a) {
@@ -126,6 +151,9 @@ static void signal_values(api *a) {
   api_begin(a, "mps_signal_acceleration");
   if (isinf(mps_signal_acceleration(signal, t))) api_broken(a, "a(%g)", t);
   api_end_query(a);
+  api_begin(a, "mps_signal_value");
+  if (isinf(mps_signal_value(signal, t))) api_broken(a, "value(%g)", t);
+  api_end_query(a);
 }
 
 static void signal_span(api *a) {
@@ -136,11 +164,8 @@ static void signal_span(api *a) {
   api_end_query(a);
 }
 
-API_QUERY(signal_peak_acceleration, API_SIGNAL)
 
 /* ---- couplings ------------------------------------------------------------------------------- */
-
-API_INIT(coupling_def)
 
 static void coupling_create(api *a) {
   api_begin(a, "mps_coupling_create");
@@ -227,15 +252,14 @@ static const api_call calls[] = {
     {"mps_signal_create_ramp", 2, API_CONTEXT, signal_ramp},
     {"mps_signal_create_table", 3, API_CONTEXT, signal_table},
     {"mps_signal_create_user", 4, API_CONTEXT, signal_user},
-    {"mps_signal_record_def_init", 1, API_NOTHING, init_signal_record_def},
     {"mps_signal_create_record", 2, API_CONTEXT, signal_record},
+    {"mps_signal_get_record_sized", 1, API_SIGNAL, signal_get_record_sized},
     {"mps_signal_destroy", 1, API_SIGNAL, destroy_signal_destroy},
     {"mps_signal_displacement", 2, API_SIGNAL, signal_values},
     {"mps_signal_velocity", 0, API_SIGNAL, signal_values},
     {"mps_signal_acceleration", 0, API_SIGNAL, signal_values},
+    {"mps_signal_value", 0, API_SIGNAL, signal_values},
     {"mps_signal_span", 1, API_SIGNAL, signal_span},
-    {"mps_signal_peak_acceleration", 1, API_SIGNAL, query_signal_peak_acceleration},
-    {"mps_coupling_def_init", 1, API_NOTHING, init_coupling_def},
     {"mps_coupling_create", 2, API_CONTEXT, coupling_create},
     {"mps_coupling_destroy", 1, API_COUPLING, destroy_coupling_destroy},
     {"mps_coupling_begin", 3, API_COUPLING, coupling_begin},

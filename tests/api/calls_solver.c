@@ -59,6 +59,7 @@ void api_damage(api *a, const char *path) {
     if (file) {
       (void)!fwrite(bytes, 1, length, file);
       (void)fclose(file);
+      api_record_file(path, bytes, length);
     }
   }
   free(bytes);
@@ -155,4 +156,18 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when) 
       if (x->parts[k][p].hash != y->parts[k][p].hash && !strstr(x->parts[k][p].name, "epoch"))
         api_broken(a, "another %s %s", x->parts[k][p].name, when);
   }
+}
+
+/* ---- linear solvers -------------------------------------------------------------------------- */
+
+void api_set_linear_solver(api *a, mps_solver *solver, int32_t equation) {
+  mps_linear_solver_def def = mps_linear_solver_defaults();
+  def.user = &a->plan;
+  def.matrix = a->mood == API_ABSURD && api_chance(a, 6) ? NULL : api_linear_matrix;
+  def.solve = a->mood == API_ABSURD && api_chance(a, 6) ? NULL : api_linear_solve;
+  api_define(a, MPS_DEF_LINEAR_SOLVER, &def, 0, "least 40");
+  if (api_chance(a, 50)) def.forget = api_linear_forget;
+  const bool out = a->wrong == 0 && api_chance(a, 60);
+  if (a->mood == API_ABSURD && api_chance(a, 10)) equation = 4, api_wrong(a, "equation");
+  (void)api_end(a, mps_solver_set_linear_solver(solver, equation, out ? NULL : &def));
 }

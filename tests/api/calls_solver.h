@@ -44,6 +44,9 @@ void api_add_impulse(api_account *account, mps_status status, const mps_reaction
 void api_balance(api *a, const api_object *o, const api_account *before, const api_account *after,
                  bool momentum);
 
+/* Ends the call: a linear solver, which does not solve, or the library's own again. */
+void api_set_linear_solver(api *a, mps_solver *solver, int32_t equation);
+
 /* Parts of a solver, then of its set. */
 typedef struct api_state {
   int count[2];
@@ -70,14 +73,15 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     API_SIZED(a, mps_totals, size, out);                                                           \
     const mps_status status =                                                                      \
-        mps_##S##_get_totals_sized(s, api_null(a, "out") ? NULL : out, size);                      \
+        mps_solver_get_totals_sized(mps_##S##_solver(s), api_null(a, "out") ? NULL : out, size);   \
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_def_sized(api *a) {                                                          \
     api_begin(a, "mps_" #S "_get_def_sized");                                                      \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     API_SIZED(a, mps_##S##_def, size, out);                                                        \
-    const mps_status status = mps_##S##_get_def_sized(s, api_null(a, "out") ? NULL : out, size);   \
+    const mps_status status = mps_solver_get_def(mps_##S##_solver(s), SOLVER_DEF,                  \
+                                                 api_null(a, "out") ? NULL : out, size);           \
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_reaction_sized(api *a) {                                                     \
@@ -85,8 +89,40 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     const int32_t number = (int32_t)api_least(a, "number", 0, 9);                                  \
     API_SIZED(a, mps_reaction, size, out);                                                         \
-    const mps_status status = mps_##S##_get_reaction_sized(s, number, out, size);                  \
+    const mps_status status =                                                                      \
+        mps_solver_get_reaction_sized(mps_##S##_solver(s), number, out, size);                     \
     API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_get_boundary(api *a) {                                                           \
+    api_begin(a, "mps_" #S "_get_boundary");                                                       \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    const int32_t number = (int32_t)api_least(a, "number", 0, 8);                                  \
+    API_SIZED(a, mps_##S##_boundary_def, size, out);                                               \
+    const mps_status status = mps_solver_get(mps_##S##_solver(s), SOLVER_BOUNDARY, number,         \
+                                             api_null(a, "out") ? NULL : out, size);               \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_get_load(api *a) {                                                               \
+    api_begin(a, "mps_" #S "_get_load");                                                           \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    const int32_t number = (int32_t)api_least(a, "number", 0, 3);                                  \
+    API_SIZED(a, mps_##S##_load_def, size, out);                                                   \
+    const mps_status status = mps_solver_get(mps_##S##_solver(s), SOLVER_LOAD, number,             \
+                                             api_null(a, "out") ? NULL : out, size);               \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_get_numbers(api *a) {                                                            \
+    int32_t numbers[4];                                                                            \
+    int64_t count = -1, capacity = api_below(a, 5);                                                \
+    api_begin(a, "mps_solver_get_numbers");                                                        \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");       \
+    const mps_status status = mps_solver_get_numbers(                                              \
+        mps_##S##_solver(s), api_chance(a, 50) ? MPS_DEF_LOAD : SOLVER_BOUNDARY, capacity,         \
+        api_null(a, "count") ? NULL : &count, numbers);                                            \
+    if (status == MPS_OK && count < 0) api_broken(a, "counts %lld", (long long)count);             \
+    a->reads = true;                                                                               \
+    (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_remove_boundary(api *a) {                                                        \
     api_begin(a, "mps_" #S "_remove_boundary");                                                    \
@@ -134,10 +170,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     const int64_t count = api_least(a, "count", 0, 4);                                             \
     (void)step_by(a, o, count);                                                                    \
   }                                                                                                \
-  static mps_status S##_in_run(void *user, mps_##S *s) {                                           \
-    (void)s;                                                                                       \
-    return api_callback(user, NULL, 0);                                                            \
-  }                                                                                                \
   static void S##_run(api *a) {                                                                    \
     api_begin(a, "mps_" #S "_run");                                                                \
     api_object *o = api_any(a, KIND);                                                              \
@@ -146,7 +178,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     const int64_t every = api_least(a, "every", 1, 3), before = mps_##S##_steps(s);                \
     api_run_solver(a, KIND, o);                                                                    \
     const mps_status status =                                                                      \
-        mps_##S##_run(s, t_end, every, api_chance(a, 80) ? S##_in_run : NULL, a);                  \
+        mps_##S##_run(s, t_end, every, api_chance(a, 80) ? api_in_run_##S : NULL, &a->plan);       \
     const bool published = KIND == API_ELASTIC && a->wrong == 0; /* fields, for the callback */    \
     if (status == MPS_OK && mps_##S##_time(s) != t_end) api_broken(a, "ends elsewhere");           \
     api_stepped(a, status, before, mps_##S##_steps(s));                                            \
@@ -249,7 +281,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     char path[300];                                                                                \
     mps_checkpoint info = mps_checkpoint_defaults();                                               \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
-    api_path(a, path, api_chance(a, 90) ? #S : "set");                                             \
+    api_path(a, path, api_chance(a, 90) ? #S : "fluid");                                           \
     api_damage(a, path);                                                                           \
     const bool given = api_chance(a, 50);                                                          \
     (void)api_end(a,                                                                               \
@@ -266,6 +298,9 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
       {"mps_" #S "_get_totals_sized", 1, KIND, S##_get_totals_sized},                              \
       {"mps_" #S "_get_def_sized", 1, KIND, S##_get_def_sized},                                    \
       {"mps_" #S "_get_reaction_sized", 1, KIND, S##_get_reaction_sized},                          \
+      {"mps_" #S "_get_boundary", 2, KIND, S##_get_boundary},                                      \
+      {"mps_" #S "_get_load", 1, KIND, S##_get_load},                                              \
+      {"mps_solver_get_numbers", 1, KIND, S##_get_numbers},                                        \
       {"mps_" #S "_remove_boundary", 2, KIND, S##_remove_boundary},                                \
       {"mps_" #S "_remove_load", 1, KIND, S##_remove_load},                                        \
       {"mps_" #S "_step", 14, KIND, S##_step}, {"mps_" #S "_run", 6, KIND, S##_run},               \

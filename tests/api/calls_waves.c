@@ -2,46 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls.h"
 
-#include <mps/wave_loads.h>
-#include <mps/waves.h>
+#include <mps/experimental/wave_loads.h>
+#include <mps/experimental/waves.h>
 
 #include <float.h>
 #include <stdlib.h>
 
-API_INIT(waves_def)
-API_INIT(absorber_def)
-API_INIT(separation_def)
-API_INIT(sainflou_def)
-API_INIT(goda_def)
-API_INIT(eurotop_def)
-API_INIT(overtopping_def)
-
 /* ---- linear theory --------------------------------------------------------------------------- */
-
-static void find_number(api *a) {
-  api_begin(a, "mps_waves_find_number");
-  mps_context *context = api_context(a);
-  const double period = api_real(a, "period", 5e-324, DBL_MAX, 1.5);
-  const double depth = api_real(a, "depth", 5e-324, DBL_MAX, 0.5);
-  double k = 0.0;
-  const mps_status status =
-      mps_waves_find_number(context, period, depth, 9.81, api_null(a, "number") ? NULL : &k);
-  if (status == MPS_OK && !(k > 0.0 && isfinite(k))) api_broken(a, "k = %g", k);
-  (void)api_end(a, status);
-}
-
-static void find_piston(api *a) {
-  api_begin(a, "mps_waves_find_piston");
-  mps_context *context = api_context(a);
-  const double period = api_real(a, "period", 5e-324, DBL_MAX, 1.5);
-  const double gravity = api_real(a, "gravity", 5e-324, DBL_MAX, 9.81);
-  double far = 0.0, near = 0.0;
-  const mps_status status =
-      mps_waves_find_piston(context, period, 0.5, gravity, &far, api_chance(a, 80) ? &near : NULL);
-  if (status == MPS_OK && !(far > 0.0 && far <= 2.0 && near >= 0.0 && isfinite(near)))
-    api_broken(a, "%g, %g", far, near);
-  (void)api_end(a, status);
-}
 
 /* ---- seas ------------------------------------------------------------------------------------ */
 
@@ -52,22 +19,14 @@ static void waves_create(api *a) {
   mps_waves *made = NULL;
   mps_context *context = api_context(a);
   mps_waves_def def = mps_waves_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.kind = api_choice(a, "kind", 5);
-  def.theory = api_choice(a, "theory", 3);
-  if (def.kind >= 1 && def.kind <= 3) def.phases = api_choice(a, "phases", 3);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 0.5);
-  def.height = api_real(a, "height", 5e-324, 1e12, 0.03);
-  def.period = api_real(a, "period", 5e-324, 1e12, 1.5);
-  if (def.kind == MPS_WAVES_KIND_RECORD) a->wrong = 0; /* its height is not read */
   def.repeat = 9.0;
   def.crest = 0.03, def.time = 2.0;
-  def.ramp = api_optional(a, "ramp", 0.0, 1e12, 1.0);
-  def.stroke = api_optional(a, "stroke", 5e-324, 1e12, 2.0);
   def.count = 3, def.frequency = f, def.density = S;
   for (int k = 0; k < 24; k++) t[k] = 0.25 * k, eta[k] = api_near(a, "", 0.0, 0.01);
-  if (def.kind != MPS_WAVES_KIND_RECORD) a->wrong = 0; /* nor its levels */
+  a->wrong = 0; /* of a record alone: its table looks at them */
   def.samples = 24, def.times = t, def.levels = eta;
+  api_define(a, MPS_DEF_WAVES, &def, 0,
+             "kind, phases?, theory, depth 0.5, height 0.03, period 1.5, ramp? 1, stroke? 2");
   const bool none = api_null(a, "def");
   const mps_status status =
       mps_waves_create(context, none ? NULL : &def, api_null(a, "out") ? NULL : &made);
@@ -131,14 +90,9 @@ static void absorber_create(api *a) {
   mps_absorber *made = NULL;
   mps_context *context = api_context(a);
   mps_absorber_def def = mps_absorber_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.form = api_choice(a, "form", 2);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 0.5);
-  def.period = api_real(a, "period", 5e-324, 1e12, 1.5);
-  def.leak = api_optional(a, "leak", 0.0, 1e12, 0.01);
-  def.high_pass = api_optional(a, "high_pass", 0.0, 1e12, 5.0);
-  def.stroke = api_optional(a, "stroke", 5e-324, 1e12, 0.5);
   def.waves = api_maybe(a, API_WAVES, "waves");
+  api_define(a, MPS_DEF_ABSORBER, &def, 0,
+             "form, depth 0.5, period 1.5, leak? 0.01, high_pass? 5, stroke? 0.5");
   const bool none = api_null(a, "def");
   const mps_status status =
       mps_absorber_create(context, none ? NULL : &def, api_null(a, "out") ? NULL : &made);
@@ -153,7 +107,7 @@ static void absorber_advance(api *a) {
   api_begin(a, "mps_absorber_advance");
   double s = 0.0, u = 0.0;
   mps_absorber *absorber = api_any(a, API_ABSORBER)->handle;
-  const double t = api_near(a, "t", 2.0, 2.0), dt = api_real(a, "dt", 5e-324, 1e12, 0.01);
+  const double t = api_near(a, "t", 2.0, 2.0), dt = api_real(a, "dt", 1e-12, 1e12, 0.01);
   const double level = api_optional(a, "level", -1e12, 1e12, 0.01);
   const mps_status status =
       mps_absorber_advance(absorber, t, dt, level, api_null(a, "displacement") ? NULL : &s, &u);
@@ -165,7 +119,7 @@ static void absorber_reflection(api *a) {
   api_begin(a, "mps_absorber_get_reflection");
   double r = 0.0;
   const mps_absorber *absorber = api_any(a, API_ABSORBER)->handle;
-  const double period = api_real(a, "period", 5e-324, DBL_MAX, 1.5);
+  const double period = api_real(a, "period", 1e-12, 1e12, 1.5);
   const mps_status status =
       mps_absorber_get_reflection(absorber, period, api_null(a, "reflection") ? NULL : &r);
   if (status == MPS_OK && !(r >= 0.0 && isfinite(r))) api_broken(a, "%g", r);
@@ -199,16 +153,13 @@ static void separation_find(api *a) {
   int64_t count = 0;
   mps_context *context = api_context(a);
   mps_separation_def def = mps_separation_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
   for (int k = 0; k < N; k++) {
     t[k] = 0.1 * k;
     for (int p = 0; p < 3; p++) levels[3 * k + p] = 0.01 * cos(4.0 * t[k] - 2.0 * x[p]);
   }
   levels[3] = api_near(a, "levels", 0.0, 0.01);
   def.gauges = 3, def.position = x, def.samples = N, def.times = t, def.levels = levels;
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 0.5);
-  def.lower = api_real(a, "lower", 5e-324, 1.5, 0.3);
-  def.upper = api_real(a, "upper", 0.0, 1e12, 1.6);
+  api_define(a, MPS_DEF_SEPARATION, &def, 0, "depth 0.5, lower 0.3, upper 1.6");
   API_SIZED(a, mps_separation, size, out);
   const bool none = api_null(a, "def");
   const mps_status status = mps_separation_find_sized(
@@ -222,11 +173,7 @@ static void sainflou_evaluate(api *a) {
   api_begin(a, "mps_sainflou_evaluate_sized");
   mps_context *context = api_context(a);
   mps_sainflou_def def = mps_sainflou_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.height = api_real(a, "height", 5e-324, 1e12, 0.1);
-  def.period = api_real(a, "period", 5e-324, 1e12, 2.0);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 0.6);
-  def.density = api_real(a, "density", 5e-324, 1e12, 1000.0);
+  api_define(a, MPS_DEF_SAINFLOU, &def, 0, "height 0.1, period 2, depth 0.6, density 1000");
   API_SIZED(a, mps_sainflou, size, out);
   const bool none = api_null(a, "def");
   const mps_status status = mps_sainflou_evaluate_sized(context, none ? NULL : &def,
@@ -238,15 +185,9 @@ static void goda_evaluate(api *a) {
   api_begin(a, "mps_goda_evaluate_sized");
   mps_context *context = api_context(a);
   mps_goda_def def = mps_goda_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.impulsive = api_choice(a, "impulsive", 2);
-  def.height = api_real(a, "height", 5e-324, 1e12, 5.0);
-  def.period = api_real(a, "period", 5e-324, 1e12, 8.0);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 10.0);
-  def.crest = api_real(a, "crest", 5e-324, 1e12, 4.0);
-  def.width = api_real(a, "width", 5e-324, 1e12, 12.0);
-  def.angle = api_real(a, "angle", 0.0, 1.57, 0.3);
-  def.weight = api_optional(a, "weight", 5e-324, 1e15, 1e6);
+  api_define(a, MPS_DEF_GODA, &def, 0,
+             "impulsive, height 5, period 8, depth 10, seaward? 20, berm_depth? 8, base? 9, crest 4, "
+             "width 12, berm_width? 5, angle 0.3, weight? 1e6, arm? 6, friction? 0.6");
   API_SIZED(a, mps_goda, size, out);
   const bool none = api_null(a, "def");
   const mps_status status =
@@ -258,14 +199,8 @@ static void eurotop_evaluate(api *a) {
   api_begin(a, "mps_eurotop_evaluate_sized");
   mps_context *context = api_context(a);
   mps_eurotop_def def = mps_eurotop_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
-  def.wall = api_choice(a, "wall", 2);
-  def.design = api_choice(a, "design", 2);
-  def.height = api_real(a, "height", 5e-324, 1e12, 1.0);
-  def.period = api_real(a, "period", 5e-324, 1e12, 5.0);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 5.0);
-  def.crest = api_real(a, "crest", 5e-324, 1e12, 1.0);
-  def.cotangent = 3.0;
+  api_define(a, MPS_DEF_EUROTOP, &def, 0,
+             "wall, foreshore, design, height 1, period 5, depth 5, crest 1, cotangent 3");
   API_SIZED(a, mps_eurotop, size, out);
   const bool none = api_null(a, "def");
   const mps_status status = mps_eurotop_evaluate_sized(context, none ? NULL : &def,
@@ -277,14 +212,9 @@ static void run_up_find(api *a) {
   api_begin(a, "mps_eurotop_find_run_up_sized");
   mps_context *context = api_context(a);
   mps_eurotop_def def = mps_eurotop_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
   def.wall = MPS_EUROTOP_WALL_SLOPE;
-  def.design = api_choice(a, "design", 2);
-  def.height = api_real(a, "height", 5e-324, 1e12, 1.0);
-  def.period = api_real(a, "period", 5e-324, 1e12, 5.0);
-  def.depth = api_real(a, "depth", 5e-324, 1e12, 5.0);
-  def.roughness = api_real(a, "roughness", 5e-324, 1.0, 0.7);
-  def.cotangent = 3.0;
+  api_define(a, MPS_DEF_EUROTOP, &def, 0,
+             "design, height 1, period 5, depth 5, cotangent 3, berm? 0.8, roughness 0.7");
   API_SIZED(a, mps_eurotop_run_up, size, out);
   const bool none = api_null(a, "def");
   const mps_status status = mps_eurotop_find_run_up_sized(context, none ? NULL : &def,
@@ -298,13 +228,10 @@ static void overtopping_find(api *a) {
   double t[N], heads[N], volumes[N], thin[N];
   mps_context *context = api_context(a);
   mps_overtopping_def def = mps_overtopping_defaults();
-  def.struct_size = api_struct_size(a, sizeof def);
   for (int k = 0; k < N; k++) t[k] = 0.1 * k, heads[k] = 0.02 * cos(t[k]), volumes[k] = 1e-4 * k;
   volumes[3] = api_near(a, "volumes", 0.0, 0.01);
   def.samples = N, def.times = t, def.heads = heads, def.volumes = volumes;
-  def.resolved = api_real(a, "resolved", 5e-324, 1e12, 0.025);
-  def.pause = api_real(a, "pause", 0.0, 1e12, 0.3);
-  def.depth = api_optional(a, "depth", 5e-324, 1e12, 0.5);
+  api_define(a, MPS_DEF_OVERTOPPING, &def, 0, "resolved 0.025, pause 0.3, depth? 0.5");
   API_SIZED(a, mps_overtopping, size, out);
   const bool none = api_null(a, "def");
   const mps_status status = mps_overtopping_find_sized(context, none ? NULL : &def, N, thin,
@@ -313,9 +240,6 @@ static void overtopping_find(api *a) {
 }
 
 static const api_call calls[] = {
-    {"mps_waves_find_number", 1, API_CONTEXT, find_number},
-    {"mps_waves_find_piston", 1, API_CONTEXT, find_piston},
-    {"mps_waves_def_init", 1, API_NOTHING, init_waves_def},
     {"mps_waves_create", 3, API_CONTEXT, waves_create},
     {"mps_waves_destroy", 1, API_WAVES, destroy_waves_destroy},
     {"mps_waves_get_report_sized", 1, API_WAVES, waves_report},
@@ -323,7 +247,6 @@ static const api_call calls[] = {
     {"mps_waves_get_levels", 1, API_WAVES, waves_levels},
     {"mps_waves_get_piston", 1, API_WAVES, waves_piston},
     {"mps_signal_create_waves", 2, API_WAVES, signal_waves},
-    {"mps_absorber_def_init", 1, API_NOTHING, init_absorber_def},
     {"mps_absorber_create", 2, API_CONTEXT, absorber_create},
     {"mps_absorber_destroy", 1, API_ABSORBER, destroy_absorber_destroy},
     {"mps_absorber_advance", 4, API_ABSORBER, absorber_advance},
@@ -331,16 +254,11 @@ static const api_call calls[] = {
     {"mps_absorber_get_report_sized", 1, API_ABSORBER, absorber_report},
     {"mps_absorber_get_memory", 2, API_ABSORBER, absorber_memory},
     {"mps_absorber_set_memory", 0, API_ABSORBER, absorber_memory},
-    {"mps_separation_def_init", 1, API_NOTHING, init_separation_def},
     {"mps_separation_find_sized", 2, API_CONTEXT, separation_find},
-    {"mps_sainflou_def_init", 1, API_NOTHING, init_sainflou_def},
     {"mps_sainflou_evaluate_sized", 1, API_CONTEXT, sainflou_evaluate},
-    {"mps_goda_def_init", 1, API_NOTHING, init_goda_def},
     {"mps_goda_evaluate_sized", 1, API_CONTEXT, goda_evaluate},
-    {"mps_eurotop_def_init", 1, API_NOTHING, init_eurotop_def},
     {"mps_eurotop_evaluate_sized", 1, API_CONTEXT, eurotop_evaluate},
     {"mps_eurotop_find_run_up_sized", 1, API_CONTEXT, run_up_find},
-    {"mps_overtopping_def_init", 1, API_NOTHING, init_overtopping_def},
     {"mps_overtopping_find_sized", 1, API_CONTEXT, overtopping_find},
 };
 const api_table api_waves_calls = API_TABLE(calls);

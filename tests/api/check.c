@@ -79,14 +79,10 @@ void api_begin(api *a, const char *name) {
   a->wrong_name = "";
   a->picked = false;
   a->context = -1;
+  a->own_record = false;
   a->change = API_CHANGES_NOTHING;
   a->reads = a->queries = false;
-  a->fault = API_FAULT_NONE;
-  a->callbacks = 0;
-  a->fault_status = MPS_OK;
-  a->faulted = false;
-  a->running = NULL;
-  a->cancel_at = a->cancels = 0;
+  memset(&a->plan, 0, sizeof a->plan);
   a->length = 0;
   for (int k = 0; k < API_SLOTS; k++) mps_context_clear_error(a->objects[API_CONTEXT][k].handle);
   api_say(a, "%s(", name);
@@ -113,17 +109,24 @@ static void finish_line(api *a, mps_status status, const char *message) {
   a->length = 0;
 }
 
-/* The name without "_sized", which an inline function of the shorter name calls. */
-static bool same_name(const char *recorded, const char *called) {
+/* The name, or without "_sized", which an inline function of the shorter name calls. */
+static bool is_name(const char *recorded, const char *called) {
   size_t length = strlen(called);
   if (length > 6 && strcmp(called + length - 6, "_sized") == 0) length -= 6;
   return strcmp(recorded, called) == 0 ||
          (strncmp(recorded, called, length) == 0 && recorded[length] == '\0');
 }
 
+/* Of a solver that is NULL the kind is not known. */
+static bool same_name(const char *recorded, const char *called) {
+  char shared[80];
+  api_shared_name(called, shared, sizeof shared);
+  return is_name(recorded, called) || is_name(recorded, shared);
+}
+
 /* Whether a law refused, which is armed but not counted as `faulted`. */
 static bool refused_by_law(const api *a, mps_status status) {
-  return a->fault == API_FAULT_STATUS && a->fault_status == status;
+  return a->plan.fault == API_FAULT_STATUS && a->plan.status == status;
 }
 
 static void check_record(api *a, mps_status status, const mps_error *record) {
@@ -133,7 +136,7 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
     api_broken(a, "the record names %s", record->function);
   else if (strlen(record->message) < 8)
     api_broken(a, "the record's message is \"%s\"", record->message);
-  else if (status == MPS_ERROR_ARGUMENT && !a->faulted && !refused_by_law(a, status) &&
+  else if (status == MPS_ERROR_ARGUMENT && !a->plan.faulted && !refused_by_law(a, status) &&
            !api_names_argument(a->name, record->message))
     api_broken(a, "the record names no argument: %.200s", record->message);
   else if (status == MPS_ERROR_ARGUMENT && api_prints_allowed(record->message))
@@ -142,17 +145,19 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
 }
 
 static void check_status(api *a, mps_status status) {
+  if (a->plan.broken) api_broken(a, "%s", a->plan.broken);
   if (!is_status(status)) api_broken(a, "returns %d, which is no status", (int)status);
-  a->lost = a->lost || (a->faulted && a->fault_status == MPS_ERROR_INTERNAL);
-  if (status == MPS_ERROR_INTERNAL && a->fault_status != status && !a->lost)
+  a->lost = a->lost || (a->plan.faulted && a->plan.status == MPS_ERROR_INTERNAL);
+  if (status == MPS_ERROR_INTERNAL && a->plan.status != status && !a->lost)
     api_broken(a, "finds itself broken");
   if (status == MPS_OK && a->wrong > 0) api_broken(a, "takes an absurd %s", a->wrong_name);
-  if (!a->faulted) return;
-  if (a->fault == API_FAULT_STATUS && status != a->fault_status)
-    api_broken(a, "returns %d where a callback returned %d", (int)status, (int)a->fault_status);
-  else if ((a->fault == API_FAULT_NO_STATUS || a->fault == API_FAULT_VALUE) && status == MPS_OK)
+  if (!a->plan.faulted) return;
+  if (a->plan.fault == API_FAULT_STATUS && status != a->plan.status)
+    api_broken(a, "returns %d where a callback returned %d", (int)status, (int)a->plan.status);
+  else if ((a->plan.fault == API_FAULT_NO_STATUS || a->plan.fault == API_FAULT_VALUE) &&
+           status == MPS_OK)
     api_broken(a, "succeeds where a callback %s",
-               a->fault == API_FAULT_VALUE ? "wrote NaN" : "returned no status");
+               a->plan.fault == API_FAULT_VALUE ? "wrote NaN" : "returned no status");
 }
 
 /* May this part differ after a call that failed or reads? Sums over particles may where their order
@@ -230,14 +235,16 @@ void api_settle(api *a) {
 bool api_end(api *a, mps_status status) {
   atomic_store(&a->memory.refuse_from, 0);
   const mps_context *context = a->context >= 0 ? a->objects[API_CONTEXT][a->context].handle : NULL;
-  const mps_error *record = status != MPS_OK ? mps_context_error(context) : NULL;
-  a->running = NULL;
+  const mps_error *record =
+      status != MPS_OK && !a->own_record ? mps_context_error(context) : NULL;
+  a->plan.solver = NULL;
   finish_line(a, status, record ? record->message : NULL);
   api_count(a->name, status);
   check_status(a, status);
   if (record) check_record(a, status, record);
-  if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->faulted &&
-      !refused_by_law(a, status) && a->mood == API_VALID)
+  if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->plan.faulted &&
+      !refused_by_law(a, status) && a->mood == API_VALID && record &&
+      !strstr(record->message, "memory_limit")) /* the caller's own limit */
     api_broken(a, "finds no memory where none was refused");
   a->digest = api_mix(a->digest ^ (uint64_t)status);
   look_after(a, status);

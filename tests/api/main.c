@@ -14,6 +14,7 @@
 
 static const char usage[] =
     "usage: test-api [--seed N] [--seeds A:B] [--calls K] [--threads T] [--shrink] [--verbose]\n"
+    "                [--program FILE]\n"
     "       test-api --names FILE\n\n"
     "Random calls of the whole public interface; see tests/api/api.h.\n\n"
     "  --seed N     one sequence (default: seeds 0:100)\n"
@@ -22,6 +23,8 @@ static const char usage[] =
     "  --threads T  threads of the contexts (default: 1, and where nothing depends on them 2 and "
     "3)\n"
     "  --shrink     leaves out the calls of a broken sequence that do not matter\n"
+    "  --program F  writes the (last) sequence as a C program on the public headers; a sequence\n"
+    "               that fails without it writes test-api-SEED.c into the working directory\n"
     "  --verbose    prints each call, and at the end how often each function gave which status\n"
     "  --names FILE compares the tables with the linker map FILE\n";
 
@@ -31,9 +34,12 @@ typedef struct options {
   uint64_t first, last;
   int calls, threads;
   bool shrink, verbose;
+  const char *program;    /* NULL: none */
+  const char *executable; /* this one */
 } options;
 
 static api state;
+static options present;
 static bool skipped[MOST_CALLS + 1];
 static uint64_t digests[MOST_CALLS + 1];
 
@@ -108,7 +114,7 @@ static bool run_sequence(api *a, uint64_t seed, int calls, int threads) {
   a->digest = seed;
   a->pushed = a->lost = false;
   a->call = 0;
-  limit_time(SECONDS);
+  limit_time(SECONDS * (calls > 200 ? 4 : 1));
   if (setjmp(a->failed) == 0) {
     api_scene(a);
     for (a->call = 1; a->call <= calls; a->call++) {
@@ -161,7 +167,14 @@ static bool same_on_threads(const options *o, const char *folder, uint64_t seed)
 
 static bool run_seed(const options *o, const char *folder, uint64_t seed) {
   api *a = fresh(o, folder);
-  if (!run_sequence(a, seed, o->calls, o->threads ? o->threads : 1)) return false;
+  a->seed = seed, a->threads = o->threads ? o->threads : 1;
+  if (o->program && !api_record_begin(a, o->program)) {
+    fprintf(stderr, "%s cannot be written\n", o->program);
+    return false;
+  }
+  const bool good = run_sequence(a, seed, o->calls, o->threads ? o->threads : 1);
+  api_record_end();
+  if (!good || o->program) return good;
   return o->threads || !a->steady || same_on_threads(o, folder, seed);
 }
 
@@ -216,12 +229,36 @@ static void shrink(const options *o, const char *folder, uint64_t seed) {
 
 /* ---- the program ----------------------------------------------------------------------------- */
 
+/* The same sequence once more, by a process of its own that writes it as a program; for what calls
+ * it, a handler of signals too. */
+static void write_program(const options *o, uint64_t seed) {
+  char seed_text[24], calls[24], threads[24], path[64], text[200];
+  if (o->program || !o->executable) return;
+  snprintf(seed_text, sizeof seed_text, "%" PRIu64, seed);
+  snprintf(calls, sizeof calls, "%d", o->calls);
+  snprintf(threads, sizeof threads, "%d", o->threads ? o->threads : 1);
+  snprintf(path, sizeof path, "test-api-%s.c", seed_text);
+  const pid_t child = fork();
+  if (child == 0) {
+    (void)!freopen("/dev/null", "w", stdout);
+    (void)!freopen("/dev/null", "w", stderr);
+    (void)execl(o->executable, "test-api", "--seed", seed_text, "--calls", calls, "--threads",
+                threads, "--program", path, (char *)NULL);
+    _exit(127);
+  }
+  if (child > 0) (void)waitpid(child, NULL, 0);
+  const int length = snprintf(text, sizeof text, "  as a C program, up to there: %s\n", path);
+  if (access(path, R_OK) == 0) (void)!write(STDERR_FILENO, text, (size_t)length);
+}
+
 /* A crash, or a call that does not end: the log, and the number of the signal. */
 static void on_signal(int number) {
   static const char text[] = "a signal ends this sequence:\n";
   (void)!write(STDERR_FILENO, text, sizeof text - 1);
   api_print_log(&state, STDERR_FILENO);
   (void)signal(number, SIG_DFL);
+  api_record_crash();
+  write_program(&present, state.seed);
   (void)raise(number);
 }
 
@@ -241,6 +278,8 @@ static bool parse(int argc, char **argv, options *o) {
       if (sscanf(value, "%" SCNu64 ":%" SCNu64, &o->first, &o->last) != 2) return false;
     } else if (strcmp(option, "--calls") == 0) {
       o->calls = atoi(value);
+    } else if (strcmp(option, "--program") == 0) {
+      o->program = value;
     } else if (strcmp(option, "--threads") == 0) {
       o->threads = atoi(value);
     } else {
@@ -272,6 +311,8 @@ int main(int argc, char **argv) {
   for (int k = 0; k < API_COUNT(signals); k++) (void)signal(signals[k], on_signal);
 #endif
   (void)signals;
+  o.executable = argv[0];
+  present = o;
   char folder[] = "/tmp/test-api-XXXXXX";
   if (!mkdtemp(folder)) return 2;
   int64_t failed = 0;
@@ -280,6 +321,7 @@ int main(int argc, char **argv) {
     if (!run_seed(&o, folder, seed)) {
       failed++;
       report(&state);
+      write_program(&o, seed);
     }
     memset(skipped, 0, sizeof skipped);
   }

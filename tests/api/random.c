@@ -4,6 +4,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
+#include "core/definition/definition.h"
+
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -161,6 +163,54 @@ int32_t api_choice(api *a, const char *name, int32_t count) {
   }
   api_say(a, "%s = %d, ", name, value);
   return value;
+}
+
+/* The ends of what a line allows, open ones moved inwards, of a choice its numbers. */
+static void ends_of(const mpsi_def_member *m, double *lo, double *hi) {
+  const mpsi_allowed *r = &m->allowed;
+  *lo = r->checked ? (r->open_lower ? nextafter(r->lower, INFINITY) : r->lower) : -DBL_MAX;
+  *hi = r->checked ? (r->open_upper ? nextafter(r->upper, -INFINITY) : r->upper) : DBL_MAX;
+  if (r->or_zero && *lo > 0.0) *lo = 0.0;
+  if (!r->choices) return;
+  *lo = *hi = 0.0;
+  for (const char *at = strchr(r->choices, '|'); at; at = strchr(at + 1, '|')) *hi += 1.0;
+}
+
+static void draw_member(api *a, const mpsi_def_member *m, void *def, int32_t c, double typical) {
+  double lo, hi;
+  ends_of(m, &lo, &hi);
+  if (m->type == MPSI_MEMBER_REAL)
+    mpsi_member_set(m, def, c, api_real(a, m->name, lo, hi, typical));
+  else if (m->allowed.choices)
+    mpsi_member_set(m, def, c, (double)api_choice(a, m->name, (int32_t)hi + 1));
+  else
+    mpsi_member_set(m, def, c, (double)api_least(a, m->name, (int64_t)lo, (int64_t)typical));
+}
+
+void api_define(api *a, int32_t kind, void *def, int32_t dim, const char *members) {
+  const mpsi_definition *d = mpsi_definition_of(kind);
+  const int wrong = a->wrong;
+  char why[MPSI_WHY];
+  for (const char *at = members; *at; at += strcspn(at, ","), at += strspn(at, ", ")) {
+    char name[48] = "", seldom[2] = "";
+    double typical = 0.0;
+    if (sscanf(at, "%47[A-Za-z0-9_]%1[?]", name, seldom) < 1) break;
+    (void)sscanf(at + strlen(name) + strlen(seldom), "%lf", &typical);
+    const mpsi_def_member *m = mpsi_member_find(d, name);
+    if (!m) {
+      api_broken(a, "%s has no member %s", d->type, name);
+      return;
+    }
+    if (seldom[0] && (a->latest || api_chance(a, 60))) continue;
+    draw_member(a, m, def, m->count == 3 ? dim - 1 : 0, typical);
+    for (int32_t c = 1; c < m->count && m->count != 3; c++)
+      mpsi_member_set(m, def, c, mpsi_member_value(m, def, 0));
+  }
+  a->wrong = wrong;
+  if (!mpsi_definition_check(d, def, dim ? (uint32_t)mpsi_scene_of(dim) : 0, why))
+    api_wrong(a, "def");
+  const uint32_t size = api_struct_size(a, d->size);
+  memcpy(def, &size, sizeof size);
 }
 
 uint32_t api_struct_size(api *a, size_t size) {

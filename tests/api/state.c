@@ -3,7 +3,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
+#include "body/body_internal.h"
+
 #include <mps/mps.h>
+#include <mps/experimental/coupling.h>
+#include <mps/experimental/neighbours.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -233,8 +237,8 @@ static void look_body(look *l, mps_body *body) {
                              t.work_contacts, t.work_loads, t.dissipated};
     add_finite(l, "totals", API_COUNT(values), values);
   }
-  add_whole(l, "parts", mps_body_part_count(body));
-  for (int32_t k = -1; k < mps_body_part_count(body) && k < 3; k++) {
+  add_whole(l, "parts", body->parts);
+  for (int32_t k = -1; k < body->parts && k < 3; k++) {
     const mps_status status = mps_body_get_reaction(body, k, &reaction);
     add_reaction(l, "reaction", k, status, &reaction);
   }
@@ -299,9 +303,6 @@ int api_look(api *a, api_kind kind, api_object *object, api_part *parts) {
     break;
   case API_COUPLING:
     look_coupling(&l, object->handle);
-    break;
-  case API_RECORDER:
-    add_whole(&l, "frames", mps_recorder_frames(object->handle));
     break;
   case API_MPM:
     look_mpm(&l, object->handle);

@@ -16,6 +16,21 @@ static const struct {
   const char *name, *reason;
 } left_out[] = {
     {"mps_snapshot_destroy", "called wherever a snapshot goes"},
+    {"mps_mpm_solver", "called by each function that all solvers share"},
+    {"mps_dynamics_solver", "likewise"},
+    {"mps_elastic_solver", "likewise"},
+    {"mps_fluid_solver", "likewise"},
+    {"mps_contact_get_def",
+     "of two kinds, which a handle does not show: tests/unit/test_conditions.c"},
+    {"mps_history_count", "of files and rows that a solver takes along: tests/unit/test_hdf5_history.c"},
+    {"mps_history_create", "likewise"},
+    {"mps_history_destroy", "likewise"},
+    {"mps_history_flush", "likewise"},
+    {"mps_history_open", "likewise"},
+    {"mps_history_record", "likewise"},
+    {"mps_history_set_source", "likewise"},
+    {"mps_history_view", "likewise"},
+    {"mps_history_write", "likewise"},
 };
 
 /* ---- names ----------------------------------------------------------------------------------- */
@@ -54,8 +69,12 @@ void api_print_counts(void) {
 
 static bool in_tables(const char *name) {
   for (int t = 0; t < api_table_count; t++)
-    for (int k = 0; k < api_tables[t]->count; k++)
-      if (strcmp(api_tables[t]->calls[k].name, name) == 0) return true;
+    for (int k = 0; k < api_tables[t]->count; k++) {
+      char shared[80];
+      const char *called = api_tables[t]->calls[k].name;
+      api_shared_name(called, shared, sizeof shared);
+      if (strcmp(called, name) == 0 || strcmp(shared, name) == 0) return true;
+    }
   return false;
 }
 
@@ -93,9 +112,13 @@ int api_check_names(const char *path) {
                                               : "is in no table of tests/api");
   }
   for (int t = 0; t < api_table_count; t++)
-    for (int k = 0; k < api_tables[t]->count; k++)
-      if (!in_map(map, api_tables[t]->calls[k].name))
-        wrong += complain(api_tables[t]->calls[k].name, "is in a table, but not exported");
+    for (int k = 0; k < api_tables[t]->count; k++) {
+      char shared[80];
+      const char *called = api_tables[t]->calls[k].name;
+      api_shared_name(called, shared, sizeof shared);
+      if (!in_map(map, called) && !in_map(map, shared))
+        wrong += complain(called, "is in a table, but not exported");
+    }
   for (int k = 0; k < API_COUNT(left_out); k++)
     if (!in_map(map, left_out[k].name))
       wrong += complain(left_out[k].name, "is left out, but not exported");

@@ -4,26 +4,14 @@
 #include "fluid_ranks.h"
 #include "ranks_team.h"
 
-#include <mps/fluid_solver.h>
-
 static int64_t steps(int64_t full) { return test_quick() ? full / 6 : full; }
 
-static void test_collapse(void **state) {
-  (void)state, compare_teams(compute, COLLAPSE, steps(18), true);
-}
-static void test_afloat(void **state) {
-  (void)state, compare_teams(compute, AFLOAT, steps(6), true);
-}
-static void test_spill(void **state) {
-  (void)state, compare_teams(compute, SPILL, steps(24), true);
-}
-static void test_classical(void **state) {
-  (void)state, compare_teams(compute, CLASSICAL, steps(12), false);
-}
-static void test_breakwater(void **state) {
-  (void)state, compare_teams(compute, BREAKWATER, steps(12), true);
-}
-static void test_puddle(void **state) { (void)state, compare_teams(compute, PUDDLE, 20, true); }
+TEST(test_collapse) { compare_teams(compute, COLLAPSE, steps(18), true); }
+TEST(test_afloat) { compare_teams(compute, AFLOAT, steps(6), true); }
+TEST(test_spill) { compare_teams(compute, SPILL, steps(24), true); }
+TEST(test_classical) { compare_teams(compute, CLASSICAL, steps(12), false); }
+TEST(test_breakwater) { compare_teams(compute, BREAKWATER, steps(12), true); }
+TEST(test_puddle) { compare_teams(compute, PUDDLE, 20, true); }
 
 /* ---- cut in two ------------------------------------------------------------------------------ */
 
@@ -39,19 +27,18 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
 
 /* Written by 3 ranks, it continues with 2, and without a domain, as a run without one does; and
  * before it does, it reports what it reported before. */
-static void test_checkpoint(void **state) {
-  (void)state;
+TEST(test_checkpoint) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   const int64_t count = steps(12);
   result half = {0}, whole = {0}, on = {0};
   mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(own, begin(own, NULL, COLLAPSE, count, &half));
-  mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &whole));
+  OK(begin(own, NULL, COLLAPSE, count, &half));
+  OK(go_on(own, NULL, COLLAPSE, count, &whole));
   remove(CHECKPOINT);
   compare_part(begin, 3, COLLAPSE, count, &half, true);
   compare_part(go_on, 2, COLLAPSE, 0, &half, true);
   compare_part(go_on, 2, COLLAPSE, count, &whole, true);
-  mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &on));
+  OK(go_on(own, NULL, COLLAPSE, count, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);
   free(seen);
@@ -62,7 +49,7 @@ static void test_checkpoint(void **state) {
 
 /* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
-static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, POND, 2, 9); }
+TEST(test_refused_memory) { refuse_memory(compute, POND, 2, 9); }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
 enum {
@@ -89,16 +76,16 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_WALL] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
     [NO_COUNT] = {MPS_ERROR_ARGUMENT, "count is -1"},
-    [OTHER_END] = {MPS_ERROR_ARGUMENT, "every 0"},
+    [OTHER_END] = {MPS_ERROR_ARGUMENT, "every is 0"},
     [OTHER_ADDED] = {MPS_ERROR_ARGUMENT, "the number of particles is "},
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
-    [SOLVER] = {MPS_ERROR_UNSUPPORTED, "solved by the library"},
+    [SOLVER] = {MPS_ERROR_ARGUMENT, "the linear solver is rank 0 of 1 processes"},
     [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_BODY] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
-    [NO_SUCH_LOAD] = {MPS_ERROR_ARGUMENT, "the fluid has no load of number 5"},
+    [NO_SUCH_LOAD] = {MPS_ERROR_ARGUMENT, "number is 5: there is no load"},
 };
 
 static mps_status refuse_callback(void *user, mps_fluid *fluid) {
@@ -107,15 +94,14 @@ static mps_status refuse_callback(void *user, mps_fluid *fluid) {
 
 static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
 
-static mps_status no_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
-                            const double *value) {
-  (void)user, (void)rows, (void)start, (void)column, (void)value;
+static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) {
+  (void)user, (void)matrix;
   return MPS_OK;
 }
 
 static mps_status no_solve(void *user, const double *b, double tolerance, double *x,
-                           int64_t *iterations) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)iterations;
+                           mps_linear_result *out) {
+  (void)user, (void)b, (void)tolerance, (void)x, (void)out;
   return MPS_OK;
 }
 
@@ -123,32 +109,30 @@ static mps_status no_solve(void *user, const double *b, double tolerance, double
 static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t rank) {
   mps_fluid_load_def load = mps_fluid_load_defaults();
   mps_signal *signal = NULL;
-  mps_body *body = NULL;
+  scoped_body *body = NULL;
   const double right = what == OTHER_BODY && rank == 2 ? 0.41 : 0.4;
   const double corner[8] = {0.2, 0.6, right, 0.6, right, 0.7, 0.2, 0.7};
   const mps_body_def def = mps_body_defaults();
-  mps_status status = mps_signal_create_sine(
-      own, 1.0, what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
+  mps_status status =
+      mps_signal_create_sine(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0,
+                             what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.6, 0.0, -1.0, 0.0, signal));
   mps_signal_destroy(&signal);
   TRY(mps_body_create_polygon(own, &def, 4, corner, &body));
   TRY(mps_fluid_add_contact(s->fluid, body, NULL, NULL));
-  load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
+  load.all = 1, load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   if (what == NO_SUCH_LOAD) TRY(mps_fluid_set_load(s->fluid, rank == 1 ? 5 : 0, &load));
   TRY(mps_fluid_remove_load(s->fluid, rank == 1 ? 1 : 0));
-  mps_body_destroy(&body);
   return status;
 }
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
-  scene s = {.set = NULL};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
+  SCOPED(drop_scene) scene s = {.set = NULL};
+  DEF(particles, set, .spacing = 0.02);
+  DEF(fluid, def, .domain = domain);
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.6, 0.4}, extra[2] = {0.3, 0.7};
-  set.spacing = 0.02;
-  def.domain = domain;
   if (what == OTHER_DENSITY) def.density = 1000.0 + rank;
   mps_status status = mps_particles_create(own, &set, &s.set);
   TRY(mps_particles_fill_box(s.set, lower, upper, NULL));
@@ -156,32 +140,20 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_fluid_create(own, s.set, &def, &s.fluid));
   TRY(wall(&s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(&s, MPS_BOUNDARY_ROLLER, what == OTHER_WALL ? -0.1 * rank : 0.0, 0.0, 1.0, 0.0, NULL));
-  const mps_fluid_solver_def solver = {
-      .struct_size = sizeof solver, .matrix = no_matrix, .solve = no_solve};
-  if (what == SOLVER) TRY(mps_fluid_set_solver(s.fluid, &solver));
+  mps_linear_solver_def solver = mps_linear_solver_defaults(); /* of one process */
+  solver.matrix = no_matrix, solver.solve = no_solve;
+  if (what == SOLVER)
+    TRY(mps_solver_set_linear_solver(mps_fluid_solver(s.fluid), MPS_LINEAR_EQUATION_PRESSURE,
+                                     &solver));
   if (what >= OTHER_LOAD) TRY(define_otherwise(own, &s, what, rank));
   if (what == OTHER_ADDED && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
   if (what == CALLBACK_FAILS) TRY(mps_fluid_run(s.fluid, 0.1, 1, refuse_callback, &rank));
-  if (what == CANCELLED) mps_context_set_cancel(own, cancel, &rank);
+  if (what == CANCELLED) mps_context_set_cancel(own, cancel, &rank, NULL);
   if (what == OTHER_END) TRY(mps_fluid_run(s.fluid, 0.1, rank == 1 ? 0 : 1, NULL, NULL));
   TRY(mps_fluid_step(s.fluid, what == OTHER_COUNT             ? 1 + rank
                               : what == NO_COUNT && rank == 1 ? -1
                                                               : 2));
-  drop_scene(&s);
   return status;
 }
 
-static void test_troubles(void **state) {
-  (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_classical),  cmocka_unit_test(test_puddle),
-      cmocka_unit_test(test_collapse),   cmocka_unit_test(test_afloat),
-      cmocka_unit_test(test_breakwater), cmocka_unit_test(test_spill),
-      cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_refused_memory),
-      cmocka_unit_test(test_troubles),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(test_troubles) { meet_troubles(run_trouble, trouble, TROUBLES); }

@@ -4,22 +4,21 @@
 #include "mpm_ranks.h"
 #include "ranks_team.h"
 
-static void test_slide(void **state) { (void)state, compare_teams(compute, SLIDE, 120, false); }
-static void test_spread(void **state) { (void)state, compare_teams(compute, SPREAD, 120, false); }
-static void test_ring(void **state) { (void)state, compare_teams(compute, RING, 60, false); }
+TEST(test_slide) { compare_teams(compute, SLIDE, 120, false); }
+TEST(test_spread) { compare_teams(compute, SPREAD, 120, false); }
+TEST(test_ring) { compare_teams(compute, RING, 60, false); }
 /* So many particles that the threads of a rank take blocks as they become ready. */
-static void test_wide(void **state) { (void)state, compare_teams(compute, WIDE, 12, true); }
-static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 60, false); }
+TEST(test_wide) { compare_teams(compute, WIDE, 12, true); }
+TEST(test_room) { compare_teams(compute, ROOM, 60, false); }
 
-static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 90, false); }
-static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 80, true); }
-static void test_plates(void **state) { (void)state, compare_teams(compute, PLATES, 80, true); }
-static void test_piles(void **state) { (void)state, compare_teams(compute, PILES, 80, false); }
-static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
+TEST(test_press) { compare_teams(compute, PRESS, 90, false); }
+TEST(test_cone) { compare_teams(compute, CONE, 80, true); }
+TEST(test_plates) { compare_teams(compute, PLATES, 80, true); }
+TEST(test_piles) { compare_teams(compute, PILES, 80, false); }
+TEST(test_balls) { compare_teams(compute, BALLS, 40, true); }
 
 /* In and out by the caller, between steps. */
-static void test_changes(void **state) {
-  (void)state;
+TEST(test_changes) {
   compare_teams(compute_changes, SPREAD, 48, true);
   compare_teams(compute_changes, PRESS, 32, true);
   compare_teams(compute_changes, ROOM, 16, true);
@@ -32,7 +31,7 @@ static mps_status compute_leaving(mps_context *own, mps_domain *domain, int what
   enum { LOADED = 40 };
   int64_t ids[LOADED];
   double area[LOADED];
-  scene s = {.set = NULL};
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_mpm_load_def load = mps_mpm_load_defaults();
   for (int64_t k = 0; k < LOADED; k++) ids[k] = 60 * k + 59, area[k] = 1e-4 * (double)(k + 1);
   load.ids = ids, load.id_count = LOADED, load.area = area;
@@ -41,22 +40,18 @@ static mps_status compute_leaving(mps_context *own, mps_domain *domain, int what
   TRY(mps_mpm_add_load(s.mpm, &load, NULL));
   TRY(mps_mpm_step(s.mpm, steps));
   for (int64_t n = 1; status == MPS_OK && n <= 12; n++) {
-    mps_mpm_settle_def def = mps_mpm_settle_defaults();
+    DEF(mpm_settle, def, .max_steps = n);
     mps_mpm_settled now = {0};
-    def.max_steps = n;
     status = mps_mpm_settle(s.mpm, &def, &now);
     if (status == MPS_ERROR_NUMERIC) status = MPS_OK; /* not yet */
     r->other[n] = now.applied;
   }
   TRY(keep_scene(domain, what, &s, r));
-  if (r->reaction[MPS_MPM_SIDE_X_UPPER].removed == 0) status = MPS_ERROR_INTERNAL;
-  end_scene(&s);
+  if (r->reaction[MPS_SIDE_X_UPPER].removed == 0) status = MPS_ERROR_INTERNAL;
   return status;
 }
 
-static void test_leaving(void **state) {
-  (void)state, compare_teams(compute_leaving, SPREAD, 12, true);
-}
+TEST(test_leaving) { compare_teams(compute_leaving, SPREAD, 12, true); }
 
 /* ---- cut in two ------------------------------------------------------------------------------ */
 
@@ -76,13 +71,13 @@ static void compare_cut(int what, int64_t steps) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   result half = {0}, whole = {0}, on = {0};
   mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(own, compute_half(own, NULL, what, steps, NULL, CHECKPOINT, &half));
-  mps_assert_ok(own, go_on(own, NULL, what, steps, &whole));
+  OK(compute_half(own, NULL, what, steps, NULL, CHECKPOINT, &half));
+  OK(go_on(own, NULL, what, steps, &whole));
   compare_part(go_on, 3, what, steps, &whole, false);
   remove(CHECKPOINT);
   compare_part(begin, 4, what, steps, &half, false);
   compare_part(go_on, 3, what, steps, &whole, false);
-  mps_assert_ok(own, go_on(own, NULL, what, steps, &on));
+  OK(go_on(own, NULL, what, steps, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);
   assert_memory_equal(on.id, whole.id, (size_t)whole.count * sizeof *whole.id);
@@ -92,34 +87,27 @@ static void compare_cut(int what, int64_t steps) {
   remove(CHECKPOINT);
 }
 
-static void test_cut_press(void **state) { (void)state, compare_cut(PRESS, 45); }
-static void test_cut_spread(void **state) { (void)state, compare_cut(SPREAD, 50); }
+TEST(test_cut_press) { compare_cut(PRESS, 45); }
+TEST(test_cut_spread) { compare_cut(SPREAD, 50); }
 
 /* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
-static void test_refused_memory(void **state) {
-  (void)state, refuse_memory(compute, SPREAD, 30, 7);
-}
+TEST(test_refused_memory) { refuse_memory(compute, SPREAD, 30, 7); }
 
-static void test_refused_contact(void **state) {
-  (void)state, refuse_memory(compute, PRESS, 24, 11);
-}
+TEST(test_refused_contact) { refuse_memory(compute, PRESS, 24, 11); }
 
 /* Nodes and values of the grid, at the end of what has been well. */
 static mps_status probe(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
-  scene s = {.set = NULL};
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_status status = make_scene(own, domain, what, &s);
   TRY(mps_mpm_step(s.mpm, steps));
   TRY(keep_grid(domain, &s, r->other));
-  end_scene(&s);
   return status;
 }
 
-static void test_refused_probes(void **state) { (void)state, refuse_memory(probe, SLIDE, 1, 1); }
+TEST(test_refused_probes) { refuse_memory(probe, SLIDE, 1, 1); }
 
-static void test_refused_changes(void **state) {
-  (void)state, refuse_memory(compute_changes, SPREAD, 12, 13);
-}
+TEST(test_refused_changes) { refuse_memory(compute_changes, SPREAD, 12, 13); }
 
 /* ---- steps that leave no state to restart from ----------------------------------------------- */
 
@@ -131,7 +119,7 @@ static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) 
   TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
-  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0));
+  TRY(mps_mpm_set_side(s->mpm, MPS_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0));
   if (status == MPS_OK) status = mps_mpm_step(s->mpm, 1000);
   if (status != MPS_ERROR_DIVERGED || mps_context_error(own)->particle < 0)
     return MPS_ERROR_INTERNAL;
@@ -142,7 +130,7 @@ static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) 
  * state afterwards have the bits of one process. Without that particle the run continues. */
 static mps_status compute_lost(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                result *r) {
-  scene s = {.set = NULL};
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_totals totals[2];
   (void)what;
   mps_status status = lose_particle(own, domain, &s);
@@ -153,31 +141,28 @@ static mps_status compute_lost(mps_context *own, mps_domain *domain, int what, i
   if (status == MPS_OK && memcmp(&totals[0], &totals[1], sizeof totals[0]) != 0)
     status = MPS_ERROR_INTERNAL;
   memcpy(r->other + 20, totals, sizeof totals);
-  TRY(mps_particles_remove(s.set, 1, gone));
+  TRY(mps_particles_remove(s.set, gone, 1));
   for (int64_t k = 0; status == MPS_OK && k < steps; k++) {
     status = mps_mpm_step(s.mpm, 1);
     r->other[k] = status;
     if (status == MPS_ERROR_DIVERGED || status == MPS_ERROR_STATE) status = MPS_OK; /* others */
   }
   TRY(keep(s.set, r));
-  end_scene(&s);
   return status;
 }
 
-static void test_lost(void **state) { (void)state, compare_teams(compute_lost, SLIDE, 5, true); }
+TEST(test_lost) { compare_teams(compute_lost, SLIDE, 5, true); }
 
 /* After a step that gives no finite numbers the set may not be changed, but nothing may be removed
  * from it: the same results on one rank and on several. */
 static mps_status compute_broken(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                  result *r) {
-  enum { ANSWERS = 5 };
-  static const mps_status expected[ANSWERS] = {MPS_ERROR_DIVERGED, MPS_ERROR_STATE, MPS_OK,
-                                               MPS_ERROR_STATE, MPS_ERROR_STATE};
-  scene s = {.set = NULL};
-  mps_snapshot *then = NULL;
+  enum { ANSWERS = 3 }; /* a step that is undone fails again */
+  static const mps_status expected[ANSWERS] = {MPS_ERROR_DIVERGED, MPS_OK, MPS_ERROR_DIVERGED};
+  SCOPED(end_scene) scene s = {.set = NULL};
+  scoped_snapshot *then = NULL;
   mps_edit stress;
   const int64_t ids[2] = {59, 300};
-  const double above[2] = {0.5, 1.5};
   mps_status status = make_scene(own, domain, what, &s);
   TRY(mps_mpm_step(s.mpm, steps));
   TRY(mps_mpm_snapshot(s.mpm, &then));
@@ -187,23 +172,18 @@ static mps_status compute_broken(mps_context *own, mps_domain *domain, int what,
   TRY(mps_particles_commit(s.set, &stress));
   if (domain) status = mps_domain_agree(domain, status);
   if (status == MPS_OK) {
-    const mps_status answer[ANSWERS] = {mps_mpm_step(s.mpm, 3), mps_particles_remove(s.set, 2, ids),
-                                        mps_particles_remove(s.set, 0, NULL),
-                                        mps_particles_append(s.set, 1, above),
-                                        mps_mpm_step(s.mpm, 1)};
+    const mps_status answer[ANSWERS] = {
+        mps_mpm_step(s.mpm, 3), mps_particles_remove(s.set, NULL, 0), mps_mpm_step(s.mpm, 1)};
     if (memcmp(answer, expected, sizeof answer) != 0) status = MPS_ERROR_INTERNAL;
   }
   TRY(mps_mpm_rollback(s.mpm, then));
-  TRY(mps_particles_remove(s.set, 2, ids));
+  TRY(mps_particles_remove(s.set, ids, 2));
   TRY(mps_mpm_step(s.mpm, steps));
   TRY(keep(s.set, r));
-  mps_snapshot_destroy(&then);
-  end_scene(&s);
   return status;
 }
 
-static void test_broken(void **state) {
-  (void)state;
+TEST(test_broken) {
   compare_teams(compute_broken, SLIDE, 5, true);
   compare_teams(compute_broken, SPREAD, 5, true); /* with an absorbing side */
 }
@@ -233,19 +213,19 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
     [OTHER_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
     [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
-    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 1"},
+    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_BOUNDARY] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [BAD_BOUNDARY] = {MPS_ERROR_ARGUMENT, "rank 1: number: boundary is -1"},
-    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "boundary is 1 on rank 0"},
+    [BAD_BOUNDARY] = {MPS_ERROR_ARGUMENT, "rank 1: number is -1"},
+    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is 1 on rank 0"},
     [OTHER_TRACTION] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_AREA] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_FACTOR] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [BAD_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: load is 5"},
+    [BAD_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: number is 5"},
     [MANY_IDS] = {MPS_ERROR_ARGUMENT, "id_count is 4000, allowed are 1 to "},
-    [OTHER_LOAD_REMOVED] = {MPS_ERROR_ARGUMENT, "load is 0 on rank 0"},
+    [OTHER_LOAD_REMOVED] = {MPS_ERROR_ARGUMENT, "number is 0 on rank 0"},
     [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
 };
 
@@ -258,8 +238,7 @@ static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
 /* More particles than there are, each of them there. */
 static mps_status list_many(mps_mpm *mpm) {
   const int64_t ids[4000] = {17};
-  mps_mpm_load_def def = mps_mpm_load_defaults();
-  def.ids = ids, def.id_count = 4000;
+  DEF(mpm_load, def, .ids = ids, .id_count = 4000);
   return mps_mpm_add_load(mpm, &def, NULL);
 }
 
@@ -267,12 +246,10 @@ static mps_status list_many(mps_mpm *mpm) {
 static mps_status load_badly(mps_mpm *mpm, int what, int32_t rank) {
   const int64_t ids[2] = {17, 44};
   const double area[2] = {1e-2, what == OTHER_AREA && rank == 2 ? 1e-3 : 2e-2};
-  mps_mpm_load_def def = mps_mpm_load_defaults();
-  def.ids = ids, def.id_count = 2, def.area = area;
-  def.traction[0] = what == OTHER_TRACTION ? 10.0 * rank : 10.0;
+  DEF(mpm_load, def, .ids = ids, .id_count = 2, .area = area,
+      .traction[0] = what == OTHER_TRACTION ? 10.0 * rank : 10.0);
   mps_status status = mps_mpm_add_load(mpm, &def, NULL);
   TRY(mps_mpm_add_load(mpm, &def, NULL));
-  def.ids = NULL, def.id_count = 0, def.area = NULL;
   if (what == OTHER_FACTOR) def.factor[1] = rank;
   TRY(mps_mpm_set_load(mpm, what == BAD_LOAD && rank == 1 ? 5 : 1, &def));
   TRY(mps_mpm_remove_load(mpm, what == OTHER_LOAD_REMOVED && rank == 2 ? 1 : 0));
@@ -280,8 +257,8 @@ static mps_status load_badly(mps_mpm *mpm, int what, int32_t rank) {
 }
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
-  scene s = {.set = NULL};
-  mps_body *body = NULL;
+  SCOPED(end_scene) scene s = {.set = NULL};
+  scoped_body *body = NULL;
   mps_mpm_def def = scene_def(domain, SLIDE);
   if (what == OTHER_DT) def.dt = 1e-5 * (1.0 + rank);
   mps_status status = make_set(own, NULL, SLIDE, &s.set);
@@ -297,16 +274,16 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   if (status != MPS_OK && mps_particles_count(s.set) != before) status = MPS_ERROR_INTERNAL;
   if (what == OTHER_COUNT) TRY(mps_mpm_step(s.mpm, 1 + rank));
   if (what == CANCELLED) {
-    mps_context_set_cancel(own, cancel, &rank);
+    mps_context_set_cancel(own, cancel, &rank, NULL);
     TRY(mps_mpm_step(s.mpm, 10));
   }
   if (what == CALLBACK_FAILS) TRY(mps_mpm_run(s.mpm, 1.0, 5, refuse_callback, &rank));
   if (what == OTHER_BOUNDARY)
-    TRY(mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.1 * rank));
+    TRY(mps_mpm_set_side(s.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.1 * rank));
   if (what == BAD_BOUNDARY)
-    TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0));
+    TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0));
   if (what == OTHER_REMOVED)
-    TRY(mps_mpm_remove_boundary(s.mpm, rank == 1 ? MPS_MPM_SIDE_Y_LOWER : MPS_MPM_SIDE_X_UPPER));
+    TRY(mps_mpm_remove_boundary(s.mpm, rank == 1 ? MPS_SIDE_Y_LOWER : MPS_SIDE_X_UPPER));
   if (what == MANY_IDS)
     TRY(list_many(s.mpm));
   else if (what >= OTHER_TRACTION)
@@ -322,14 +299,10 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   if (what == DEPTH) contact.depth = 1e-9, contact.offset = 0.0;
   if (what == OTHER_CONTACT || what == DEPTH) TRY(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
   if (what == DEPTH) TRY(mps_mpm_step(s.mpm, 1000));
-  end_scene(&s);
-  mps_body_destroy(&body);
   return status;
 }
 
-static void test_troubles(void **state) {
-  (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
-}
+TEST(test_troubles) { meet_troubles(run_trouble, trouble, TROUBLES); }
 
 /* ---- what goes wrong while the caller puts particles in or takes them out -------------------- */
 
@@ -372,7 +345,7 @@ static mps_status put_badly(mps_particles *set, int what, int32_t rank) {
 }
 
 static mps_status run_change(mps_context *own, mps_domain *domain, int what, int32_t rank) {
-  scene s = {.set = NULL};
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_edit edit;
   const int64_t other[3] = {1 + rank, 700 + rank, 2 * rank}, twice[3] = {17, 44, 17},
                 wrong[2] = {17, 123456};
@@ -381,9 +354,9 @@ static mps_status run_change(mps_context *own, mps_domain *domain, int what, int
   const int64_t count = mps_particles_count(s.set);
   if (what == EDITING && rank == 1) TRY(mps_particles_edit(s.set, "density", &edit));
   if (what == NOT_THERE)
-    TRY(mps_particles_remove(s.set, 2, wrong));
+    TRY(mps_particles_remove(s.set, wrong, 2));
   else if (what == OTHER_LISTS || what == TWICE)
-    TRY(mps_particles_remove(s.set, 3, what == TWICE ? twice : other));
+    TRY(mps_particles_remove(s.set, what == TWICE ? twice : other, 3));
   else
     TRY(put_badly(s.set, what, rank));
   if (what != NO_DENSITY && mps_particles_count(s.set) != count) status = MPS_ERROR_INTERNAL;
@@ -391,37 +364,7 @@ static mps_status run_change(mps_context *own, mps_domain *domain, int what, int
     status = MPS_ERROR_INTERNAL;
   TRY(mps_mpm_step(s.mpm, 1));
   if (what != NO_DENSITY && mps_mpm_step(s.mpm, 1) != MPS_OK) status = MPS_ERROR_INTERNAL;
-  end_scene(&s);
   return status;
 }
 
-static void test_bad_changes(void **state) {
-  (void)state, meet_troubles(run_change, change, CHANGES);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide),
-                                     cmocka_unit_test(test_spread),
-                                     cmocka_unit_test(test_ring),
-                                     cmocka_unit_test(test_wide),
-                                     cmocka_unit_test(test_room),
-                                     cmocka_unit_test(test_press),
-                                     cmocka_unit_test(test_cone),
-                                     cmocka_unit_test(test_balls),
-                                     cmocka_unit_test(test_plates),
-                                     cmocka_unit_test(test_piles),
-                                     cmocka_unit_test(test_changes),
-                                     cmocka_unit_test(test_leaving),
-                                     cmocka_unit_test(test_lost),
-                                     cmocka_unit_test(test_broken),
-                                     cmocka_unit_test(test_cut_press),
-                                     cmocka_unit_test(test_cut_spread),
-                                     cmocka_unit_test(test_refused_memory),
-                                     cmocka_unit_test(test_refused_contact),
-                                     cmocka_unit_test(test_refused_changes),
-                                     cmocka_unit_test(test_refused_probes),
-                                     cmocka_unit_test(test_troubles),
-                                     cmocka_unit_test(test_bad_changes)};
-  cmocka_set_test_filter(getenv("MPS_TEST_ONLY")); /* by name; "test_c*": several */
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(test_bad_changes) { meet_troubles(run_change, change, CHANGES); }

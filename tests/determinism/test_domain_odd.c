@@ -5,9 +5,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 
-#include <mps/experimental.h>
-#include <mps/mps.h>
-
 #define TRY(call)                                                                                  \
   do {                                                                                             \
     if (status == MPS_OK) status = (call);                                                         \
@@ -15,9 +12,8 @@
 
 static mps_status make_set(mps_context *own, double spacing, double width, double height,
                            mps_particles **set) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = spacing);
   const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
-  def.spacing = spacing;
   mps_status status = mps_particles_create(own, &def, set);
   TRY(mps_particles_fill_box(*set, lo, hi, NULL));
   TRY(mps_particles_set(*set, "density", 0, 1000.0));
@@ -71,7 +67,7 @@ static const trouble_case of_mpm[MPM_CASES] = {
     [MPM_POINTS] = {MPS_ERROR_ARGUMENT, "points"},
     [MPM_COMPONENT] = {MPS_ERROR_ARGUMENT, "component"},
     [MPM_END] = {MPS_ERROR_ARGUMENT, "t_end"},
-    [MPM_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "time is "},
+    [MPM_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
     [MPM_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
     [MPM_FILE] = {MPS_ERROR_ARGUMENT, "time is "},
     [MPM_SETTLING_SIDE] = {MPS_ERROR_ARGUMENT, "settle is "},
@@ -95,12 +91,11 @@ static mps_status make_law(mps_context *own, int what, bool odd, mps_material **
 /* A body above the ground, and what is done to it. */
 static mps_status with_body(mps_context *own, mps_mpm *mpm, int what, bool odd) {
   mps_contact_def contact = mps_contact_defaults();
-  mps_body_def def = mps_body_defaults();
+  DEF(body, def, .position[0] = 0.6, .position[1] = 0.76);
   mps_body_motion motion = mps_body_motion_defaults();
-  mps_body *body = NULL;
-  mps_signal *signal = NULL;
+  scoped_body *body = NULL;
+  scoped_signal *signal = NULL;
   const double force[3] = {0.0, odd ? -2.0 : -1.0, 0.0}, moment[3] = {0.0, 0.0, 0.0};
-  def.position[0] = 0.6, def.position[1] = 0.76;
   if (what == MPM_BODY_LOAD)
     def.motion = MPS_BODY_MOTION_FREE, def.mass = 10.0, def.inertia[2] = 1.0;
   if (odd && what == MPM_SWEEPS) contact.sweeps = 40;
@@ -111,15 +106,14 @@ static mps_status with_body(mps_context *own, mps_mpm *mpm, int what, bool odd) 
   if (odd && what == MPM_OFFSET) contact.offset = 0.04;
   if (odd && what == MPM_INSIDE) contact.inside = MPS_CONTACT_INSIDE_REMOVE;
   motion.velocity[1] = odd ? -0.2 : -0.1;
-  mps_status status = mps_signal_create_ramp(own, 0.0, 0.1, -0.01, &signal);
+  mps_status status =
+      mps_signal_create_ramp(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 0.1, -0.01, &signal);
   TRY(mps_body_create_box(own, &def, 0.4, 0.2, &body));
   TRY(mps_mpm_add_contact(mpm, body, &contact, NULL));
   if (what == MPM_BODY_LOAD) TRY(mps_body_set_load(body, force, moment));
   if (what == MPM_BODY_FACTOR) TRY(mps_body_drive(body, 1, signal, odd ? 2.0 : 1.0));
   if (what == MPM_BODY_MOTION) TRY(mps_body_set_motion(body, &motion));
   TRY(mps_mpm_step(mpm, 3));
-  mps_signal_destroy(&signal);
-  mps_body_destroy(&body);
   return status;
 }
 
@@ -152,14 +146,12 @@ static mps_status ask_grid(mps_mpm *mpm, int what, bool odd) {
 
 static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   const bool odd = rank == 1;
-  mps_mpm_def def = mps_mpm_defaults();
+  DEF(mpm, def, .domain = domain, .cell = 0.2, .gravity[1] = -9.81);
   mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
   mps_mpm_settle_def settle = mps_mpm_settle_defaults();
-  mps_particles *set = NULL;
+  scoped_particles *set = NULL;
   mps_material *law = NULL;
   mps_mpm *mpm = NULL;
-  def.domain = domain;
-  def.cell = 0.2, def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c ? 2.0 : 1.2;
   mps_status status = make_set(own, 0.1, 1.2, 0.6, &set);
   if (what == MPM_DEGREE)
@@ -171,7 +163,7 @@ static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_
   if (what == MPM_SETTLING_SIDE) {
     side.kind = MPS_BOUNDARY_ABSORBING;
     side.settle = odd ? 0.2 : 0.1;
-    TRY(mps_mpm_set_boundary(mpm, MPS_MPM_SIDE_X_LOWER, &side));
+    TRY(mps_mpm_set_boundary(mpm, MPS_SIDE_X_LOWER, &side));
   }
   settle.max_steps = odd ? 3 : 2, settle.tolerance = 0.99;
   if (what == MPM_SETTLE) TRY(mps_mpm_settle(mpm, &settle, NULL));
@@ -183,14 +175,10 @@ static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_
   mps_mpm_destroy(&mpm);
   mps_material_destroy(&law);
   mps_kernel_destroy(&def.kernel);
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void test_mpm(void **state) {
-  (void)state;
-  meet_troubles(run_mpm, of_mpm, MPM_CASES);
-}
+TEST(test_mpm) { meet_troubles(run_mpm, of_mpm, MPM_CASES); }
 
 /* ---- the fluid ------------------------------------------------------------------------------- */
 
@@ -215,14 +203,12 @@ static const trouble_case of_fluid[FLUID_CASES] = {
     [FLUID_KIND] = {MPS_ERROR_ARGUMENT, "kind is "},
     [FLUID_MOTION] = {MPS_ERROR_ARGUMENT, "wall's motion"},
     [FLUID_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
-    [FLUID_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "time is "},
+    [FLUID_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
     [FLUID_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
 };
 
 static mps_status wall(mps_fluid *fluid, int32_t kind, double x, double nx, double ny) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = kind;
-  def.point[0] = x, def.normal[0] = nx, def.normal[1] = ny;
+  DEF(fluid_boundary, def, .kind = kind, .point[0] = x, .normal[0] = nx, .normal[1] = ny);
   return mps_fluid_add_boundary(fluid, &def, NULL);
 }
 
@@ -230,7 +216,7 @@ static mps_status step_fluid(mps_fluid *fluid, int what, bool odd) {
   mps_snapshot *state[2] = {NULL, NULL};
   const double velocity[1] = {odd ? 0.02 : 0.01};
   mps_status status = MPS_OK;
-  if (what == FLUID_MOTION) TRY(mps_fluid_set_wall_motion(fluid, 1, NULL, velocity));
+  if (what == FLUID_MOTION) TRY(mps_fluid_set_boundary_motion(fluid, 1, NULL, velocity));
   if (what == FLUID_DT) {
     TRY(mps_fluid_begin_step(fluid, odd ? 1e-3 : 2e-3));
     TRY(mps_fluid_solve_pressure(fluid));
@@ -250,10 +236,9 @@ static mps_status step_fluid(mps_fluid *fluid, int what, bool odd) {
 
 static mps_status run_fluid(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   const bool odd = rank == 1;
-  mps_fluid_def def = mps_fluid_defaults();
-  mps_particles *set = NULL;
+  DEF(fluid, def, .domain = domain);
+  scoped_particles *set = NULL;
   mps_fluid *fluid = NULL;
-  def.domain = domain;
   if (odd && what == FLUID_ITERATIONS) def.iterations = 1999;
   if (odd && what == FLUID_LEVEL) def.level = 0.5;
   mps_status status = make_set(own, 0.02, 0.6, 0.4, &set);
@@ -268,14 +253,10 @@ static mps_status run_fluid(mps_context *own, mps_domain *domain, int what, int3
   TRY(step_fluid(fluid, what, odd));
   mps_fluid_destroy(&fluid);
   mps_kernel_destroy(&def.kernel);
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void test_fluid(void **state) {
-  (void)state;
-  meet_troubles(run_fluid, of_fluid, FLUID_CASES);
-}
+TEST(test_fluid) { meet_troubles(run_fluid, of_fluid, FLUID_CASES); }
 
 /* ---- explicit dynamics ----------------------------------------------------------------------- */
 
@@ -327,12 +308,11 @@ static mps_status step_dynamics(mps_dynamics *dynamics, int what, bool odd) {
 
 static mps_status run_dynamics(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   const bool odd = rank == 1;
-  mps_dynamics_def def = mps_dynamics_defaults();
+  DEF(dynamics, def, .domain = domain);
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   mps_dynamics_load_def load = mps_dynamics_load_defaults();
-  mps_particles *set = NULL;
+  scoped_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
-  def.domain = domain;
   if (odd && what == DYNAMICS_WATCH) def.watch_damping = 1;
   if (what == DYNAMICS_PERIOD) def.period_x = odd ? 44.0 : 40.0;
   base.kind = MPS_BOUNDARY_ABSORBING;
@@ -353,14 +333,10 @@ static mps_status run_dynamics(mps_context *own, mps_domain *domain, int what, i
   TRY(step_dynamics(dynamics, what, odd));
   mps_dynamics_destroy(&dynamics);
   mps_kernel_destroy(&def.kernel);
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void test_dynamics(void **state) {
-  (void)state;
-  meet_troubles(run_dynamics, of_dynamics, DYNAMICS_CASES);
-}
+TEST(test_dynamics) { meet_troubles(run_dynamics, of_dynamics, DYNAMICS_CASES); }
 
 /* ---- a rank that falls silent ---------------------------------------------------------------- */
 
@@ -384,19 +360,8 @@ static void lose_partner(trouble_fn *run, int what) {
   assert_true(lost > 5);
 }
 
-static void test_lost_partner(void **state) {
-  (void)state;
+TEST(test_lost_partner) {
   lose_partner(run_mpm, MPM_CASES);
   lose_partner(run_fluid, FLUID_CASES);
   lose_partner(run_dynamics, DYNAMICS_CASES);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_mpm),
-      cmocka_unit_test(test_fluid),
-      cmocka_unit_test(test_dynamics),
-      cmocka_unit_test(test_lost_partner),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

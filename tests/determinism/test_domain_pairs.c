@@ -50,13 +50,7 @@ static void check_team(int32_t size) {
   team_end(&t);
 }
 
-static void test_pairs(void **state) {
-  (void)state;
+TEST(test_pairs) {
   check_team(2);
   if (!test_quick()) check_team(3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,9 +7,6 @@
 #include "ranks_memory.h"
 #include "ranks_team.h"
 
-#include <mps/dynamics.h>
-#include <mps/fluid.h>
-
 /* ---- fills ----------------------------------------------------------------------------------- */
 
 enum { PLANE, SPACE, TALL };
@@ -39,10 +36,8 @@ static mps_status fill(mps_particles *set, int what) {
 
 static mps_status compute_fills(mps_context *own, mps_domain *domain, int what, int64_t length,
                                 result *r) {
-  mps_particles_def def = mps_particles_defaults();
-  mps_particles *set = NULL;
-  def.dim = what == SPACE ? 3 : 2;
-  def.spacing = 0.05;
+  DEF(particles, def, .dim = what == SPACE ? 3 : 2, .spacing = 0.05);
+  scoped_particles *set = NULL;
   mps_status status = domain ? mps_domain_create_particles(domain, &def, &set)
                              : mps_particles_create(own, &def, &set);
   (void)length;
@@ -50,18 +45,15 @@ static mps_status compute_fills(mps_context *own, mps_domain *domain, int what, 
   TRY(keep(set, r));
   for (int64_t k = 0; status == MPS_OK && k < r->count; k++)
     if (mps_particles_index(set, r->id[k]) != k) status = MPS_ERROR_INTERNAL;
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void test_fills(void **state) {
-  (void)state;
+TEST(test_fills) {
   for (int what = PLANE; what <= TALL; what++) compare_teams(compute_fills, what, 0, false);
 }
 
 /* Of each fill every rank has the same number, but for one. */
-static void test_even(void **state) {
-  (void)state;
+TEST(test_even) {
   ranks s = {.compute = compute_fills, .what = PLANE, .threads = 1};
   int64_t least = INT64_MAX, most = 0;
   run_team(&s, 7);
@@ -76,16 +68,14 @@ static void test_even(void **state) {
 
 /* ---- WLS-MPM --------------------------------------------------------------------------------- */
 
-static void test_slide(void **state) { (void)state, compare_teams(compute, SLIDE, 60, false); }
-static void test_spread(void **state) { (void)state, compare_teams(compute, SPREAD, 60, true); }
-static void test_ring(void **state) { (void)state, compare_teams(compute, RING, 30, true); }
-static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 30, true); }
-static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 45, true); }
-static void test_changes(void **state) {
-  (void)state, compare_teams(compute_changes, SPREAD, 24, true);
-}
+TEST(test_slide) { compare_teams(compute, SLIDE, 60, false); }
+TEST(test_spread) { compare_teams(compute, SPREAD, 60, true); }
+TEST(test_ring) { compare_teams(compute, RING, 30, true); }
+TEST(test_room) { compare_teams(compute, ROOM, 30, true); }
+TEST(test_press) { compare_teams(compute, PRESS, 45, true); }
+TEST(test_changes) { compare_teams(compute_changes, SPREAD, 24, true); }
 
-static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, SLIDE, 4, 11); }
+TEST(test_refused_memory) { refuse_memory(compute, SLIDE, 4, 11); }
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
@@ -97,7 +87,7 @@ static mps_status begin_wide(mps_context *own, mps_domain *domain, const peak_al
                              void *user) {
   creation *made = user;
   const int32_t rank = domain ? mps_domain_rank(domain) : 0;
-  scene s = {.set = NULL};
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_status status = make_set(own, domain, WIDE, &s.set);
   mps_mpm_def def = scene_def(domain, WIDE);
   TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s.material[0]));
@@ -106,12 +96,10 @@ static mps_status begin_wide(mps_context *own, mps_domain *domain, const peak_al
   made->beside[rank] = allocator->most - allocator->now;
   made->here[rank] = mps_particles_count(s.set);
   TRY(mps_mpm_step(s.mpm, 2));
-  end_scene(&s);
   return status;
 }
 
-static void test_memory(void **state) {
-  (void)state;
+TEST(test_memory) {
   creation made = {.here = {0}};
   if (test_races()) skip();
   const int64_t one = memory_most(1, begin_wide, &made), four = memory_most(4, begin_wide, &made);
@@ -119,7 +107,8 @@ static void test_memory(void **state) {
   for (int r = 0; r < 4; r++) assert_true(made.beside[r] < 24 * made.here[r]);
   print_message("9600 particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
                 (long long)one, (long long)four, (double)four / (double)one);
-  assert_true((double)four < 0.4 * (double)one);
+  /* with the columns of the state before the last step */
+  assert_true((double)four < 0.45 * (double)one);
 }
 
 /* ---- what is refused ------------------------------------------------------------------------- */
@@ -132,9 +121,9 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
   const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, what == FILLS && odd ? 0.9 : 1.0};
   const double drop[2] = {2.0, what == POSITIONS && odd ? 2.1 : 2.0};
   mps_particles_def def = mps_particles_defaults();
-  mps_material *material = NULL;
-  mps_particles *set = NULL;
-  mps_mpm *mpm = NULL;
+  scoped_material *material = NULL;
+  scoped_particles *set = NULL;
+  scoped_mpm *mpm = NULL;
   mps_dynamics *dynamics = NULL;
   mps_fluid *fluid = NULL;
   (void)length, (void)r;
@@ -150,8 +139,7 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
   if (what == FIELDS && odd) TRY(mps_particles_add_field(set, "stress", 0));
   TRY(mps_particles_set(set, "density", 0, what == CONSTANTS && odd ? 1001.0 : 1000.0));
   TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &material));
-  mps_mpm_def solver = mps_mpm_defaults();
-  solver.cell = 0.2;
+  DEF(mpm, solver, .cell = 0.2);
   if (what != ALONE) solver.domain = domain;
   const int64_t count = mps_particles_count(set);
   mps_dynamics_def waves = mps_dynamics_defaults();
@@ -164,13 +152,10 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
     TRY(mps_mpm_create(own, set, material, &solver, &mpm));
   if (mpm || dynamics || fluid || (what == ALONE && mps_particles_count(set) != count))
     status = MPS_ERROR_INTERNAL;
-  mps_mpm_destroy(&mpm);
-  mps_material_destroy(&material);
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void test_refused(void **state) {
+TEST(test_refused) {
   static const struct {
     mps_status status;
     const char *words;
@@ -184,7 +169,6 @@ static void test_refused(void **state) {
       [ALONE] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"},
       [DYNAMICS] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"},
       [FLUID] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"}};
-  (void)state;
   for (int what = 0; what < REFUSED; what++) {
     ranks s = {.compute = refused, .what = what, .threads = 1};
     run_team(&s, 3);
@@ -195,16 +179,4 @@ static void test_refused(void **state) {
       assert_int_equal(s.allocator[r].live, 0);
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_fills),          cmocka_unit_test(test_even),
-      cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
-      cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
-      cmocka_unit_test(test_press),          cmocka_unit_test(test_changes),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

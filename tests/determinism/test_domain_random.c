@@ -6,11 +6,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 
-#include <mps/dynamics.h>
-#include <mps/experimental.h>
-#include <mps/fluid.h>
-#include <mps/mpm.h>
-
 #include <time.h>
 
 enum { MPM, FLUID, DYNAMICS, SOLVERS };
@@ -124,23 +119,23 @@ static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
   if (pick(p, 2)) {
     TRY(mps_material_create_linear_elastic(s->own, young, 0.3, &s->material));
   } else {
-    mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
-    law.young = young, law.poisson = 0.3, law.friction = 0.5, law.cohesion = 1e3;
+    DEF(material_drucker_prager, law, .young = young, .poisson = 0.3, .friction = 0.5,
+        .cohesion = 1e3);
     TRY(mps_material_create_drucker_prager(s->own, &law, &s->material));
   }
   def.domain = domain;
   def.cell = h, def.spline = 2 + (pick(p, 2) + (other == 1)) % 2;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 40.0 * h;
   s->gravity = def.gravity[1] = other == 2 ? -9.80 : -9.81;
-  def.walls = pick(p, 2) ? MPS_MPM_WALLS_FIT : MPS_MPM_WALLS_MIRROR;
+  def.edge = pick(p, 2) ? MPS_MPM_EDGE_FIT : MPS_MPM_EDGE_MIRROR;
   def.volumetric = (pick(p, 3) + (other == 3)) % 3;
   def.budget = (pick(p, 2) + (other == 4)) % 2;
   if (pick(p, 4) == 0 || p->springs) def.dt = 1e-6;
   const int transfer = (pick(p, 3) == 0) != (other == 5), side = kinds[pick(p, 3)];
   TRY(mps_mpm_create(s->own, s->set, s->material, &def, &s->mpm));
   if (transfer) TRY(mps_experimental_mpm_transfer(s->mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT));
-  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, side, other == 6 ? 0.31 : 0.3));
-  if (pick(p, 2)) TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_OPEN, 0.0));
+  TRY(mps_mpm_set_side(s->mpm, MPS_SIDE_Y_LOWER, side, other == 6 ? 0.31 : 0.3));
+  if (pick(p, 2)) TRY(mps_mpm_set_side(s->mpm, MPS_SIDE_X_LOWER, MPS_BOUNDARY_OPEN, 0.0));
   TRY(edit_velocity(s, 0.0, uniform(p, -3.0, 3.0)));
   if (status == MPS_OK && body) status = add_body(s, p, width, height, other - 7);
   return status;
@@ -150,11 +145,9 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
   const double width = uniform(p, 0.8, 1.2);
   const double wall[3][4] = {{0, 0, 0, 1}, {0, 0, 1, 0}, {2.0 * width, 0, -1, 0}};
   const int other = otherwise(p, 6, odd);
-  mps_fluid_def def = mps_fluid_defaults();
+  DEF(fluid, def, .domain = domain, .viscosity = other == 0 ? 1.0 : 0.1);
   mps_fluid_load_def load = mps_fluid_load_defaults();
   mps_status status = fill(s, 2, 0.02, width, uniform(p, 0.3, 0.5));
-  def.domain = domain;
-  def.viscosity = other == 0 ? 1.0 : 0.1;
   if (other == 1) def.dt = 1e-4;
   if (other == 2) def.tolerance = 1e-7;
   TRY(mps_fluid_create(s->own, s->set, &def, &s->fluid));
@@ -192,7 +185,8 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   TRY(mps_dynamics_create(s->own, s->set, &def, &s->dynamics));
   floor.lower[0] = -1.0, floor.upper[0] = 20.0;
   floor.lower[1] = -1.0, floor.upper[1] = other == 3 ? 0.2 : 0.1;
-  TRY(mps_signal_create_user(s->own, shake, other == 4 ? &any : NULL, &signal));
+  TRY(mps_signal_create_user(s->own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, shake,
+                             other == 4 ? &any : NULL, NULL, &signal));
   if (shaken || other == 4) {
     floor.kind = MPS_BOUNDARY_DRIVEN;
     floor.dofs = MPS_DOF_X | MPS_DOF_Y, floor.signal[0] = signal;
@@ -244,13 +238,12 @@ static mps_status reaction(subject *s, int32_t number, mps_reaction *out) {
 }
 
 static mps_status back_and_forth(subject *s) {
-  mps_snapshot *kept = NULL;
+  scoped_snapshot *kept = NULL;
   mps_status status = EACH(s, mps_mpm_snapshot(s->mpm, &kept), mps_fluid_snapshot(s->fluid, &kept),
                            mps_dynamics_snapshot(s->dynamics, &kept));
   TRY(step(s, 2));
   TRY(EACH(s, mps_mpm_rollback(s->mpm, kept), mps_fluid_rollback(s->fluid, kept),
            mps_dynamics_rollback(s->dynamics, kept)));
-  mps_snapshot_destroy(&kept);
   return status;
 }
 
@@ -258,7 +251,7 @@ static mps_status set_boundary(subject *s, double x) {
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
   wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   wall.point[0] = 2.5 + x, wall.normal[0] = -1.0;
-  if (s->mpm) return mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FRICTIONAL, x);
+  if (s->mpm) return mps_mpm_set_side(s->mpm, MPS_SIDE_X_UPPER, MPS_BOUNDARY_FRICTIONAL, x);
   return s->fluid ? mps_fluid_set_boundary(s->fluid, s->wall, &wall)
                   : mps_dynamics_set_dt(s->dynamics, 1e-4 * (1.0 + x));
 }
@@ -270,8 +263,7 @@ static mps_status set_dt(subject *s, double factor) {
 }
 
 static mps_status move(subject *s, double speed) {
-  mps_body_motion motion = mps_body_motion_defaults();
-  motion.velocity[1] = -speed;
+  WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = -speed);
   mps_status status = s->body ? mps_body_set_motion(s->body, &motion) : MPS_OK;
   TRY(step(s, 1));
   return status;
@@ -329,7 +321,7 @@ static mps_status operate(subject *s, plan *p, int what, bool odd, result *r, in
   case REFUSED:
     return step(s, odd ? 1 : -1 - number);
   case REMOVE:
-    return s->dynamics ? step(s, 1 + odd) : mps_particles_remove(s->set, 2, ids);
+    return s->dynamics ? step(s, 1 + odd) : mps_particles_remove(s->set, ids, 2);
   case EDIT: {
     const mps_status status = edit_velocity(s, x, 0.0);
     return status == MPS_OK ? step(s, 1 + odd) : status;
@@ -351,7 +343,7 @@ static mps_status compute(mps_context *own, mps_domain *domain, int seed, int64_
                           result *r) {
   (void)length;
   plan p = make_plan((uint64_t)seed);
-  subject s = {.own = own};
+  SCOPED(forget) subject s = {.own = own};
   const bool odd = domain && p.trouble != ALIKE && mps_domain_rank(domain) == p.odd;
   const bool made = p.trouble == OTHER_VALUE && p.at == 0;
   mps_status status = p.solver == MPM     ? make_mpm(&s, &p, domain, odd && made)
@@ -379,7 +371,6 @@ static mps_status compute(mps_context *own, mps_domain *domain, int seed, int64_
     TRY(keep(s.set, r));
     r->omega = s.off;
   }
-  forget(&s);
   return status;
 }
 
@@ -387,7 +378,7 @@ static mps_status compute(mps_context *own, mps_domain *domain, int seed, int64_
 
 static void check_alike(const plan *p, ranks *s) {
   result alone = {.count = 0};
-  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   alone.status = compute(serial, NULL, (int)p->seed, 0, &alone);
   if (alone.status == MPS_OK && !(alone.omega < 1e-10))
     fail_msg("seed %d: the momentum is off by %g of what moves", (int)p->seed, alone.omega);
@@ -405,7 +396,6 @@ static void check_alike(const plan *p, ranks *s) {
                (long long)seen[i]);
   free(seen);
   drop(&alone);
-  mps_context_destroy(&serial);
 }
 
 /* All ranks but the odd one have an error: it may have done no more than end early. Questions of
@@ -444,20 +434,14 @@ static void run_seed(uint64_t seed) {
   free(s);
 }
 
-static void test_seeds(void **state) {
+TEST(test_seeds) {
   const char *one = getenv("MPS_TEST_SEED"), *many = getenv("MPS_TEST_SEEDS");
   const char *from = getenv("MPS_TEST_FIRST");
   const uint64_t count = many ? strtoull(many, NULL, 10) : test_quick() ? 40 : 200;
-  (void)state;
   if (one) {
     run_seed(strtoull(one, NULL, 10));
     return;
   }
   const uint64_t first = from ? strtoull(from, NULL, 10) : 1;
   for (uint64_t seed = first; seed < first + count; seed++) run_seed(seed);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_seeds)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

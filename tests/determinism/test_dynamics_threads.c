@@ -19,7 +19,7 @@ typedef struct setting {
  * and dashpots are all there, in enough blocks to be shared between threads. */
 static mps_status run(const setting *s, uint64_t *hash) {
   mps_context_def def = test_context_defaults();
-  mps_context *context = NULL;
+  scoped_context *context = NULL;
   int32_t threads = s->threads;
   def.executor = s->executor;
   def.threads = s->threads;
@@ -30,56 +30,51 @@ static mps_status run(const setting *s, uint64_t *hash) {
   }
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   mps_particles_def set = mps_particles_defaults();
-  mps_particles *particles = NULL;
+  scoped_particles *particles = NULL;
   set.spacing = test_races() ? 1.25 : 1.0; /* m: 28 blocks still, and 3 batches */
   const double outline[] = {0.0,   0.0,  200.0, 0.0,   200.0, 80.0,
                             130.0, 80.0, 70.0,  170.0, 0.0,   170.0};
-  mps_assert_ok(context, mps_particles_create(context, &set, &particles));
-  mps_assert_ok(context, mps_particles_fill_polygon(particles, 6, outline, NULL));
-  mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1800.0));
-  mps_assert_ok(context, mps_particles_set(particles, "shear_velocity", 0, 150.0));
-  mps_assert_ok(context, mps_particles_set(particles, "pressure_velocity", 0, 330.0));
+  OK(mps_particles_create(context, &set, &particles));
+  OK(mps_particles_fill_polygon(particles, 6, outline, NULL));
+  OK(mps_particles_set(particles, "density", 0, 1800.0));
+  OK(mps_particles_set(particles, "shear_velocity", 0, 150.0));
+  OK(mps_particles_set(particles, "pressure_velocity", 0, 330.0));
   mps_view x;
   mps_edit h;
-  mps_assert_ok(context, mps_particles_set(particles, "damping", 0, 0.0));
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(particles, "damping", &h));
+  OK(mps_particles_set(particles, "damping", 0, 0.0));
+  OK(mps_particles_view(particles, "position", &x));
+  OK(mps_particles_edit(particles, "damping", &h));
   for (int64_t k = 0; s->damped && k < x.shape[0]; k++)
     *mps_edit_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
-  mps_assert_ok(context, mps_particles_commit(particles, &h));
-  mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_LEFT, 2));
-  mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_RIGHT, 2));
-  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
-  dynamics_def.dt = 1e-3;
-  mps_dynamics *dynamics = NULL;
+  OK(mps_particles_commit(particles, &h));
+  OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_LOWER, 2));
+  OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_UPPER, 2));
+  DEF(dynamics, dynamics_def, .dt = 1e-3);
+  scoped_dynamics *dynamics = NULL;
   mps_status status = mps_dynamics_create(context, particles, &dynamics_def, &dynamics);
   if (status == MPS_OK) {
     int64_t count;
-    int64_t *base = soil_select(context, particles, -10.0, -1.0, 1000.0, set.spacing, &count);
+    int64_t *base = soil_select(particles, -10.0, -1.0, 1000.0, set.spacing, &count);
     mps_signal *ricker = NULL;
-    mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.05, 1.0, &ricker));
-    mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
-    boundary.signal[0] = ricker;
-    mps_assert_ok(context, soil_add_viscous(dynamics, &boundary, count, base));
+    OK(mps_signal_create_ricker(context, 4.0, 0.05, 1.0, &ricker));
+    DEF(dynamics_boundary, boundary, .signal[0] = ricker);
+    OK(soil_add_viscous(dynamics, &boundary, count, base));
     mps_signal_destroy(&ricker);
     free(base);
-    mps_assert_ok(context, mps_dynamics_step(dynamics, test_quick() ? 6 : 60));
+    OK(mps_dynamics_step(dynamics, test_quick() ? 6 : 60));
     mps_totals energy;
     mps_dynamics_linear_limit limit;
-    mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &energy));
-    *hash = digest_fields(context, particles, names);
+    OK(mps_dynamics_get_totals(dynamics, &energy));
+    *hash = digest_fields(particles, names);
     *hash = digest_add(*hash, &energy.kinetic);
     *hash = digest_add(*hash, &energy.strain);
     if (s->damped) { /* the limit of uneven damping is a longer search: once is enough */
       limit.dt = 0.0;
     } else {
-      mps_assert_ok(context, mps_dynamics_find_limit(dynamics, 0.0, &limit));
+      OK(mps_dynamics_find_limit(dynamics, 0.0, &limit));
     }
     *hash = digest_add(*hash, &limit.dt);
   }
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&particles);
-  mps_context_destroy(&context);
   return status;
 }
 
@@ -103,8 +98,7 @@ static void same_bits(const setting *settings, int count, bool damped) {
   }
 }
 
-static void every_number_of_threads(void **state) {
-  (void)state;
+TEST(every_number_of_threads) {
   static const setting settings[] = {
       {MPS_CONTEXT_EXECUTOR_OPENMP, 3, 0, false},  {MPS_CONTEXT_EXECUTOR_CALLER, 2, 0, false},
       {MPS_CONTEXT_EXECUTOR_THREADS, 3, 0, false}, {MPS_CONTEXT_EXECUTOR_THREADS, 2, 0, false},
@@ -114,18 +108,11 @@ static void every_number_of_threads(void **state) {
   same_bits(settings, test_quick() ? 3 : 8, true);
 }
 
-static void every_instruction_set(void **state) {
-  (void)state;
+TEST(every_instruction_set) {
   static const setting settings[] = {{MPS_CONTEXT_EXECUTOR_SERIAL, 1, 1, false},
                                      {MPS_CONTEXT_EXECUTOR_SERIAL, 1, 3, false},
                                      {MPS_CONTEXT_EXECUTOR_SERIAL, 1, 4, false}};
   if (test_races()) skip(); /* one thread */
   same_bits(settings, 3, false);
   same_bits(settings, 3, true);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_number_of_threads),
-                                     cmocka_unit_test(every_instruction_set)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

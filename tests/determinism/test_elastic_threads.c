@@ -9,36 +9,32 @@
 /* Displacements, reactions and stresses of an L-shape of 10 000 particles (2500 if quick) after a
  * solution and three Newmark steps, by id: 8 doubles a particle. */
 static double *solve(const mps_context_def *def, int reversed, int32_t solver, int64_t *n) {
-  mps_context *context = NULL;
+  scoped_context *context = NULL;
   char text[256];
   if (mps_context_create(def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
   const double spacing = test_quick() ? 0.02 : 0.01;
-  test_body b = test_body_begin(context, 2, spacing);
+  scoped_test_body b = test_body_begin(context, 2, spacing);
   test_body_box(&b, 0, 0, 0, 2, 0.3, 0);
   test_body_box(&b, 0, 0, 0, 0.3, 1.5, 0);
-  mps_elastic_def elastic = mps_elastic_defaults();
-  elastic.solver = solver;
-  elastic.blas_threads = 1;
+  DEF(elastic, elastic, .solver = solver, .blas_threads = 1);
   test_body_finish(&b, 2.0, 0.25, &elastic);
-  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
+  OK(mps_particles_set(b.particles, "density", 0, 1.0));
   if (reversed) {
     int64_t *order = malloc((size_t)b.n * sizeof *order);
     for (int64_t k = 0; k < b.n; k++) order[k] = b.n - 1 - k;
-    mps_assert_ok(context, mpsi_particles_permute(b.particles, "test", order));
+    OK(mpsi_particles_permute(b.particles, "test", order));
     free(order);
   }
   int64_t count, *ids = test_select(&b, 1, -1, 0.6 * spacing, &count);
   const double load[2] = {0.1, -1.0}, wind[2] = {0.3, 0.0};
-  for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, test_prescribe(b.elastic, c, count, ids, NULL));
-  mps_assert_ok(context, test_body_force(b.elastic, load));
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  motion.dt = 0.05;
-  mps_assert_ok(context, mps_elastic_start(b.elastic, &motion));
-  mps_assert_ok(context, test_body_force(b.elastic, wind));
-  mps_assert_ok(context, mps_elastic_step(b.elastic, 3));
-  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
+  for (int c = 0; c < 2; c++) OK(test_prescribe(b.elastic, c, count, ids, NULL));
+  OK(test_body_force(b.elastic, load));
+  OK(mps_elastic_solve(b.elastic));
+  DEF(elastic_motion, motion, .dt = 0.05);
+  OK(mps_elastic_start(b.elastic, &motion));
+  OK(test_body_force(b.elastic, wind));
+  OK(mps_elastic_step(b.elastic, 3));
+  OK(mps_elastic_update_stress(b.elastic));
   double *out = malloc((size_t)b.n * 8 * sizeof *out);
   for (int64_t id = 0; id < b.n; id++) {
     const int64_t i = mps_particles_index(b.particles, id);
@@ -50,8 +46,6 @@ static double *solve(const mps_context_def *def, int reversed, int32_t solver, i
   }
   *n = b.n;
   free(ids);
-  test_body_end(&b);
-  mps_context_destroy(&context);
   return out;
 }
 
@@ -75,16 +69,8 @@ static void check(int32_t solver) {
   free(expected);
 }
 
-static void threads_and_order_change_nothing(void **state) {
-  (void)state;
+TEST(threads_and_order_change_nothing) {
   check(MPS_ELASTIC_SOLVER_LLT);
   check(MPS_ELASTIC_SOLVER_LDLT);
   check(MPS_ELASTIC_SOLVER_CG);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(threads_and_order_change_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,28 +8,23 @@
  * blocks of the preconditioner. */
 static uint64_t run(const mps_context_def *def) {
   static const char *const names[] = {"id", "position", "velocity", "pressure", NULL};
-  mps_context *context = NULL;
-  mps_signal *piston = NULL;
+  scoped_context *context = NULL;
+  scoped_signal *piston = NULL;
   char text[256];
   if (mps_context_create(def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
-  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.3, 0.0, &piston));
-  tank t = tank_make(context, 2.0, 1.0, 0.02, piston, 2e-3);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, test_quick() ? 20 : 80));
-  uint64_t hash = digest_fields(context, t.water, names);
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.3, 0.0, &piston));
+  scoped_tank t = tank_make(context, 2.0, 1.0, 0.02, piston, 2e-3);
+  OK(mps_fluid_step(t.fluid, test_quick() ? 20 : 80));
+  uint64_t hash = digest_fields(t.water, names);
   mps_reaction r;
-  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
+  OK(mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
   hash = digest_add(hash, &r.force[0]);
   hash = digest_add(hash, &r.moment[2]);
-  tank_free(&t);
-  mps_signal_destroy(&piston);
-  mps_context_destroy(&context);
   return hash;
 }
 
-static void threads_change_nothing(void **state) {
-  (void)state;
-  mps_context_def def = mps_context_defaults();
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
+TEST(threads_change_nothing) {
+  DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_SERIAL);
   const uint64_t expected = run(&def);
   for (int32_t threads = 2; threads <= 5; threads += 3) {
     def = pthread_executor_def(&threads);
@@ -38,11 +33,4 @@ static void threads_change_nothing(void **state) {
   def = mps_context_defaults();
   def.threads = 3;
   assert_true(run(&def) == expected);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(threads_change_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,30 +29,22 @@ static void fill(quest *q) {
   }
 }
 
-static void same_bits(void **state) {
-  (void)state;
+TEST(same_bits) {
   static mesh_shape shape;
   static quest q[2];
   mesh_sphere(&shape, 3);
   for (int k = 0; k < 2; k++) {
     int32_t threads = k ? 4 : 1;
     const mps_context_def def = pthread_executor_def(&threads);
-    mps_context *context = NULL;
-    mps_body *body = NULL;
+    scoped_context *context = NULL;
+    scoped_body *body = NULL;
     char text[256];
     if (mps_context_create(&def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
-    mps_assert_ok(context, mps_body_create_mesh(context, NULL, 3 * shape.triangles, shape.xyz,
-                                                shape.triangles, shape.corner, &body));
+    OK(mps_body_create_mesh(context, NULL, 3 * shape.triangles, shape.xyz, shape.triangles,
+                            shape.corner, &body));
     q[k].body = body;
     fill(&q[k]);
-    mps_assert_ok(context, mps_context_parallel_for(context, POINTS / BLOCK, find, &q[k]));
-    mps_body_destroy(&body);
-    mps_context_destroy(&context);
+    OK(mps_context_parallel_for(context, POINTS / BLOCK, find, &q[k]));
   }
   assert_memory_equal(q[0].foot, q[1].foot, sizeof q[0].foot);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,6 @@
 #include "mpm_held.h"
 #include "pthread_executor.h"
 
-#include <mps/experimental.h>
-
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
@@ -16,17 +14,15 @@ static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
   if (options & BY_CELL) def->volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (options & BY_NODES) def->volumetric = MPS_MPM_VOLUMETRIC_NODES;
   mpm_scene_solve(s, def);
-  if (options & STANDARD) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, 0.9));
+  if (options & STANDARD) OK(mps_experimental_mpm_standard(s->mpm, 0.9));
 }
 
 /* A plate of a fifth of a cell in the block, up to its middle. */
 static void add_fin(mpm_scene *s) {
-  mps_body *fin = NULL;
-  mps_body_def body = mps_body_defaults();
-  body.position[0] = 0.505, body.position[1] = 0.5;
-  mps_assert_ok(s->context, mps_body_create_box(s->context, &body, 0.004, 0.4, &fin));
+  scoped_body *fin = NULL;
+  DEF(body, body, .position[0] = 0.505, .position[1] = 0.5);
+  OK(mps_body_create_box(s->context, &body, 0.004, 0.4, &fin));
   mpm_scene_contact(s, fin, 0.4);
-  mps_body_destroy(&fin);
 }
 
 /* A block that falls on a rough floor while a free rough disc hits its side (a ring its top): many
@@ -39,36 +35,30 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   for (int k = 0; k < NX * NY; k++) {
     const int n = backwards ? NX * NY - 1 - k : k;
     const double x[] = {0.25 + 0.01 * (n % NX), 0.1 + 0.01 * (double)(n / NX)};
-    mps_assert_ok(context, mps_particles_append(s.particles, 1, x));
+    OK(mps_particles_append(s.particles, 1, x));
   }
   const double v0[] = {0.5, -2.0}, L[] = {0.0, -1.0, 1.0, 0.0};
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.cell = 0.02;
-  def.lower[0] = 0.0, def.upper[0] = 1.0;
-  def.gravity[1] = -9.81;
+  DEF(mpm, def, .geometry = geometry, .cell = 0.02, .lower[0] = 0.0, .upper[0] = 1.0,
+      .gravity[1] = -9.81);
   solve(&s, &def, options);
   mps_body *floor = NULL;
-  mps_body_def body = mps_body_defaults();
+  DEF(body, body, .position[1] = 0.06);
   const double up[] = {0.1, 1.0};
-  body.position[1] = 0.06;
-  mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
-  mps_contact_def rough = mps_contact_defaults();
-  rough.friction = 0.4;
-  rough.adhesion = 50.0, rough.strength = 2000.0;
+  OK(mps_body_create_half_plane(context, &body, up, &floor));
+  DEF(contact, rough, .friction = 0.4, .adhesion = 50.0, .strength = 2000.0);
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin below the slope */
-  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, floor, &rough, NULL));
+  OK(mps_mpm_add_contact(s.mpm, floor, &rough, NULL));
   body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 30.0, body.inertia[2] = 0.15;
   const bool ring = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC; /* which falls on the block */
   body.position[0] = ring ? 0.6 : 0.93, body.position[1] = ring ? 0.58 : 0.3;
   body.velocity[ring ? 1 : 0] = ring ? -6.0 : -3.0;
-  mps_assert_ok(context, mps_body_create_disc(context, &body, 0.07, disc));
+  OK(mps_body_create_disc(context, &body, 0.07, disc));
   if (options & FIN) add_fin(&s);
   mpm_scene_contact(&s, *disc, 0.4);
   mps_body_destroy(&floor);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
+  OK(mps_mpm_step(s.mpm, 100));
   return s;
 }
 
@@ -77,28 +67,22 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   const double lo[] = {0.05, 0.02, 0.0}, hi[] = {0.53, 0.18, 0.16};
   const double v0[] = {-1.0, -2.0, 0.5}, L[] = {0.0, -3.0, 1.0, 3.0, 0.0, 0.0, -1.0, 0.0, 0.0};
   mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_GEOMETRY_SPACE;
-  def.cell = 0.02;
+  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
   solve(&s, &def, options);
-  mps_body *ball = NULL;
-  mps_body_def body = mps_body_defaults();
-  body.position[0] = 0.3, body.position[2] = 0.08;
-  mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.03, &ball));
-  mps_contact_def rough = mps_contact_defaults();
-  rough.friction = 0.4;
-  rough.strength = 500.0;
+  scoped_body *ball = NULL;
+  DEF(body, body, .position[0] = 0.3, .position[2] = 0.08);
+  OK(mps_body_create_sphere(context, &body, 0.03, &ball));
+  DEF(contact, rough, .friction = 0.4, .strength = 500.0);
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin in it */
-  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &rough, NULL));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 25));
+  OK(mps_mpm_add_contact(s.mpm, ball, &rough, NULL));
+  OK(mps_mpm_step(s.mpm, 25));
   mps_reaction reaction;
-  mps_assert_ok(context, mps_body_get_reaction(ball, -1, &reaction));
+  OK(mps_body_get_reaction(ball, -1, &reaction));
   assert_true(reaction.count > 0);
-  mps_body_destroy(&ball);
   return s;
 }
 
@@ -108,24 +92,21 @@ static mpm_scene slide_in_space(mps_context *context) {
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {0.3, 0.06, 0.3}, up[] = {0.0, 1.0, 0.0};
   const double v0[] = {1.0, -1.0, 0.5}, L[9] = {0.0};
   mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_GEOMETRY_SPACE;
-  def.cell = 0.02;
+  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
   mpm_scene_solve(&s, &def);
-  mps_body *floor = NULL;
-  mps_assert_ok(context, mps_body_create_half_space(context, NULL, up, &floor));
+  scoped_body *floor = NULL;
+  OK(mps_body_create_half_space(context, NULL, up, &floor));
   mpm_scene_contact(&s, floor, 0.3);
   mps_reaction reaction;
   int64_t most = 0;
   for (int k = 0; k < 20; k++) {
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
-    mps_assert_ok(context, mps_body_get_reaction(floor, -1, &reaction));
+    OK(mps_mpm_step(s.mpm, 1));
+    OK(mps_body_get_reaction(floor, -1, &reaction));
     most = reaction.count > most ? reaction.count : most;
   }
   assert_true(most > 600);
-  mps_body_destroy(&floor);
   return s;
 }
 
@@ -134,7 +115,7 @@ static mpm_scene slide_in_space(mps_context *context) {
 static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
   int32_t box = -1, loads[2];
   mpm_scene s = held_begin(context, geometry, &box, loads);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  OK(mps_mpm_step(s.mpm, 10));
   double force[3];
   for (int32_t k = -1; k < 4; k++) {
     mpm_scene_force(&s, k < 0 ? box : k, force);
@@ -151,23 +132,20 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
                                                                 : test_context_defaults();
   def.executor = executor;
   def.threads = threads;
-  mps_context *context = NULL;
+  scoped_context *context = NULL;
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return 0;
-  mps_body *disc = NULL;
+  scoped_body *disc = NULL;
   mps_body_state b = {0};
   uint64_t forces = 0;
-  mpm_scene s = options & HELD   ? hold(context, geometry, &forces)
-                : options & SLAB ? slide_in_space(context)
-                : geometry == MPS_MPM_GEOMETRY_SPACE
-                    ? fall_in_space(context, options)
-                    : fall(context, geometry, options, false, &disc);
-  if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
+  scoped_mpm_scene s = options & HELD   ? hold(context, geometry, &forces)
+                       : options & SLAB ? slide_in_space(context)
+                       : geometry == MPS_MPM_GEOMETRY_SPACE
+                           ? fall_in_space(context, options)
+                           : fall(context, geometry, options, false, &disc);
+  if (disc) OK(mps_body_get_state(disc, &b));
   assert_true(!disc || (b.velocity[0] > -2.9 && b.velocity[1] > -5.9)); /* it has hit */
-  uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  uint64_t hash = digest_add(digest_fields(s.particles, names), &b.spin[2]);
   hash = digest_add(hash, &forces);
-  mps_body_destroy(&disc);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
   return hash;
 }
 
@@ -192,14 +170,12 @@ static const int32_t threads[] = {3, 2, 1, 8};
 /* How many of these: at the lower instruction levels the same code shares the work out. */
 static int numbers(int most) { return getenv("MPS_TEST_LEVEL") || test_quick() ? 1 : most; }
 
-static void every_number_of_threads(void **state) {
-  (void)state;
+TEST(every_number_of_threads) {
   for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++)
     same_bits(geometry, 0, numbers(4), threads);
 }
 
-static void options_too(void **state) {
-  (void)state;
+TEST(options_too) {
   same_bits(MPS_MPM_GEOMETRY_AXISYMMETRIC, BY_CELL, 1, threads);
   same_bits(MPS_MPM_GEOMETRY_PLANE_STRAIN, BY_NODES, 1, threads);
   same_bits(MPS_MPM_GEOMETRY_SPACE, BY_NODES, 1, threads);
@@ -212,24 +188,19 @@ static void options_too(void **state) {
   same_bits(MPS_MPM_GEOMETRY_SPACE, SLAB, numbers(2), threads);
 }
 
-static void any_order_of_particles(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(any_order_of_particles) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_body *disc[2] = {NULL};
-  mpm_scene a = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, false, &disc[0]);
-  mpm_scene b = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, true, &disc[1]);
+  scoped_mpm_scene a = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, false, &disc[0]);
+  scoped_mpm_scene b = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, true, &disc[1]);
   const int64_t count = mps_particles_count(a.particles);
   mps_view xa = mpm_scene_view(&a, "position"), xb = mpm_scene_view(&b, "position");
   for (int64_t id = 0; id < count; id++) {
     const int64_t i = mps_particles_index(a.particles, id);
     const int64_t j = mps_particles_index(b.particles, count - 1 - id);
-    for (int c = 0; c < 2; c++)
-      mps_assert_near(*mps_view_f64(&xb, j, c), *mps_view_f64(&xa, i, c), 1e-11);
+    for (int c = 0; c < 2; c++) NEAR(*mps_view_f64(&xb, j, c), *mps_view_f64(&xa, i, c), 1e-11);
   }
   for (int k = 0; k < 2; k++) mps_body_destroy(&disc[k]);
-  mpm_scene_end(&a);
-  mpm_scene_end(&b);
-  mps_context_destroy(&context);
 }
 
 /* ---- history --------------------------------------------------------------------------------- */
@@ -261,15 +232,14 @@ static void exchange(mpm_scene *s, double (*values)[STATE_VALUES], bool to) {
 
 /* A lump that shakes at random at a wall is put back to its first state after many sorts: what then
  * follows is what followed the first time, bit for bit. */
-static void any_history_of_sorts(void **state) {
-  (void)state;
+TEST(any_history_of_sorts) {
   enum { MOST = 2000 };
   static double start[MOST][STATE_VALUES], end[2][MOST][STATE_VALUES];
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double centre[] = {0.11, 0.1};
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, 0.001, 1e6);
-  mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, 0.001, 1e6);
+  OK(mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_edit v = mpm_scene_edit(&s, "velocity");
   uint64_t seed = 1;
   assert_in_range(v.view.shape[0], 200, MOST);
@@ -279,28 +249,18 @@ static void any_history_of_sorts(void **state) {
       *mps_edit_f64(&v, k, c) = 20.0 * (double)(seed >> 11) * 0x1p-53 - 8.0;
     }
   mpm_scene_commit(&s, &v);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.dt = 1e-4, def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.02, .dt = 1e-4, .lower[1] = 0.0);
   mpm_scene_solve(&s, &def);
   exchange(&s, start, false);
   const uint64_t epoch = mps_particles_epoch(s.particles);
   for (int turn = 0; turn < 2; turn++) {
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
+    OK(mps_mpm_step(s.mpm, 100));
     exchange(&s, end[turn], false);
     if (turn > 0) break;
     assert_true(mps_particles_epoch(s.particles) > epoch); /* it was sorted */
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
+    OK(mps_mpm_step(s.mpm, 200));
     exchange(&s, start, true);
   }
   for (int64_t id = 0; id < v.view.shape[0]; id++)
     assert_memory_equal(end[0][id], end[1][id], sizeof end[0][id]);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_number_of_threads), cmocka_unit_test(options_too),
-      cmocka_unit_test(any_order_of_particles), cmocka_unit_test(any_history_of_sorts)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

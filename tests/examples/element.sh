@@ -112,6 +112,9 @@ is "$work/unload/path.csv" sxx 501 -150000 50
 is "$work/unload/path.csv" sxx -1 -98824 50
 run mohr --law mohrcoulomb --phi 30 --psi 10 --path cd --strain 0.2
 is "$work/mohr/path.csv" q -1 200000 1
+# Dilation ends at emax less the elastic compression: 1.8 exp(-206.792 kPa/K) - 1, K = 41.67 MPa.
+run loose --law mohrcoulomb --phi 38 --psi 12 --e0 0.6 --emax 0.8 --young 50MPa --path cd --strain 0.6
+is "$work/loose/path.csv" void_ratio -1 0.791089 2e-6
 run soft --law tresca --cohesion 10kPa --residual 0.5 --slip 10mm --band 0.1m --path cu --strain 1 --steps 4000
 is "$work/soft/path.csv" q -1 10000 20
 run fast --law vonmises --cohesion 10kPa --rate-factor 0.1 --strain-rate 3e-3 --path shear --strain 0.1

@@ -5,10 +5,16 @@ wave=$1/mps-wave
 
 status=0
 "$wave" --radius 1 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" || status=$?
+[ "$status" -eq 1 ] || fail "a step above the limit: exit code $status"
+has "$work/log" "--dt is 0.02 s, must be at most the linear stability limit, "
+[ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than an error: $(cat "$work/log")"
+# Euler's motion grows at any step: beyond what the pulse puts in, or beyond all bounds.
+status=0
+"$wave" --radius 1 --integrator euler --dt 2ms --out "$work/d" >/dev/null 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "divergence: exit code $status"
-has "$work/log" "warning: dt"
-has "$work/log" "diverged at step"
-[ "$(grep -v "warning: dt" "$work/log" | grep -c "diverged.*try --dt")" -eq 1 ] || fail "divergence"
+has "$work/log" "warning: Euler without damping"
+[ "$(grep -v "warning: Euler" "$work/log" | grep -c "unstable: at t = .*the most that was put in.*--integrator verlet")" -eq 1 ] ||
+  fail "divergence: $(cat "$work/log")"
 [ "$(wc -l <"$work/log")" -eq 2 ] || fail "more than a warning and an error: $(cat "$work/log")"
 has "$work/d/summary.json" '"outcome": "diverged"'
 has "$work/d/summary.json" '"surface_peak": null'
@@ -16,11 +22,10 @@ has "$work/d/summary.json" '"surface_peak": null'
 # A full disk: the older result stays.
 mkdir "$work/f"
 echo "older" >"$work/f/receivers.csv"
-ln -s /dev/full "$work/f/receivers.csv.part"
 status=0
-"$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null 2>"$work/log" || status=$?
+(ulimit -f 8 && "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f") >/dev/null 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "full disk: exit code $status"
-has "$work/log" "receivers.csv: No space left on device"
+has "$work/log" "receivers.csv: File too large"
 has "$work/f/receivers.csv" "older"
 status=0
 "$wave" --help >/dev/full 2>"$work/log" || status=$?
@@ -32,12 +37,10 @@ status=0
 # A picture on a full disk: the table is there, no empty picture is left or announced.
 disc="$1/mps-rolling-disc --h 0.025 --duration 0.05 --threads 1"
 if command -v gnuplot >/dev/null; then
-  mkdir "$work/p"
-  ln -s /dev/full "$work/p/motion.png.part"
   status=0
-  $disc --out "$work/p" >"$work/out" 2>"$work/log" || status=$?
+  (ulimit -f 16 && $disc --out "$work/p") >"$work/out" 2>"$work/log" || status=$?
   [ "$status" -eq 1 ] || fail "picture on a full disk: exit code $status"
-  [ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than one line: $(cat "$work/log")"
+  [ "$(grep -vc "no checkpoint is written" "$work/log")" -eq 1 ] || fail "more than one line: $(cat "$work/log")"
   has "$work/log" "mps-rolling-disc: cannot draw $work/p/motion.png: "
   [ ! -e "$work/p/motion.png" ] || fail "a picture is left"
   [ -s "$work/p/motion.csv" ] || fail "no motion.csv"

@@ -11,7 +11,9 @@ coarse="--spacing 0.02 --dt 0.002 --wall-height 0.44 --threads 1"
 s=$work/a/summary.json
 in_range "$s" particles_water 1200 1200
 in_range "$s" force_at_516 598 675
-in_range "$s" force_crest 615 675
+# The wave breaks: two builds, with and without loops of higher instruction sets, gave 655.1 and 675.8 N, and eight
+# seeds of the latter 672.9 N in the mean with a standard deviation of 26 N, 629.0 to 711.9 N: that mean and two deviations.
+in_range "$s" force_crest 620 726
 in_range "$s" moment_at_516 76 93
 in_range "$s" force_peak 600 810
 has "$work/a/force.csv" "t_s,force_N,force_10_Hz_N,moment_N_m,level_m,deflection_m,piston_m"

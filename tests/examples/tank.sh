@@ -7,6 +7,12 @@ tank() { "$1/mps-tank" --threads 1 --frames 2 --out "$work/$2" --case "$2" >"$wo
 tank "$1" still
 in_range "$work/still/summary.json" force_mean 441.44 441.46
 in_range "$work/still/summary.json" force_std 0 0.001
+# Density of the particles over the height: the water's, half of it at the surface, none above.
+"$1/mps-tank" --case still --duration 0.05 --density-at 0.3 --threads 1 --frames 0 --out "$work/density" >"$work/log"
+is "$work/density/density.csv" density_kg_m3 20 1000 10
+is "$work/density/density.csv" density_kg_m3 60 500 100
+is "$work/density/density.csv" density_kg_m3 -1 0 1e-9
+picture "$work/density/density.png" 700x640 1f4e8c c0392b
 tank "$1" sloshing
 in_range "$work/sloshing/summary.json" period_exact 1.01335 1.01337
 in_range "$work/sloshing/summary.json" period 1.0083 1.0184

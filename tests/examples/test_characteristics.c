@@ -9,20 +9,18 @@
 #define DEGREE (PI / 180.0)
 
 /* Undrained ground: 2 + pi, on smooth and rough base, and whatever its weight. */
-static void prandtl_without_friction(void **state) {
-  (void)state;
+TEST(prandtl_without_friction) {
   for (int rough = 0; rough < 2; rough++)
     for (int k = 0; k < 2; k++) {
       const strip_footing f = {
           .half_width = 0.7, .cohesion = 3.0, .weight = 10.0 * k, .rough = rough};
-      mps_assert_near(characteristics_capacity(&f, 12), 3.0 * (2.0 + PI), 1e-8);
+      NEAR(characteristics_capacity(&f, 12), 3.0 * (2.0 + PI), 1e-8);
     }
 }
 
 /* Ground without weight: N_q = exp(pi tan phi) tan^2(pi/4 + phi/2), N_c = (N_q - 1) cot phi. The
  * error falls with the square of the lines. */
-static void prandtl_and_reissner_with_friction(void **state) {
-  (void)state;
+TEST(prandtl_and_reissner_with_friction) {
   for (int phi = 10; phi <= 40; phi += 15)
     for (int rough = 0; rough < 2; rough++) {
       const double t = tan(phi * DEGREE), r = tan(PI / 4.0 + 0.5 * phi * DEGREE);
@@ -32,10 +30,10 @@ static void prandtl_and_reissner_with_friction(void **state) {
       const double coarse = characteristics_capacity(&f, 15) / 2.0 - Nc;
       const double fine = characteristics_capacity(&f, 30) / 2.0 - Nc;
       assert_true(coarse / fine > 3.8 && coarse / fine < 4.2);
-      mps_assert_near((4.0 * fine - coarse) / 3.0, 0.0, 2e-5 * Nc);
+      NEAR((4.0 * fine - coarse) / 3.0, 0.0, 2e-5 * Nc);
       f.cohesion = 0.0, f.surcharge = 5.0;
       const double a = characteristics_capacity(&f, 15), b = characteristics_capacity(&f, 30);
-      mps_assert_near((4.0 * b - a) / 3.0, 5.0 * Nq, 1e-4 * Nq);
+      NEAR((4.0 * b - a) / 3.0, 5.0 * Nq, 1e-4 * Nq);
     }
 }
 
@@ -51,60 +49,48 @@ static double weight_factor(int phi, bool rough, int lines) {
 
 /* N_gamma of Martin (2005): at 20 degrees 1.579 and 2.839, at 30 degrees 7.653 and 14.75. Here the
  * ground slides along part of the rough base. */
-static void published_factors_of_weight(void **state) {
-  (void)state;
-  mps_assert_near(weight_factor(20, false, 20), 1.579, 0.005 * 1.579);
-  mps_assert_near(weight_factor(20, true, 20), 2.839, 0.005 * 2.839);
-  mps_assert_near(weight_factor(30, false, 20), 7.653, 0.005 * 7.653);
-  mps_assert_near(weight_factor(30, true, 20), 14.75, 0.0055 * 14.75);
-  mps_assert_near(weight_factor(30, false, 40), 7.653, 0.003 * 7.653);
+TEST(published_factors_of_weight) {
+  NEAR(weight_factor(20, false, 20), 1.579, 0.005 * 1.579);
+  NEAR(weight_factor(20, true, 20), 2.839, 0.005 * 2.839);
+  NEAR(weight_factor(30, false, 20), 7.653, 0.005 * 7.653);
+  NEAR(weight_factor(30, true, 20), 14.75, 0.0055 * 14.75);
+  NEAR(weight_factor(30, false, 40), 7.653, 0.003 * 7.653);
 }
 
 /* Cohesion and weight together carry more than apart (Davis and Booker 1971), a rough base more
  * than a smooth one; and only ratios count. */
-static void cohesion_with_weight(void **state) {
-  (void)state;
+TEST(cohesion_with_weight) {
   strip_footing f = {
       .half_width = 0.5, .friction = 30.0 * DEGREE, .cohesion = 1e4, .weight = 9810.0};
   const double smooth = characteristics_capacity(&f, 20);
   assert_true(smooth > 30.14 * 1e4 + 7.653 * 0.5 * 9810.0);
   assert_true(smooth < 1.3 * (30.14 * 1e4 + 7.653 * 0.5 * 9810.0));
   f.half_width *= 3.0, f.weight *= 2.0 / 3.0, f.cohesion *= 2.0;
-  mps_assert_near(characteristics_capacity(&f, 20), 2.0 * smooth, 1e-6 * smooth);
+  NEAR(characteristics_capacity(&f, 20), 2.0 * smooth, 1e-6 * smooth);
   f.rough = true;
   const double rough = characteristics_capacity(&f, 20), finer = characteristics_capacity(&f, 30);
   assert_true(rough > 2.0 * smooth);
-  mps_assert_near(finer, rough, 2e-3 * rough);
+  NEAR(finer, rough, 2e-3 * rough);
 }
 
 /* Strength that grows a little with depth: the mechanisms of constant strength are optimal to the
  * first order, and their work in k z is k B under Hill's (smooth) and 2 k B under Prandtl's
  * (rough). Weight counts no more than without the growth, and a rough base bears more. */
-static void cohesion_that_grows(void **state) {
-  (void)state;
+TEST(cohesion_that_grows) {
   for (int rough = 0; rough < 2; rough++) {
     strip_footing f = {.half_width = 0.5, .cohesion = 1.0, .gradient = 0.001, .rough = rough};
     const double slope = (characteristics_capacity(&f, 40) - (2.0 + PI)) / 0.001;
-    mps_assert_near(slope, rough ? 2.0 : 1.0, rough ? 0.003 : 0.001);
+    NEAR(slope, rough ? 2.0 : 1.0, rough ? 0.003 : 0.001);
     f.gradient = 4.0;
     const double coarse = characteristics_capacity(&f, 20), fine = characteristics_capacity(&f, 40);
-    mps_assert_near(fine, coarse, 2e-4 * fine);
+    NEAR(fine, coarse, 2e-4 * fine);
     f.weight = 10.0;
-    mps_assert_near(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
+    NEAR(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
     f.half_width *= 2.0, f.gradient *= 0.5;
-    mps_assert_near(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
+    NEAR(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
   }
   strip_footing f = {.half_width = 0.5, .cohesion = 1.0, .gradient = 4.0};
   const double smooth = characteristics_capacity(&f, 20);
   f.rough = true;
   assert_true(characteristics_capacity(&f, 20) > 1.1 * smooth);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(prandtl_without_friction),
-                                     cmocka_unit_test(prandtl_and_reissner_with_friction),
-                                     cmocka_unit_test(published_factors_of_weight),
-                                     cmocka_unit_test(cohesion_with_weight),
-                                     cmocka_unit_test(cohesion_that_grows)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,92 +27,74 @@ static double circles(const settings *s) {
   return slope_circles(s, &c);
 }
 
-static void clay_is_taylors(void **state) {
-  (void)state;
+TEST(clay_is_taylors) {
   settings s = usual();
   s.phi = 0.0;
   s.slope = 0.0;
   s.crest = 20.0;
-  mps_assert_near(circles(&s) / 0.05, 3.83, 0.02); /* Fellenius: a vertical cut by circles */
+  NEAR(circles(&s) / 0.05, 3.83, 0.02); /* Fellenius: a vertical cut by circles */
   s.slope = 1.0 / tan(60.0 * DEGREE);
   s.base = 5.0;
-  mps_assert_near(circles(&s) / 0.05, 1.0 / 0.191, 0.03); /* Taylor (1937) */
+  NEAR(circles(&s) / 0.05, 1.0 / 0.191, 0.03); /* Taylor (1937) */
 }
 
-static void sand_with_cohesion_is_that_of_charts(void **state) {
-  (void)state;
+TEST(sand_with_cohesion_is_that_of_charts) {
   settings s = usual();
-  mps_assert_near(circles(&s), 1.380, 0.01); /* Bishop and Morgenstern (1960) */
+  NEAR(circles(&s), 1.380, 0.01); /* Bishop and Morgenstern (1960) */
 }
 
 /* Without cohesion the circle is flat below the surface: F = (1 - r_u/cos^2 b) tan(phi)/tan(b), and
  * with water that flows along the surface F = (1 - gamma_w/gamma) tan(phi)/tan(b). */
-static void shallow_slips_are_those_of_an_infinite_slope(void **state) {
-  (void)state;
+TEST(shallow_slips_are_those_of_an_infinite_slope) {
   settings s = usual();
   const double dry = tan(20.0 * DEGREE) / 0.5, steep = 0.8; /* cos^2 */
   s.cohesion = 1e-3;
-  mps_assert_near(circles(&s), dry, 0.005 * dry);
+  NEAR(circles(&s), dry, 0.005 * dry);
   s.ru = 0.3;
-  mps_assert_near(circles(&s), (1.0 - 0.3 / steep) * dry, 0.005 * dry);
+  NEAR(circles(&s), (1.0 - 0.3 / steep) * dry, 0.005 * dry);
   s.ru = 0.0;
   s.flow = FLOW_ALONG;
   const double line[] = {-30.0, 10.0, 0.0, 10.0, 20.0, 0.0, 60.0, 0.0};
   s.points = 4;
   for (int k = 0; k < 8; k++) s.line[k] = line[k];
-  mps_assert_near(circles(&s), 0.5 * dry, 0.01 * dry);
+  NEAR(circles(&s), 0.5 * dry, 0.01 * dry);
 }
 
-static void a_submerged_slope_has_its_buoyant_weight(void **state) {
-  (void)state;
+TEST(a_submerged_slope_has_its_buoyant_weight) {
   settings wet = usual(), dry = usual();
   dry.density = dry.moist = 1000.0;
   wet.table = 25.0;
-  mps_assert_near(circles(&wet), circles(&dry), 1e-9);
+  NEAR(circles(&wet), circles(&dry), 1e-9);
   wet.table = 10.0; /* the pool's depth does not count */
-  mps_assert_near(circles(&wet), circles(&dry), 1e-9);
+  NEAR(circles(&wet), circles(&dry), 1e-9);
   wet.table = -50.0;
   dry = usual();
-  mps_assert_near(circles(&wet), circles(&dry), 1e-12);
+  NEAR(circles(&wet), circles(&dry), 1e-12);
 }
 
 /* Below the former pool a drawdown leaves r_u = gamma_w/gamma; half of it leaves half of the pool.
  */
-static void a_drawdown_leaves_the_pressures(void **state) {
-  (void)state;
+TEST(a_drawdown_leaves_the_pressures) {
   settings fallen = usual(), ratio = usual();
   fallen.drawdown = 10.0;
   fallen.table = 0.0;
   ratio.ru = 0.5;
-  mps_assert_near(circles(&fallen), circles(&ratio), 1e-9);
+  NEAR(circles(&fallen), circles(&ratio), 1e-9);
   fallen.table = 5.0;
-  mps_assert_near(slope_pressure(&fallen, 15.0, 0.0), 1000.0 * 9.81 * 5.0, 1e-6);
-  mps_assert_near(slope_pressure(&fallen, 5.0, 0.0), 1000.0 * 9.81 * 7.5, 1e-6);
-  mps_assert_near(slope_pressure(&fallen, -10.0, 2.0), 1000.0 * 9.81 * 8.0, 1e-6);
+  NEAR(slope_pressure(&fallen, 15.0, 0.0), 1000.0 * 9.81 * 5.0, 1e-6);
+  NEAR(slope_pressure(&fallen, 5.0, 0.0), 1000.0 * 9.81 * 7.5, 1e-6);
+  NEAR(slope_pressure(&fallen, -10.0, 2.0), 1000.0 * 9.81 * 8.0, 1e-6);
   assert_true(circles(&fallen) > circles(&ratio));
 }
 
 /* Ground above the table is lighter: weight, pressure and pool by hand. */
-static void weights_count_what_is_above(void **state) {
-  (void)state;
+TEST(weights_count_what_is_above) {
   settings s = usual();
   s.moist = 1700.0;
   s.table = 4.0;
-  mps_assert_near(slope_overburden(&s, -5.0, 1.0), 9.81 * (6.0 * 1700.0 + 3.0 * 2000.0), 1e-6);
-  mps_assert_near(slope_overburden(&s, 16.0, 1.0), 9.81 * (1000.0 * 2.0 + 2000.0 * 1.0), 1e-6);
-  mps_assert_near(slope_pressure(&s, 16.0, 1.0), 9.81 * 3000.0, 1e-6);
-  mps_assert_near(slope_density(&s, -5.0, 4.1), 1700.0, 0.0);
-  mps_assert_near(slope_density(&s, -5.0, 3.9), 2000.0, 0.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(clay_is_taylors),
-      cmocka_unit_test(sand_with_cohesion_is_that_of_charts),
-      cmocka_unit_test(shallow_slips_are_those_of_an_infinite_slope),
-      cmocka_unit_test(a_submerged_slope_has_its_buoyant_weight),
-      cmocka_unit_test(a_drawdown_leaves_the_pressures),
-      cmocka_unit_test(weights_count_what_is_above),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  NEAR(slope_overburden(&s, -5.0, 1.0), 9.81 * (6.0 * 1700.0 + 3.0 * 2000.0), 1e-6);
+  NEAR(slope_overburden(&s, 16.0, 1.0), 9.81 * (1000.0 * 2.0 + 2000.0 * 1.0), 1e-6);
+  NEAR(slope_pressure(&s, 16.0, 1.0), 9.81 * 3000.0, 1e-6);
+  NEAR(slope_density(&s, -5.0, 4.1), 1700.0, 0.0);
+  NEAR(slope_density(&s, -5.0, 3.9), 2000.0, 0.0);
 }

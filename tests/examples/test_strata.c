@@ -55,26 +55,24 @@ static void agree(const strata *s, double T, double ramp, double most) {
   const double h = 1.0 / (NODES - 1), applied = ramp > 0.0 ? fmin(1.0, T / ramp) : 1.0;
   double left = 0.0;
   march(s, T, ramp, u);
-  for (int i = 0; i < NODES; i++) mps_assert_near(strata_pressure(s, i * h, T, ramp), u[i], most);
+  for (int i = 0; i < NODES; i++) NEAR(strata_pressure(s, i * h, T, ramp), u[i], most);
   for (int i = 0; i + 1 < NODES; i++)
     left += 0.5 * h * (u[i] + u[i + 1]) / at_depth(s, (i + 0.5) * h)->modulus;
-  mps_assert_near(strata_degree(s, T, ramp), applied - left, most);
+  NEAR(strata_degree(s, T, ramp), applied - left, most);
 }
 
-static void one_layer_is_that_of_textbooks(void **state) {
-  (void)state;
+TEST(one_layer_is_that_of_textbooks) {
   const stratum layer = {5.0, 1e-9, 2e6};
   const strata one = column_of(1, &layer, true, false), two = column_of(1, &layer, true, true);
-  mps_assert_near(strata_degree(&one, 0.197, 0.0), 0.500, 5e-4); /* Taylor's table */
-  mps_assert_near(strata_degree(&one, 0.848, 0.0), 0.900, 5e-4);
-  mps_assert_near(strata_degree(&two, 0.848 / 4.0, 0.0), 0.900, 5e-4);
-  mps_assert_near(strata_pressure(&one, 1.0, 0.2, 0.0), 0.7723, 1e-4);
-  mps_assert_near(strata_pressure(&two, 0.5, 0.05, 0.0), 0.7723, 1e-4);
+  NEAR(strata_degree(&one, 0.197, 0.0), 0.500, 5e-4); /* Taylor's table */
+  NEAR(strata_degree(&one, 0.848, 0.0), 0.900, 5e-4);
+  NEAR(strata_degree(&two, 0.848 / 4.0, 0.0), 0.900, 5e-4);
+  NEAR(strata_pressure(&one, 1.0, 0.2, 0.0), 0.7723, 1e-4);
+  NEAR(strata_pressure(&two, 0.5, 0.05, 0.0), 0.7723, 1e-4);
 }
 
 /* Olson (1977) at the end of the load: U = 1 - 1/T sum 2/M^4 (1 - exp(-M^2 T)). */
-static void a_load_that_grows_is_olsons(void **state) {
-  (void)state;
+TEST(a_load_that_grows_is_olsons) {
   const stratum layer = {1.0, 1.0, 1.0};
   const strata s = column_of(1, &layer, true, false);
   const double T = 0.2;
@@ -83,14 +81,13 @@ static void a_load_that_grows_is_olsons(void **state) {
     const double M = (i + 0.5) * 3.14159265358979323846;
     sum += 2.0 / pow(M, 4.0) * (1.0 - exp(-M * M * T));
   }
-  mps_assert_near(strata_degree(&s, T, T), 1.0 - sum / T, 1e-7);
-  mps_assert_near(strata_degree(&s, 0.0, T), 0.0, 1e-9);
+  NEAR(strata_degree(&s, T, T), 1.0 - sum / T, 1e-7);
+  NEAR(strata_degree(&s, 0.0, T), 0.0, 1e-9);
   agree(&s, 0.1, 0.2, 2e-3);
   agree(&s, 0.5, 0.2, 2e-3);
 }
 
-static void layers_agree_with_finite_differences(void **state) {
-  (void)state;
+TEST(layers_agree_with_finite_differences) {
   const stratum two[] = {{2.0, 1e-9, 2e6}, {3.0, 1e-8, 8e6}};
   const stratum thin[] = {{4.0, 1e-8, 4e6}, {0.5, 1e-10, 1e6}, {5.5, 5e-9, 1e7}};
   const stratum turned[] = {{3.0, 1e-8, 8e6}, {2.0, 1e-9, 2e6}};
@@ -103,25 +100,13 @@ static void layers_agree_with_finite_differences(void **state) {
   agree(&d, 0.3, 0.1, 2e-3);
   agree(&e, 0.1, 0.0, 2e-3);
   for (double z = 0.0; z <= 1.0; z += 0.1) /* upside down */
-    mps_assert_near(strata_pressure(&a, z, 0.1, 0.0), strata_pressure(&e, 1.0 - z, 0.1, 0.0), 1e-9);
+    NEAR(strata_pressure(&a, z, 0.1, 0.0), strata_pressure(&e, 1.0 - z, 0.1, 0.0), 1e-9);
 }
 
 /* A layer cut in two is one layer. */
-static void equal_layers_are_one(void **state) {
-  (void)state;
+TEST(equal_layers_are_one) {
   const stratum whole = {7.0, 2e-9, 3e6}, cut[] = {{3.0, 2e-9, 3e6}, {4.0, 2e-9, 3e6}};
   const strata one = column_of(1, &whole, true, false), two = column_of(2, cut, true, false);
-  for (int n = 0; n < STRATA_TERMS; n++)
-    mps_assert_near(one.lambda[n], two.lambda[n], 1e-9 * one.lambda[n]);
-  mps_assert_near(strata_degree(&one, 0.01, 0.0), strata_degree(&two, 0.01, 0.0), 1e-9);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_layer_is_that_of_textbooks),
-      cmocka_unit_test(a_load_that_grows_is_olsons),
-      cmocka_unit_test(layers_agree_with_finite_differences),
-      cmocka_unit_test(equal_layers_are_one),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  for (int n = 0; n < STRATA_TERMS; n++) NEAR(one.lambda[n], two.lambda[n], 1e-9 * one.lambda[n]);
+  NEAR(strata_degree(&one, 0.01, 0.0), strata_degree(&two, 0.01, 0.0), 1e-9);
 }

@@ -153,20 +153,8 @@ static void fuzz(const char *name, size_t (*make)(char *data), int runs) {
   assert_true(accepted > runs / 100 && accepted < runs * 99 / 100); /* both ways are tried */
 }
 
-static void damaged_text(void **state) {
-  (void)state;
-  fuzz("ASCII", ascii_sample, 4000);
-}
+TEST(damaged_text) { fuzz("ASCII", ascii_sample, 4000); }
 
-static void damaged_binary(void **state) {
-  (void)state;
-  fuzz("binary", binary_sample, 4000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damaged_text),
-                                     cmocka_unit_test(damaged_binary)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(damaged_binary) { fuzz("binary", binary_sample, 4000); }
 
 #endif

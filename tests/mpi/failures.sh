@@ -1,6 +1,6 @@
 #!/bin/sh
 # failures.sh DIRECTORY MPIRUN...: what ends early on several ranks, of a program of each solver but that
-# of mps-wave (programs.sh): a full disk, ranks that were given different things, one that
+# of mps-wave (programs.sh): a table that cannot be written, ranks that were given different things, one that
 # dies, one that is asked to stop. One message, an exit status, and the state kept; every wait has a limit.
 . "$(dirname "$0")/../examples/checks.sh"
 programs=$1
@@ -22,10 +22,9 @@ ends() {
   name=$1 table=$2 option=$3 value=$4 other=$5
   shift 5
   program=$programs/$name
-  mkdir "$work/$name"
-  ln -s /dev/full "$work/$name/$table.part"
-  wrong "full disk" -n 2 "$program" $option $value "$@" --out "$work/$name"
-  one "$name" "$table: No space left on device"
+  mkdir -p "$work/$name/$table"
+  wrong "a table that rank 0 cannot put in its place" -n 2 "$program" $option $value "$@" --out "$work/$name"
+  one "$name" "$table: Is a directory"
   wrong "different ranks" -n 1 "$program" $option $value "$@" --out "$work/$name-d" : \
     -n 1 "$program" $option $other "$@" --out "$work/$name-d"
   one "$name" "all ranks must be given the same options"

@@ -2,8 +2,7 @@
  * allocation of that number inside PETSc. Ends with 0 where ranks report the error, all or that one
  * alone (the others then wait for it within PETSc), with 3 where there was none, and with 4 where
  * what must hold after an error does not. SPDX-License-Identifier: BSD-3-Clause */
-#include <mps/mps.h>
-#include <mps/petsc.h>
+#include "petsc_solves.h"
 
 #include <petscsys.h>
 
@@ -47,6 +46,7 @@ static mps_status build(mps_context *context, mps_domain *domain, mps_petsc_solv
   body.domain = domain;
   held.lower[0] = -1.0, held.lower[1] = -1.0;
   held.upper[0] = 0.2, held.upper[1] = 2.0;
+  load.kind = MPS_ELASTIC_LOAD_VOLUME, load.all = 1;
   load.force[1] = -1.0;
   mps_status status = mps_particles_create(context, &def, set);
   if (status == MPS_OK) status = mps_particles_fill_box(*set, lo, hi, NULL);
@@ -55,7 +55,9 @@ static mps_status build(mps_context *context, mps_domain *domain, mps_petsc_solv
   if (status == MPS_OK) status = mps_elastic_create(context, *set, &body, elastic);
   if (status == MPS_OK) status = mps_elastic_add_boundary(*elastic, &held, NULL);
   if (status == MPS_OK) status = mps_elastic_add_load(*elastic, &load, NULL);
-  return status == MPS_OK ? mps_petsc_solve_elastic(solver, *elastic) : status;
+  return status == MPS_OK
+             ? petsc_solves(solver, mps_elastic_solver(*elastic), MPS_LINEAR_EQUATION_STIFFNESS, 0)
+             : status;
 }
 
 int main(int argc, char **argv) {

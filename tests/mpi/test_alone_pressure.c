@@ -4,32 +4,32 @@
 #include "test_fixture.h"
 
 #include "fluid_tank.h"
+#include "petsc_solves.h"
 
-#include <mps/petsc.h>
+#include <mps/experimental/petsc.h>
 
 /* A tank of `rows` rows whose left wall moves, and a particle above it that falls alone. */
 static tank waves(int rows, double tolerance) {
   const double l0 = 0.25 / rows, drop[] = {0.3, 0.6};
-  mps_signal *piston = NULL;
+  scoped_signal *piston = NULL;
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   set.spacing = l0, def.dt = 0.04 * sqrt(l0 / TANK_G), def.level = 0.25, def.tolerance = tolerance;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  tank_fill(context, t.water, 0.5, 0.25, NULL, NULL);
-  mps_assert_ok(context, mps_particles_append(t.water, 1, drop));
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
-  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
-  tank_wall(context, t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
-  mps_signal_destroy(&piston);
+  OK(mps_particles_create(context, &set, &t.water));
+  tank_fill(t.water, 0.5, 0.25, NULL, NULL);
+  OK(mps_particles_append(t.water, 1, drop));
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
+  tank_wall(t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
   return t;
 }
 
 static double force_on_the_wall(tank *t) {
   mps_reaction r;
-  mps_assert_ok(context, mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
+  OK(mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
   return r.force[0];
 }
 
@@ -37,38 +37,36 @@ static void moves_the_water_as_the_library_does(void **state) {
   (void)state;
   for (int32_t method = MPS_PETSC_METHOD_MULTIGRID; method <= MPS_PETSC_METHOD_DIRECT; method++) {
     mps_petsc_solver *solver = NULL;
-    tank own = waves(20, 1e-12), other = waves(20, 1e-10);
+    scoped_tank own = waves(20, 1e-12), other = waves(20, 1e-10);
     assert_int_equal(mps_petsc_solver_create(context, method, &solver), MPS_OK);
-    mps_assert_ok(context, mps_petsc_solve_fluid(solver, other.fluid, 0));
+    OK(petsc_solves(solver, mps_fluid_solver(other.fluid), MPS_LINEAR_EQUATION_PRESSURE, 0));
     for (int k = 0; k < 20; k++) {
-      mps_assert_ok(context, mps_fluid_step(own.fluid, 1));
-      mps_assert_ok(context, mps_fluid_step(other.fluid, 1));
+      OK(mps_fluid_step(own.fluid, 1));
+      OK(mps_fluid_step(other.fluid, 1));
       const double force = force_on_the_wall(&own);
-      mps_assert_near(force_on_the_wall(&other), force, 1e-6 * fabs(force));
+      NEAR(force_on_the_wall(&other), force, 1e-6 * fabs(force));
     }
     mps_totals a, b;
-    mps_assert_ok(context, mps_fluid_get_totals(own.fluid, &a));
-    mps_assert_ok(context, mps_fluid_get_totals(other.fluid, &b));
+    OK(mps_fluid_get_totals(own.fluid, &a));
+    OK(mps_fluid_get_totals(other.fluid, &b));
     assert_true(a.kinetic > 1e-5);
-    mps_assert_near(b.kinetic, a.kinetic, 1e-7 * a.kinetic);
-    tank_free(&other);
-    tank_free(&own);
+    NEAR(b.kinetic, a.kinetic, 1e-7 * a.kinetic);
     mps_petsc_solver_destroy(&solver);
   }
 }
 
 /* Iterations of the first step, whose preconditioner is new, and of three steps. */
 static void iterations(int rows, mps_petsc_solver *solver, int64_t *first, int64_t *all) {
-  tank t = waves(rows, 1e-8);
+  scoped_tank t = waves(rows, 1e-8);
   mps_fluid_report report;
-  if (solver) mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 100));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  if (solver)
+    OK(petsc_solves(solver, mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE, 100));
+  OK(mps_fluid_step(t.fluid, 1));
+  OK(mps_fluid_get_report(t.fluid, &report));
   *first = report.iterations;
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 2));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_step(t.fluid, 2));
+  OK(mps_fluid_get_report(t.fluid, &report));
   *all = report.all_iterations;
-  tank_free(&t);
 }
 
 static void a_larger_fluid_takes_hardly_more_iterations(void **state) {
@@ -92,24 +90,23 @@ static void a_larger_fluid_takes_hardly_more_iterations(void **state) {
 static void going_back_is_exact(void **state) {
   (void)state;
   mps_petsc_solver *solver = NULL, *fresh = NULL;
-  mps_snapshot *start = NULL;
-  tank t = waves(20, 1e-8);
+  scoped_snapshot *start = NULL;
+  scoped_tank t = waves(20, 1e-8);
   assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver), MPS_OK);
   assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &fresh), MPS_OK);
-  mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 0));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
-  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &start));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  OK(petsc_solves(solver, mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE, 0));
+  OK(mps_fluid_step(t.fluid, 5));
+  OK(mps_fluid_snapshot(t.fluid, &start));
+  OK(mps_fluid_step(t.fluid, 5));
   const double force = force_on_the_wall(&t);
-  mps_assert_ok(context, mps_fluid_rollback(t.fluid, start));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  OK(mps_fluid_rollback(t.fluid, start));
+  OK(mps_fluid_step(t.fluid, 5));
   assert_true(force_on_the_wall(&t) == force);
-  mps_assert_ok(context, mps_fluid_rollback(t.fluid, start));
-  mps_assert_ok(context, mps_petsc_solve_fluid(fresh, t.fluid, 0)); /* as after a restart */
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  OK(mps_fluid_rollback(t.fluid, start));
+  OK(petsc_solves(fresh, mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE,
+                  0)); /* as after a restart */
+  OK(mps_fluid_step(t.fluid, 5));
   assert_true(force_on_the_wall(&t) == force);
-  mps_snapshot_destroy(&start);
-  tank_free(&t);
   mps_petsc_solver_destroy(&solver);
   mps_petsc_solver_destroy(&fresh);
 }
@@ -118,8 +115,7 @@ static void bad_calls_are_refused(void **state) {
   (void)state;
   mps_petsc_solver *solver = NULL;
   tank t = waves(8, 1e-8);
-  mps_assert_fails(context, mps_petsc_solver_create(context, 2, &solver), MPS_ERROR_ARGUMENT,
-                   "method is 2, allowed are 0 and 1");
+  REFUSES(mps_petsc_solver_create(context, 2, &solver), "method is 2, allowed are 0 and 1");
   assert_int_equal(mps_petsc_solver_create(NULL, MPS_PETSC_METHOD_MULTIGRID, &solver),
                    MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_petsc_solver_create(context, -1, &solver), MPS_ERROR_ARGUMENT);
@@ -127,13 +123,11 @@ static void bad_calls_are_refused(void **state) {
   assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, NULL),
                    MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver), MPS_OK);
-  assert_int_equal(mps_petsc_solve_fluid(NULL, t.fluid, 0), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_petsc_solve_fluid(solver, NULL, 0), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_petsc_solve_fluid(solver, t.fluid, -1), MPS_ERROR_ARGUMENT,
-                   "least");
+  REFUSES(petsc_solves(solver, mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE, -1),
+          "least");
   /* Below `least` the library's own solver is at work: no iteration of the other. */
-  mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 1000));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  OK(petsc_solves(solver, mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE, 1000));
+  OK(mps_fluid_step(t.fluid, 1));
   tank_free(&t);
   mps_petsc_solver_destroy(&solver);
   mps_petsc_solver_destroy(&solver);
@@ -147,7 +141,7 @@ int main(void) {
       cmocka_unit_test(going_back_is_exact),
       cmocka_unit_test(bad_calls_are_refused),
   };
-  mps_context *of_all = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *of_all = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_petsc_solver *first = NULL; /* MPI can be started once in a process: it lives as long */
   if (mps_petsc_solver_create(of_all, MPS_PETSC_METHOD_MULTIGRID, &first) != MPS_OK) return 1;
   const int failed = cmocka_run_group_tests(tests, make_context, drop_context);
@@ -156,6 +150,5 @@ int main(void) {
   if (mps_petsc_solver_create(of_all, MPS_PETSC_METHOD_MULTIGRID, &late) != MPS_ERROR_STATE)
     return 1;
   if (!strstr(mps_context_error(of_all)->message, "cannot be started")) return 1;
-  mps_context_destroy(&of_all);
   return failed;
 }

@@ -4,23 +4,17 @@
 
 #include "world.h"
 
-static void each_beside_some_others(void **state) {
-  (void)state;
-  subject s = {.own = own, .domain = domain};
+TEST(each_beside_some_others) {
+  SCOPED(forget) subject s = {.own = own, .domain = domain};
   char why[512] = "";
   mps_status status = make_solvers(&s);
-  mps_assert_ok(own, status);
+  OK(status);
   for (int a = 0; a < CALLS; a++)
     for (int step = 1; step < CALLS; step += 11) {
       const int b = (a + step) % CALLS;
       if (mps_domain_size(domain) == 1 || are_same(a, b)) continue;
       if (call_beside(&s, a, b, why) != MPS_OK) fail_msg("%s", why);
     }
-  forget(&s);
 }
 
-int main(void) {
-  if (!begin_world()) return 1;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_beside_some_others)};
-  return end_world(cmocka_run_group_tests(tests, NULL, NULL));
-}
+int main(void) { return begin_world() ? end_world(test_run()) : 1; }

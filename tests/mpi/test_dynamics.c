@@ -12,20 +12,19 @@ static void compare_scene(void **state) {
 static void test_errors(void **state) {
   (void)state;
   mps_domain *second = NULL;
-  mps_assert_ok(own, mps_petsc_domain_create_world(own, &second));
+  OK(mps_petsc_domain_create_world(own, &second));
   const int32_t rank = mps_domain_rank(second), ranks = mps_domain_size(second);
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = rank == ranks - 1 ? -1.0 : 1.0);
   mps_particles *set = NULL, *whole = NULL;
-  def.spacing = rank == ranks - 1 ? -1.0 : 1.0;
   const mps_status status = mps_domain_agree(second, mps_particles_create(own, &def, &set));
   assert_int_equal(status, MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(own)->message, "spacing is -1"));
   mps_particles_destroy(&set);
   def.spacing = 1.0;
-  mps_assert_ok(own, mps_particles_create(own, &def, &set));
+  OK(mps_particles_create(own, &def, &set));
   const double lo[2] = {0.0, 0.0}, hi[2] = {300.0, 200.0};
-  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(own, mps_domain_gather(second, set, &whole));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_domain_gather_fields(second, set, 0, NULL, &whole));
   assert_int_equal(mps_particles_count(whole), rank == 0 ? 60000 : 0);
   mps_particles_destroy(&whole);
   mps_particles_destroy(&set);
@@ -38,13 +37,12 @@ static void test_errors(void **state) {
 static void test_levels(void **state) {
   (void)state;
   const int32_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
-  mps_context_def def = mps_context_defaults();
-  mps_context *context = NULL;
+  DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_SERIAL,
+      .instruction_level = rank == ranks - 1 ? 1 : 3);
+  scoped_context *context = NULL;
   mps_domain *mixed = NULL;
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  def.instruction_level = rank == ranks - 1 ? 1 : 3;
   double none = mps_context_create(&def, &context, NULL, 0) != MPS_OK;
-  mps_assert_ok(own, mps_domain_max(domain, 1, &none));
+  OK(mps_domain_max(domain, 1, &none));
   if (none == 0.0) { /* else this machine has one level */
     const mps_status status = mps_petsc_domain_create_world(context, &mixed);
     assert_int_equal(status, ranks > 1 ? MPS_ERROR_ARGUMENT : MPS_OK);
@@ -52,7 +50,6 @@ static void test_levels(void **state) {
       assert_non_null(strstr(mps_context_error(context)->message, "instruction_level"));
     mps_domain_destroy(&mixed);
   }
-  mps_context_destroy(&context);
 }
 
 /* Another number of steps or end of the run on the last rank, allowed or not: an error of all, and
@@ -61,28 +58,25 @@ static void test_other_arguments(void **state) {
   (void)state;
   const bool last = mps_domain_rank(domain) == mps_domain_size(domain) - 1;
   const bool many = mps_domain_size(domain) > 1;
-  mps_particles_def def = mps_particles_defaults();
-  mps_particles *set = NULL;
+  DEF(particles, def, .spacing = 1.0);
+  scoped_particles *set = NULL;
   mps_dynamics_def solver = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
+  scoped_dynamics *dynamics = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {80.0, 40.0};
-  def.spacing = 1.0;
-  mps_assert_ok(own, mps_particles_create(own, &def, &set));
-  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(own, mps_particles_set(set, "density", 0, 1900.0));
-  mps_assert_ok(own, mps_particles_set(set, "shear_velocity", 0, 200.0));
-  mps_assert_ok(own, mps_particles_set(set, "pressure_velocity", 0, 400.0));
+  OK(mps_particles_create(own, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "density", 0, 1900.0));
+  OK(mps_particles_set(set, "shear_velocity", 0, 200.0));
+  OK(mps_particles_set(set, "pressure_velocity", 0, 400.0));
   solver.domain = domain;
-  mps_assert_ok(own, mps_dynamics_create(own, set, &solver, &dynamics));
+  OK(mps_dynamics_create(own, set, &solver, &dynamics));
   assert_int_equal(mps_dynamics_step(dynamics, last ? -1 : 2), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(own)->message, "count is -1"));
   if (many) assert_int_equal(mps_dynamics_step(dynamics, last ? 3 : 2), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_run(dynamics, last ? NAN : 0.1, 1, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_run(dynamics, 0.1, last ? 0 : 1, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_steps(dynamics), 0);
-  mps_assert_ok(own, mps_dynamics_step(dynamics, 2));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
+  OK(mps_dynamics_step(dynamics, 2));
 }
 
 int main(void) {

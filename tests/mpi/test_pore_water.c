@@ -2,6 +2,7 @@
  * starts and on each alone, beside the library's own solution.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "world.h"
+#include "petsc_solves.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,11 +15,10 @@ typedef struct scene {
 
 /* Ground 26 cells wide that falls on a slope of the load, drained at its surface. */
 static mps_status make_set(mps_particles **out) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = 0.02);
   const double lo[2] = {0.0, 0.0}, hi[2] = {1.04, 0.63};
   mps_view x;
   mps_edit v;
-  def.spacing = 0.02;
   mps_status status = mps_particles_create(own, &def, out);
   if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(*out, "density", 0, 2000.0);
@@ -34,17 +34,17 @@ static mps_status make_set(mps_particles **out) {
 static void make_scene(mps_domain *of, scene *s) {
   mps_mpm_def def = mps_mpm_defaults();
   mps_pore_water_def water = mps_pore_water_defaults();
-  mps_assert_ok(own, make_set(&s->set));
-  mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material));
+  OK(make_set(&s->set));
+  OK(mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material));
   def.domain = of;
   def.cell = 0.04;
   def.gravity[1] = -9.81;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = 1.04;
-  mps_assert_ok(own, mps_mpm_create(own, s->set, s->material, &def, &s->mpm));
+  OK(mps_mpm_create(own, s->set, s->material, &def, &s->mpm));
   water.scheme = MPS_PORE_SCHEME_IMPLICIT;
   water.porosity = 0.4, water.permeability = 1e-4;
-  mps_assert_ok(own, mps_mpm_add_pore_water(s->mpm, &water));
+  OK(mps_mpm_add_pore_water(s->mpm, &water));
 }
 
 static void drop_scene(scene *s) {
@@ -60,9 +60,9 @@ enum { STEPS = 6 };
 static double compare(const scene *alone, const scene *share) {
   mps_view u[2], id;
   double worst = 0.0, highest = 0.0;
-  mps_assert_ok(own, mps_particles_view(alone->set, "pore_pressure", &u[0]));
-  mps_assert_ok(own, mps_particles_view(share->set, "pore_pressure", &u[1]));
-  mps_assert_ok(own, mps_particles_view(share->set, "id", &id));
+  OK(mps_particles_view(alone->set, "pore_pressure", &u[0]));
+  OK(mps_particles_view(share->set, "pore_pressure", &u[1]));
+  OK(mps_particles_view(share->set, "id", &id));
   for (int64_t i = 0; i < u[0].shape[0]; i++)
     highest = fmax(highest, fabs(*mps_view_f64(&u[0], i, 0)));
   for (int64_t i = 0; i < u[1].shape[0]; i++) {
@@ -78,15 +78,15 @@ static void compare_method(int32_t method, int64_t most) {
   mps_petsc_solver *solver[2] = {NULL, NULL};
   scene reference = {NULL, NULL, NULL}, s[2] = {{NULL, NULL, NULL}, {NULL, NULL, NULL}};
   make_scene(NULL, &reference);
-  mps_assert_ok(own, mps_mpm_step(reference.mpm, STEPS));
+  OK(mps_mpm_step(reference.mpm, STEPS));
   assert_int_equal(mps_petsc_solver_create(own, method, &solver[0]), MPS_OK);
   assert_int_equal(mps_petsc_solver_create_world(own, method, &solver[1]), MPS_OK);
   for (int k = 0; k < 2; k++) {
     mps_pore_report report;
     make_scene(k ? domain : NULL, &s[k]);
-    mps_assert_ok(own, mps_petsc_solve_pore_water(solver[k], s[k].mpm, 0));
-    mps_assert_ok(own, mps_mpm_step(s[k].mpm, STEPS));
-    mps_assert_ok(own, mps_mpm_get_pore_report(s[k].mpm, &report));
+    OK(petsc_solves(solver[k], mps_mpm_solver(s[k].mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE, 0));
+    OK(mps_mpm_step(s[k].mpm, STEPS));
+    OK(mps_mpm_get_pore_report(s[k].mpm, &report));
     const double error = compare(&reference, &s[k]);
     print_message("%s: %d rows, %d iterations, differs by %.1e of the highest pressure\n",
                   k ? "all ranks" : "one", (int)report.unknowns, (int)report.iterations, error);
@@ -95,11 +95,13 @@ static void compare_method(int32_t method, int64_t most) {
     assert_true(report.iterations > 0 && report.iterations <= most);
   }
   if (mps_domain_size(domain) > 1) { /* those of other processes do not fit */
-    assert_int_equal(mps_petsc_solve_pore_water(solver[0], s[1].mpm, 0), MPS_ERROR_ARGUMENT);
-    assert_int_equal(mps_petsc_solve_pore_water(solver[1], s[0].mpm, 0), MPS_ERROR_ARGUMENT);
+    assert_int_equal(
+        petsc_solves(solver[0], mps_mpm_solver(s[1].mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE, 0),
+        MPS_ERROR_ARGUMENT);
+    assert_int_equal(
+        petsc_solves(solver[1], mps_mpm_solver(s[0].mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE, 0),
+        MPS_ERROR_ARGUMENT);
   }
-  assert_int_equal(mps_petsc_solve_pore_water(solver[0], NULL, 0), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_petsc_solve_pore_water(NULL, s[0].mpm, 0), MPS_ERROR_ARGUMENT);
   for (int k = 0; k < 2; k++) {
     drop_scene(&s[k]);
     mps_petsc_solver_destroy(&solver[k]);
@@ -107,19 +109,8 @@ static void compare_method(int32_t method, int64_t most) {
   drop_scene(&reference);
 }
 
-static void test_multigrid(void **state) {
-  (void)state;
-  compare_method(MPS_PETSC_METHOD_MULTIGRID, 60);
-}
+TEST(test_multigrid) { compare_method(MPS_PETSC_METHOD_MULTIGRID, 60); }
 
-static void test_direct(void **state) {
-  (void)state;
-  compare_method(MPS_PETSC_METHOD_DIRECT, 2);
-}
+TEST(test_direct) { compare_method(MPS_PETSC_METHOD_DIRECT, 2); }
 
-int main(void) {
-  if (!begin_world()) return 1;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_multigrid),
-                                     cmocka_unit_test(test_direct)};
-  return end_world(cmocka_run_group_tests(tests, NULL, NULL));
-}
+int main(void) { return begin_world() ? end_world(test_run()) : 1; }

@@ -5,7 +5,7 @@
 
 #include "test_common.h"
 
-#include <mps/petsc.h>
+#include <mps/experimental/petsc.h>
 
 static mps_context *own;
 static mps_domain *domain;

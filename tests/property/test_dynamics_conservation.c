@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
 
-#include <mps/experimental.h>
-
 static double uniform(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;
   return (double)(*seed >> 11) * 0x1p-52 - 1.0;
@@ -15,28 +13,27 @@ static double uniform(uint64_t *seed) {
 static mps_dynamics *random_body(mps_context *context, int64_t count, double speed, bool damped,
                                  const mps_dynamics_def *def, mps_particles **particles) {
   uint64_t seed = 7;
-  mps_particles_def set = mps_particles_defaults();
-  set.spacing = 1.0;
-  mps_assert_ok(context, mps_particles_create(context, &set, particles));
+  DEF(particles, set, .spacing = 1.0);
+  OK(mps_particles_create(context, &set, particles));
   const double side = sqrt((double)count);
   for (int64_t placed = 0; placed < count;) { /* apart by at least half a spacing */
     const double x[2] = {0.5 * side * uniform(&seed), 0.5 * side * uniform(&seed)};
     mps_view view;
-    mps_assert_ok(context, mps_particles_view(*particles, "position", &view));
+    OK(mps_particles_view(*particles, "position", &view));
     bool free_place = true;
     for (int64_t k = 0; k < placed && free_place; k++)
       free_place =
           hypot(*mps_view_f64(&view, k, 0) - x[0], *mps_view_f64(&view, k, 1) - x[1]) > 0.55;
     if (!free_place) continue;
-    mps_assert_ok(context, mps_particles_append(*particles, 1, x));
+    OK(mps_particles_append(*particles, 1, x));
     placed++;
   }
   const char *const names[] = {"density", "shear_velocity", "pressure_velocity",
                                "damping", "velocity",       "spin"};
   mps_edit view[6];
   for (int f = 0; f < 6; f++) {
-    mps_assert_ok(context, mps_particles_add_field(*particles, names[f], 0));
-    mps_assert_ok(context, mps_particles_edit(*particles, names[f], &view[f]));
+    OK(mps_particles_add_field(*particles, names[f], 0));
+    OK(mps_particles_edit(*particles, names[f], &view[f]));
   }
   for (int64_t k = 0; k < count; k++) {
     *mps_edit_f64(&view[0], k, 0) = 1500.0 + 500.0 * uniform(&seed);
@@ -47,9 +44,9 @@ static mps_dynamics *random_body(mps_context *context, int64_t count, double spe
     for (int c = 0; c < 2; c++) *mps_edit_f64(&view[4], k, c) = speed * uniform(&seed);
     *mps_edit_f64(&view[5], k, 0) = speed * uniform(&seed);
   }
-  for (int f = 0; f < 6; f++) mps_assert_ok(context, mps_particles_commit(*particles, &view[f]));
+  for (int f = 0; f < 6; f++) OK(mps_particles_commit(*particles, &view[f]));
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, *particles, def, &dynamics));
+  OK(mps_dynamics_create(context, *particles, def, &dynamics));
   return dynamics;
 }
 
@@ -64,12 +61,12 @@ typedef struct scales {
   double linear, angular;
 } scales;
 
-static scales momentum_scales(mps_context *context, mps_particles *particles) {
+static scales momentum_scales(mps_particles *particles) {
   scales s = {0.0, 0.0};
   mps_view rho, x, v;
-  mps_assert_ok(context, mps_particles_view(particles, "density", &rho));
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
+  OK(mps_particles_view(particles, "density", &rho));
+  OK(mps_particles_view(particles, "position", &x));
+  OK(mps_particles_view(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double p =
         *mps_view_f64(&rho, k, 0) * hypot(*mps_view_f64(&v, k, 0), *mps_view_f64(&v, k, 1));
@@ -79,16 +76,15 @@ static scales momentum_scales(mps_context *context, mps_particles *particles) {
   return s;
 }
 
-static void free_random_particles_keep_their_momenta(void **state) {
-  (void)state;
+TEST(free_random_particles_keep_their_momenta) {
   for (int variant = 0; variant < 8; variant++) {
     mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *particles = NULL;
-    mps_dynamics_def def = mps_dynamics_defaults();
-    def.integrator =
-        variant & 1 ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET;
-    def.rotation =
-        variant & 2 ? MPS_DYNAMICS_ROTATION_MEAN_ANGLE : MPS_DYNAMICS_ROTATION_MEAN_MATRIX;
+    DEF(dynamics, def,
+        .integrator =
+            variant & 1 ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET,
+        .rotation =
+            variant & 2 ? MPS_DYNAMICS_ROTATION_MEAN_ANGLE : MPS_DYNAMICS_ROTATION_MEAN_MATRIX);
     const bool damped = (variant & 4) != 0;
     def.dt = 5e-4;
     mps_dynamics *dynamics = random_body(context, 600, 2.0, damped, &def, &particles);
@@ -101,86 +97,79 @@ static void free_random_particles_keep_their_momenta(void **state) {
       dynamics = random_body(context, 600, 2.0, true, &def, &particles);
     }
     mps_totals before, after;
-    const scales size = momentum_scales(context, particles);
-    mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &before));
-    mps_assert_ok(context, mps_dynamics_step(dynamics, 2000));
-    mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &after));
+    const scales size = momentum_scales(particles);
+    OK(mps_dynamics_get_totals(dynamics, &before));
+    OK(mps_dynamics_step(dynamics, 2000));
+    OK(mps_dynamics_get_totals(dynamics, &after));
     const double turn = fabs(after.angular[2] - before.angular[2]);
     print_message("variant %d: linear %.1g %.1g, angular %.1g (relative)\n", variant,
                   fabs(after.linear[0] - before.linear[0]) / size.linear,
                   fabs(after.linear[1] - before.linear[1]) / size.linear, turn / size.angular);
     for (int c = 0; c < 2; c++)
-      mps_assert_near((after.linear[c] - before.linear[c]) / size.linear, 0.0, 1e-12);
-    mps_assert_near(turn / size.angular, 0.0, damped ? 2e-4 : 1e-12);
+      NEAR((after.linear[c] - before.linear[c]) / size.linear, 0.0, 1e-12);
+    NEAR(turn / size.angular, 0.0, damped ? 2e-4 : 1e-12);
     close_body(&context, &particles, &dynamics);
   }
 }
 
-static void the_printed_torque_does_not_keep_angular_momentum(void **state) {
-  (void)state;
+TEST(the_printed_torque_does_not_keep_angular_momentum) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *particles = NULL;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.dt = 5e-4;
+  DEF(dynamics, def, .dt = 5e-4);
   mps_dynamics *dynamics = random_body(context, 600, 2.0, false, &def, &particles);
-  mps_assert_ok(context, mps_experimental_dynamics_printed_torque(dynamics));
+  OK(mps_experimental_dynamics_printed_torque(dynamics));
   mps_totals before, after;
-  const scales size = momentum_scales(context, particles);
-  mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &before));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, 200));
-  mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &after));
+  const scales size = momentum_scales(particles);
+  OK(mps_dynamics_get_totals(dynamics, &before));
+  OK(mps_dynamics_step(dynamics, 200));
+  OK(mps_dynamics_get_totals(dynamics, &after));
   assert_true(fabs(after.angular[2] - before.angular[2]) > 1e-6 * size.angular);
   close_body(&context, &particles, &dynamics);
 }
 
-static void energy_stays_bounded_over_1e5_steps(void **state) {
-  (void)state;
+TEST(energy_stays_bounded_over_1e5_steps) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const soil_layer soil = {16.0, 1500.0, 100.0, 200.0, 0.0};
   mps_particles *particles = soil_particles(context, 1.0, 12.0, 16.0, 1, &soil);
-  mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
+  OK(mps_particles_add_field(particles, "velocity", 0));
   mps_view x;
   mps_edit v;
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(particles, "velocity", &v));
+  OK(mps_particles_view(particles, "position", &x));
+  OK(mps_particles_edit(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     *mps_edit_f64(&v, k, 0) = 1e-3 * sin(0.3 * *mps_view_f64(&x, k, 1));
     *mps_edit_f64(&v, k, 1) = 1e-3 * cos(0.4 * *mps_view_f64(&x, k, 0));
   }
-  mps_assert_ok(context, mps_particles_commit(particles, &v));
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.courant = 0.8;
+  OK(mps_particles_commit(particles, &v));
+  DEF(dynamics, def, .courant = 0.8);
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, particles, &def, &dynamics));
   mps_totals e;
   double least = INFINITY, most = 0.0;
   for (int k = 0; k < 1000; k++) {
-    mps_assert_ok(context, mps_dynamics_step(dynamics, 100));
-    mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &e));
+    OK(mps_dynamics_step(dynamics, 100));
+    OK(mps_dynamics_get_totals(dynamics, &e));
     assert_true(e.kinetic > 0.0 && e.strain > 0.0);
     least = fmin(least, e.kinetic + e.strain), most = fmax(most, e.kinetic + e.strain);
   }
   print_message("energy over 1e5 steps: spread %.2g of %.6g J/m\n", (most - least) / most, most);
-  mps_assert_near((most - least) / most, 0.0, 1e-4);
+  NEAR((most - least) / most, 0.0, 1e-4);
   close_body(&context, &particles, &dynamics);
 }
 
-static void rigid_motion_makes_no_force(void **state) {
-  (void)state;
+TEST(rigid_motion_makes_no_force) {
   for (int removal = 0; removal < 2; removal++) {
     mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     const soil_layer soil = {9.0, 1500.0, 100.0, 200.0, 0.0};
     mps_particles *particles = soil_particles(context, 1.0, 7.0, 9.0, 1, &soil);
-    mps_dynamics_def def = mps_dynamics_defaults();
-    def.rotation = removal;
-    def.dt = 1e-3;
+    DEF(dynamics, def, .rotation = removal, .dt = 1e-3);
     mps_dynamics *dynamics = NULL;
-    mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+    OK(mps_dynamics_create(context, particles, &def, &dynamics));
     mps_view reference, a;
     mps_edit d, th;
-    mps_assert_ok(context, mps_particles_view(particles, "reference", &reference));
-    mps_assert_ok(context, mps_particles_edit(particles, "displacement", &d));
-    mps_assert_ok(context, mps_particles_edit(particles, "rotation", &th));
+    OK(mps_particles_view(particles, "reference", &reference));
+    OK(mps_particles_edit(particles, "displacement", &d));
+    OK(mps_particles_edit(particles, "rotation", &th));
     const double angle = 2.5, c = cos(angle), s = sin(angle);
     for (int64_t k = 0; k < d.view.shape[0]; k++) {
       const double x = *mps_view_f64(&reference, k, 0), y = *mps_view_f64(&reference, k, 1);
@@ -188,25 +177,15 @@ static void rigid_motion_makes_no_force(void **state) {
       *mps_edit_f64(&d, k, 1) = s * x + c * y - y - 2.0;
       *mps_edit_f64(&th, k, 0) = angle;
     }
-    mps_assert_ok(context, mps_particles_commit(particles, &th));
-    mps_assert_ok(context, mps_particles_commit(particles, &d));
-    mps_assert_ok(context, mps_dynamics_restart(dynamics, 0.0));
-    mps_assert_ok(context, mps_dynamics_step(dynamics, 1));
-    mps_assert_ok(context, mps_particles_view(particles, "acceleration", &a));
+    OK(mps_particles_commit(particles, &th));
+    OK(mps_particles_commit(particles, &d));
+    OK(mps_dynamics_restart(dynamics, 0.0));
+    OK(mps_dynamics_step(dynamics, 1));
+    OK(mps_particles_view(particles, "acceleration", &a));
     double most = 0.0;
     for (int64_t k = 0; k < a.shape[0]; k++)
       most = fmax(most, hypot(*mps_view_f64(&a, k, 0), *mps_view_f64(&a, k, 1)));
-    mps_assert_near(most, 0.0, 1e-9); /* Vs^2/D = 1e4 m/s2 is the scale */
+    NEAR(most, 0.0, 1e-9); /* Vs^2/D = 1e4 m/s2 is the scale */
     close_body(&context, &particles, &dynamics);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(free_random_particles_keep_their_momenta),
-      cmocka_unit_test(the_printed_torque_does_not_keep_angular_momentum),
-      cmocka_unit_test(energy_stays_bounded_over_1e5_steps),
-      cmocka_unit_test(rigid_motion_makes_no_force),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,31 +11,27 @@ static const soil_layer layers[3] = {{4.0, 1700.0, 120.0, 240.0, 0.05},
 static mps_dynamics *level_ground(mps_context *context, bool columns, bool viscous,
                                   double radius_ratio, int integrator, mps_particles **particles) {
   *particles = soil_particles(context, 0.5, 12.0, 16.0, 3, layers);
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = integrator;
-  def.radius_ratio = radius_ratio;
-  def.dt = integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? 2e-5 : 2e-4;
+  DEF(dynamics, def, .integrator = integrator, .radius_ratio = radius_ratio,
+      .dt = integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? 2e-5 : 2e-4);
   if (columns) {
-    mps_assert_ok(context, mps_dynamics_add_free_field(*particles, MPS_DYNAMICS_SIDE_LEFT, 3));
-    mps_assert_ok(context, mps_dynamics_add_free_field(*particles, MPS_DYNAMICS_SIDE_RIGHT, 4));
+    OK(mps_dynamics_add_free_field(*particles, MPS_SIDE_X_LOWER, 3));
+    OK(mps_dynamics_add_free_field(*particles, MPS_SIDE_X_UPPER, 4));
   } else {
     def.period_x = 12.0;
   }
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, *particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
   int64_t count;
-  int64_t *base = soil_select(context, *particles, -100.0, -1.0, 100.0, 0.5, &count);
+  int64_t *base = soil_select(*particles, -100.0, -1.0, 100.0, 0.5, &count);
   mps_signal *s_wave = NULL, *p_wave = NULL;
-  mps_assert_ok(context, mps_signal_create_ricker(context, 6.0, 0.2, 1.0, &s_wave));
-  mps_assert_ok(context, mps_signal_create_ricker(context, 9.0, 0.15, 0.6, &p_wave));
+  OK(mps_signal_create_ricker(context, 6.0, 0.2, 1.0, &s_wave));
+  OK(mps_signal_create_ricker(context, 9.0, 0.15, 0.6, &p_wave));
   if (viscous) {
-    mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
-    boundary.signal[0] = s_wave;
-    boundary.signal[1] = p_wave;
-    mps_assert_ok(context, soil_add_viscous(dynamics, &boundary, count, base));
+    DEF(dynamics_boundary, boundary, .signal[0] = s_wave, .signal[1] = p_wave);
+    OK(soil_add_viscous(dynamics, &boundary, count, base));
   } else {
-    mps_assert_ok(context, soil_add_driven(dynamics, 0, s_wave, 1.0, count, base));
-    mps_assert_ok(context, soil_add_driven(dynamics, 1, p_wave, 1.0, count, base));
+    OK(soil_add_driven(dynamics, 0, s_wave, 1.0, count, base));
+    OK(soil_add_driven(dynamics, 1, p_wave, 1.0, count, base));
   }
   mps_signal_destroy(&s_wave);
   mps_signal_destroy(&p_wave);
@@ -43,38 +39,35 @@ static mps_dynamics *level_ground(mps_context *context, bool columns, bool visco
   return dynamics;
 }
 
-static void level_ground_moves_as_endless_ground(void **state) {
-  (void)state;
+TEST(level_ground_moves_as_endless_ground) {
   for (int variant = 0; variant < 5; variant++) {
     const int integrator = variant < 3    ? MPS_DYNAMICS_INTEGRATOR_VERLET
                            : variant == 3 ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG
                                           : MPS_DYNAMICS_INTEGRATOR_EULER;
     const bool viscous = variant != 0;
     const double ratio = variant == 2 ? 2.3 : 1.5; /* the second one reaches two columns inside */
-    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+    scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *ground[2];
     mps_dynamics *solver[2];
     for (int k = 0; k < 2; k++) {
       solver[k] = level_ground(context, k == 0, viscous, ratio, integrator, &ground[k]);
-      mps_assert_ok(context,
-                    mps_dynamics_run(solver[k], test_quick() ? 0.2 : 0.4, 1000000, NULL, NULL));
+      OK(mps_dynamics_run(solver[k], test_quick() ? 0.2 : 0.4, 1000000, NULL, NULL));
     }
     double worst = 0.0, most = 0.0;
     const int64_t body = mps_particles_count(ground[1]); /* the columns have the last ids */
     for (int64_t id = 0; id < body; id++)
       for (int c = 0; c < 2; c++) {
-        const double a = soil_value(context, ground[0], "displacement", id, c);
-        const double b = soil_value(context, ground[1], "displacement", id, c);
+        const double a = soil_value(ground[0], "displacement", id, c);
+        const double b = soil_value(ground[1], "displacement", id, c);
         worst = fmax(worst, fabs(a - b)), most = fmax(most, fabs(b));
       }
     print_message("variant %d: difference %.2g of %.2g m\n", variant, worst, most);
     assert_true(most > 1e-4);
-    mps_assert_near(worst / most, 0.0, 1e-11);
+    NEAR(worst / most, 0.0, 1e-11);
     for (int k = 0; k < 2; k++) {
       mps_dynamics_destroy(&solver[k]);
       mps_particles_destroy(&ground[k]);
     }
-    mps_context_destroy(&context);
   }
 }
 
@@ -85,49 +78,42 @@ static double energy_left(bool absorbing) {
   mps_particles *particles = soil_particles(context, 0.5, 30.0, 15.0, 1, &soil);
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
+  OK(mps_particles_add_field(particles, "velocity", 0));
   mps_view x;
   mps_edit v;
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(particles, "velocity", &v));
+  OK(mps_particles_view(particles, "position", &x));
+  OK(mps_particles_edit(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double r2 =
         pow(*mps_view_f64(&x, k, 0) - 15.0, 2) + pow(*mps_view_f64(&x, k, 1) - 7.0, 2);
     *mps_edit_f64(&v, k, 0) = 0.01 * exp(-r2 / 8.0);
     *mps_edit_f64(&v, k, 1) = 0.007 * exp(-r2 / 8.0);
   }
-  mps_assert_ok(context, mps_particles_commit(particles, &v));
+  OK(mps_particles_commit(particles, &v));
   if (absorbing) {
-    mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_LEFT, 2));
-    mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_RIGHT, 2));
+    OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_LOWER, 2));
+    OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_UPPER, 2));
   }
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, particles, &def, &dynamics));
   if (absorbing) {
     int64_t count;
-    int64_t *base = soil_select(context, particles, -100.0, -1.0, 100.0, 0.5, &count);
-    mps_assert_ok(context, soil_add_viscous(dynamics, NULL, count, base));
+    int64_t *base = soil_select(particles, -100.0, -1.0, 100.0, 0.5, &count);
+    OK(soil_add_viscous(dynamics, NULL, count, base));
     free(base);
   }
   mps_totals before, after;
-  mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &before));
-  mps_assert_ok(context, mps_dynamics_run(dynamics, 0.5, 1000000, NULL, NULL));
-  mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &after));
+  OK(mps_dynamics_get_totals(dynamics, &before));
+  OK(mps_dynamics_run(dynamics, 0.5, 1000000, NULL, NULL));
+  OK(mps_dynamics_get_totals(dynamics, &after));
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&particles);
   mps_context_destroy(&context);
   return (after.kinetic + after.strain) / (before.kinetic + before.strain);
 }
 
-static void waves_from_inside_leave(void **state) {
-  (void)state;
+TEST(waves_from_inside_leave) {
   const double closed = energy_left(false), open = energy_left(true);
   print_message("energy left: closed edges %.4f, absorbing edges %.4f\n", closed, open);
-  mps_assert_near(closed, 1.0, 1e-4);
+  NEAR(closed, 1.0, 1e-4);
   assert_true(open < 0.03);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(level_ground_moves_as_endless_ground),
-                                     cmocka_unit_test(waves_from_inside_leave)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,23 +3,18 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
-#include <mps/particles.h>
-
 static const double PI = 3.14159265358979323846;
 
 static mps_particles *make_set(mps_context *context, int32_t dim, double spacing) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .dim = dim, .spacing = spacing);
   mps_particles *set = NULL;
-  def.dim = dim;
-  def.spacing = spacing;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  OK(mps_particles_create(context, &def, &set));
   return set;
 }
 
 /* The error of an area by counting sites is at most about half a cell along the boundary. */
-static void the_area_of_a_polygon_converges(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(the_area_of_a_polygon_converges) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   enum { CORNERS = 14 };
   double xy[2 * CORNERS], area = 0.0, length = 0.0;
   for (int k = 0; k < CORNERS; k++) { /* a star of seven points, not symmetric to the lattice */
@@ -35,51 +30,46 @@ static void the_area_of_a_polygon_converges(void **state) {
   double last = 0.0;
   for (int level = 0; level < 6; level++) {
     const double d = 0.2 * pow(0.5, level);
-    mps_particles *set = make_set(context, 2, d);
+    scoped_particles *set = make_set(context, 2, d);
     int64_t added;
-    mps_assert_ok(context, mps_particles_fill_polygon(set, CORNERS, xy, &added));
+    OK(mps_particles_fill_polygon(set, CORNERS, xy, &added));
     last = fabs((double)added * d * d - area);
-    mps_assert_near((double)added * d * d, area, 0.5 * length * d);
-    mps_particles_destroy(&set);
+    NEAR((double)added * d * d, area, 0.5 * length * d);
   }
   assert_true(last < 1e-3 * area);
-  mps_context_destroy(&context);
 }
 
-static void disc_and_ball_have_their_area_and_volume(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(disc_and_ball_have_their_area_and_volume) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double centre[3] = {0.013, -0.21, 0.37}, r = 1.7;
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int level = 0; level < 4; level++) {
       const double d = 0.1 * pow(0.6, level);
       const double exact = dim == 2 ? PI * r * r : 4.0 / 3.0 * PI * r * r * r;
       const double surface = dim == 2 ? 2 * PI * r : 4 * PI * r * r;
-      mps_particles *set = make_set(context, dim, d);
+      scoped_particles *set = make_set(context, dim, d);
       int64_t added;
-      mps_assert_ok(context, mps_particles_fill_ball(set, centre, r, &added));
+      OK(mps_particles_fill_ball(set, centre, r, &added));
       /* far below half a cell along the surface: errors of a curved one cancel */
-      mps_assert_near((double)added * pow(d, dim), exact, 0.15 * surface * d);
+      NEAR((double)added * pow(d, dim), exact, 0.15 * surface * d);
       mps_view x;
-      mps_assert_ok(context, mps_particles_view(set, "position", &x));
+      OK(mps_particles_view(set, "position", &x));
       for (int64_t i = 0; i < added; i++) {
         double square = 0.0;
         for (int32_t c = 0; c < dim; c++) square += pow(*mps_view_f64(&x, i, c) - centre[c], 2);
         assert_true(square < r * r);
       }
-      mps_particles_destroy(&set);
     }
-  mps_context_destroy(&context);
 }
 
 /* Overlapping shapes number `which`. */
-static int64_t fill_shape(mps_context *context, mps_particles *set, int which) {
+static int64_t fill_shape(mps_particles *set, int which) {
   const double lo[2] = {-3.0, -2.0}, hi[2] = {2.5, 4.0}, centre[2] = {1.0, 1.0};
   const double kite[] = {-6, 0, 0, -5, 7, 1, 1.5, 6};
   int64_t added = -1;
-  if (which == 0) mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added));
-  if (which == 1) mps_assert_ok(context, mps_particles_fill_ball(set, centre, 3.9, &added));
-  if (which == 2) mps_assert_ok(context, mps_particles_fill_polygon(set, 4, kite, &added));
+  if (which == 0) OK(mps_particles_fill_box(set, lo, hi, &added));
+  if (which == 1) OK(mps_particles_fill_ball(set, centre, 3.9, &added));
+  if (which == 2) OK(mps_particles_fill_polygon(set, 4, kite, &added));
   return added;
 }
 
@@ -90,9 +80,9 @@ static int compare_points(const void *a, const void *b) {
 }
 
 /* All sites of a set, sorted; to be freed. */
-static double *sorted_sites(mps_context *context, mps_particles *set) {
+static double *sorted_sites(mps_particles *set) {
   mps_view x;
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  OK(mps_particles_view(set, "position", &x));
   double *points = malloc((size_t)x.shape[0] * 2 * sizeof *points);
   assert_non_null(points);
   for (int64_t i = 0; i < x.shape[0]; i++)
@@ -101,20 +91,19 @@ static double *sorted_sites(mps_context *context, mps_particles *set) {
   return points;
 }
 
-static void overlapping_fills_give_the_same_sites_in_any_order(void **state) {
-  (void)state;
+TEST(overlapping_fills_give_the_same_sites_in_any_order) {
   static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                    {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double *first = NULL;
   int64_t count = 0;
   for (int o = 0; o < 6; o++) {
-    mps_particles *set = make_set(context, 2, 0.1);
+    scoped_particles *set = make_set(context, 2, 0.1);
     int64_t sum = 0;
-    for (int k = 0; k < 3; k++) sum += fill_shape(context, set, orders[o][k]);
+    for (int k = 0; k < 3; k++) sum += fill_shape(set, orders[o][k]);
     assert_int_equal(sum, mps_particles_count(set));
-    for (int k = 0; k < 3; k++) assert_int_equal(fill_shape(context, set, k), 0);
-    double *points = sorted_sites(context, set);
+    for (int k = 0; k < 3; k++) assert_int_equal(fill_shape(set, k), 0);
+    double *points = sorted_sites(set);
     for (int64_t i = 1; i < sum; i++)
       assert_true(compare_points(points + 2 * i - 2, points + 2 * i) < 0); /* none twice */
     if (o == 0) {
@@ -125,18 +114,7 @@ static void overlapping_fills_give_the_same_sites_in_any_order(void **state) {
       assert_memory_equal(points, first, (size_t)sum * 2 * sizeof *points);
       free(points);
     }
-    mps_particles_destroy(&set);
   }
   assert_true(count > 5000);
   free(first);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_area_of_a_polygon_converges),
-      cmocka_unit_test(disc_and_ball_have_their_area_and_volume),
-      cmocka_unit_test(overlapping_fills_give_the_same_sites_in_any_order),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

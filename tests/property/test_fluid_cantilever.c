@@ -6,13 +6,7 @@
 
 #include "fluid_cantilever.h"
 
-static void a_cantilever_does_not_grow(void **state) {
-  (void)state;
+TEST(a_cantilever_does_not_grow) {
   assert_true(cantilever_growth(context, 0.004, 1.0, 3.0) < 0.0);
   assert_true(cantilever_growth(context, 0.004, 0.5, 3.0) < 0.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_cantilever_does_not_grow)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

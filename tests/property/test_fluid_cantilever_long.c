@@ -4,14 +4,8 @@
 
 #include "fluid_cantilever.h"
 
-static void a_cantilever_does_not_grow(void **state) {
-  (void)state;
+TEST(a_cantilever_does_not_grow) {
   for (int k = 0; k < 3; k++)
     for (int r = 1; r <= 2; r++)
       assert_true(cantilever_growth(context, 0.004 / (1 << k), 0.5 * r, 8.0) < 0.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_cantilever_does_not_grow)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

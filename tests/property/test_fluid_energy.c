@@ -5,8 +5,7 @@
 
 #include "fluid_energy.h"
 
-static void a_vibrating_wall_is_damped_and_feels_the_added_mass(void **state) {
-  (void)state;
+TEST(a_vibrating_wall_is_damped_and_feels_the_added_mass) {
   const struct {
     double dt, omega;
     int power;
@@ -16,21 +15,16 @@ static void a_vibrating_wall_is_damped_and_feels_the_added_mass(void **state) {
     forced_check(context, 0.02, runs[k].dt, runs[k].power, runs[k].omega, 0.006);
 }
 
-static void a_wall_on_a_spring_does_not_grow(void **state) {
-  (void)state;
-  spring_check(context, 0.02, 0.004, 211800.0, 30.0);
-}
+TEST(a_wall_on_a_spring_does_not_grow) { spring_check(context, 0.02, 0.004, 211800.0, 30.0); }
 
-static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
-  (void)state;
+TEST(blocks_that_strike_keep_the_energy_of_theory) {
   blocks_check(context, 10, 0.3, 0.04);
   for (int k = 0; k < 3; k++) blocks_check(context, 15, 0.5 * k, 0.03);
   blocks_check(context, 20, 0.3, 0.03);
 }
 
 /* The loss falls faster than the spacing, and short steps do not add to it without end. */
-static void standing_waves_last(void **state) {
-  (void)state;
+TEST(standing_waves_last) {
   const double coarse = standing_kept(context, 0.03, NAN, 12.0);
   const double fine = standing_kept(context, 0.02, NAN, 12.0);
   const double brief = standing_kept(context, 0.03, 0.002, 12.0);
@@ -41,14 +35,4 @@ static void standing_waves_last(void **state) {
   assert_true(fine > 0.99 && fine < 1.005);
   assert_true(1.0 - fine < (1.0 - coarse) * 0.02 / 0.03);
   assert_true(brief > 0.94 && brief < 1.005);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_vibrating_wall_is_damped_and_feels_the_added_mass),
-      cmocka_unit_test(a_wall_on_a_spring_does_not_grow),
-      cmocka_unit_test(blocks_that_strike_keep_the_energy_of_theory),
-      cmocka_unit_test(standing_waves_last),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -5,8 +5,7 @@
 #include "fluid_energy.h"
 
 /* Finer steps and all shapes. */
-static void vibrating_walls_are_damped_and_feel_the_added_mass(void **state) {
-  (void)state;
+TEST(vibrating_walls_are_damped_and_feel_the_added_mass) {
   const double omega[] = {60.0, 125.0, 250.0}, coarse[] = {0.0045, 0.004, 0.002, 0.001, 0.0005},
                fine[] = {0.0031, 0.001};
   for (int power = 0; power <= 2; power++)
@@ -18,16 +17,14 @@ static void vibrating_walls_are_damped_and_feel_the_added_mass(void **state) {
     }
 }
 
-static void walls_on_springs_do_not_grow(void **state) {
-  (void)state;
+TEST(walls_on_springs_do_not_grow) {
   spring_check(context, 0.02, 0.004, 211800.0, 300.0);
   spring_check(context, 0.02, 0.0023, 1e6, 300.0);
   spring_check(context, 0.02, 0.002, 211800.0, 100.0);
   spring_check(context, 0.02, 0.004, 1e6, 300.0); /* omega dt = .52: too long, but no growth */
 }
 
-static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
-  (void)state;
+TEST(blocks_that_strike_keep_the_energy_of_theory) {
   for (int k = 0; k < 3; k++) {
     blocks_check(context, 10, 0.25 * k, 0.06); /* coarse: a gap of a spacing's part counts */
     blocks_check(context, 20, 0.25 * k, 0.03);
@@ -37,8 +34,7 @@ static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
 }
 
 /* The loss at d/10, d/20, d/40 falls with the spacing, from d/20 on by little. */
-static void standing_waves_last(void **state) {
-  (void)state;
+TEST(standing_waves_last) {
   double loss[3];
   for (int k = 0; k < 3; k++) {
     loss[k] = 1.0 - standing_kept(context, 0.03 / (1 << k), NAN, 20.0);
@@ -47,14 +43,4 @@ static void standing_waves_last(void **state) {
   assert_true(loss[1] < 0.025 && loss[1] > -0.005);
   assert_true(loss[1] < 0.6 * loss[0]); /* order .8 */
   assert_true(loss[2] < loss[1] && loss[2] > -0.01);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(vibrating_walls_are_damped_and_feel_the_added_mass),
-      cmocka_unit_test(walls_on_springs_do_not_grow),
-      cmocka_unit_test(blocks_that_strike_keep_the_energy_of_theory),
-      cmocka_unit_test(standing_waves_last),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -45,22 +45,21 @@ static void check_plastic(const clay *c, const mps_material_point *old,
   const double p0 = clay_p(old), p1 = clay_p(now), q = clay_q(now), pc = now->history[CLAY_PC];
   const double v0 = 1.0 + old->history[CLAY_VOID], v1 = 1.0 + now->history[CLAY_VOID];
   const double loss = v0 - v1 - c->kappa * log(p1 / p0); /* plastic change of v */
-  mps_assert_near(yield(c, p1, q, pc), 0.0, 1e-9);
-  mps_assert_near(log(pc / old->history[CLAY_PC]), loss / (c->lambda - c->kappa), 1e-9);
+  NEAR(yield(c, p1, q, pc), 0.0, 1e-9);
+  NEAR(log(pc / old->history[CLAY_PC]), loss / (c->lambda - c->kappa), 1e-9);
   const double shear = now->history[CLAY_STRAIN] - old->history[CLAY_STRAIN];
   const double volume = loss / (0.5 * (v0 + v1)), m2 = c->M * c->M;
   assert_true(shear >= 0.0);
   const double left = shear * (2.0 * p1 - pc), right = volume * 2.0 * q / m2; /* normality */
-  mps_assert_near(left / pc, right / pc, 1e-9 + 1e-7 * fabs(right / pc));
+  NEAR(left / pc, right / pc, 1e-9 + 1e-7 * fabs(right / pc));
 }
 
-static void any_state_returns_to_the_surface(void **state) {
-  (void)state;
+TEST(any_state_returns_to_the_surface) {
   uint64_t seed = 7;
   int64_t plastic = 0, apart = 0, elastic = 0;
   for (int draw = 0; draw < 1000; draw++) {
     const clay c = random_clay(&seed);
-    mps_material *m = make_clay(&c);
+    scoped_material *m = make_clay(&c);
     for (int i = 0; i < 100; i++) {
       mps_material_point x = point_under(m, 0.0), old;
       const double pc = x.history[CLAY_PC], p = pc * scaled(&seed, 2e-3, 1.0);
@@ -72,7 +71,7 @@ static void any_state_returns_to_the_surface(void **state) {
       const double length = scaled(&seed, 1e-6, 1e-2) / sqrt(size);
       for (int k = 0; k < 9; k++) L[k] *= length;
       old = x;
-      mps_assert_ok(context, mps_material_point_drive(context, m, &x, L, 1.0, 1));
+      OK(mps_material_point_drive(context, m, &x, L, 1.0, 1));
       const double p1 = clay_p(&x);
       assert_true(yield(&c, p1, clay_q(&x), x.history[CLAY_PC]) < 1e-9);
       if (x.flags & MPS_MATERIAL_FLAG_APEX) {
@@ -83,12 +82,11 @@ static void any_state_returns_to_the_surface(void **state) {
         check_plastic(&c, &old, &x);
       } else {
         elastic++;
-        mps_assert_near(log(p1 / clay_p(&old)),
-                        (old.history[CLAY_VOID] - x.history[CLAY_VOID]) / c.kappa, 1e-9);
+        NEAR(log(p1 / clay_p(&old)), (old.history[CLAY_VOID] - x.history[CLAY_VOID]) / c.kappa,
+             1e-9);
         assert_true(x.history[CLAY_PC] == pc);
       }
     }
-    mps_material_destroy(&m);
   }
   print_message("%lld plastic, %lld elastic, %lld apart\n", (long long)plastic, (long long)elastic,
                 (long long)apart);
@@ -96,66 +94,58 @@ static void any_state_returns_to_the_surface(void **state) {
 }
 
 /* Torn by 5 % and pressed together again: the same pressure, void ratio and volume. */
-static void a_gap_closes_where_it_opened(void **state) {
-  (void)state;
-  mps_material *m = make_clay(&clays[1]);
+TEST(a_gap_closes_where_it_opened) {
+  scoped_material *m = make_clay(&clays[1]);
   mps_material_point x = point_under(m, -50e3);
   const mps_material_point first = x;
   const double pull = 0.25 / 3.0;
   const double out[9] = {pull, 0, 0, 0, pull, 0, 0, 0, pull};
   const double in[9] = {-pull, 0, 0, 0, -pull, 0, 0, 0, -pull};
-  mps_assert_ok(context, mps_material_point_drive(context, m, &x, out, 1.0, 100));
+  OK(mps_material_point_drive(context, m, &x, out, 1.0, 100));
   assert_true(x.flags & MPS_MATERIAL_FLAG_APEX);
-  mps_assert_near(clay_p(&x), 200.0, 1e-9); /* pc/1000 */
+  NEAR(clay_p(&x), 200.0, 1e-9); /* pc/1000 */
   assert_true(x.history[CLAY_GAP] > 0.15);
-  mps_assert_near(log(x.volume_ratio) + x.history[CLAY_GAP], 0.25, 1e-7);
-  mps_assert_ok(context, mps_material_point_drive(context, m, &x, in, 1.0, 130));
-  mps_assert_near(x.history[CLAY_GAP], 0.0, 0.0);
-  mps_assert_near(clay_p(&x) / 50e3, 1.0, 1e-4);
-  mps_assert_near(x.history[CLAY_VOID], first.history[CLAY_VOID], 1e-6);
-  mps_assert_near(x.volume_ratio, 1.0, 1e-6);
-  mps_material_destroy(&m);
+  NEAR(log(x.volume_ratio) + x.history[CLAY_GAP], 0.25, 1e-7);
+  OK(mps_material_point_drive(context, m, &x, in, 1.0, 130));
+  NEAR(x.history[CLAY_GAP], 0.0, 0.0);
+  NEAR(clay_p(&x) / 50e3, 1.0, 1e-4);
+  NEAR(x.history[CLAY_VOID], first.history[CLAY_VOID], 1e-6);
+  NEAR(x.volume_ratio, 1.0, 1e-6);
 }
 
 /* A hundred thousand elastic cycles of a hundredth leave pressure and void ratio. */
-static void elastic_cycles_do_not_drift(void **state) {
-  (void)state;
-  mps_material *m = make_clay(&clays[1]);
+TEST(elastic_cycles_do_not_drift) {
+  scoped_material *m = make_clay(&clays[1]);
   mps_material_point x = point_under(m, -50e3);
   for (int i = 0; i < 100000; i++) {
     const double e = (i % 2 ? -1.0 : 1.0) * 0.003;
     const double L[9] = {e, 0, 0, 0, e, 0, 0, 0, e};
-    mps_assert_ok(context, mps_material_point_drive(context, m, &x, L, 1.0, 1));
+    OK(mps_material_point_drive(context, m, &x, L, 1.0, 1));
   }
-  mps_assert_near(clay_p(&x) / 50e3, 1.0, 1e-6);
-  mps_assert_near(x.history[CLAY_VOID], 0.8, 1e-8);
-  mps_material_destroy(&m);
+  NEAR(clay_p(&x) / 50e3, 1.0, 1e-6);
+  NEAR(x.history[CLAY_VOID], 0.8, 1e-8);
 }
 
-static void a_rotation_rotates_the_stress(void **state) {
-  (void)state;
+TEST(a_rotation_rotates_the_stress) {
   uint64_t seed = 3;
-  mps_material *m = make_clay(&clays[0]);
+  scoped_material *m = make_clay(&clays[0]);
   mps_material_point x = point_under(m, 0.0);
   set_stress(&x, &seed, 60e3, 30e3);
   const mps_material_point first = x;
   const double w = PI, L[9] = {0, w, 0, -w, 0, 0, 0, 0, 0};
-  mps_assert_ok(context,
-                mps_material_point_drive(context, m, &x, L, 1.0, 1000)); /* by 180 degrees */
-  for (int c = 0; c < 4; c++) mps_assert_near(x.stress[c] / 60e3, first.stress[c] / 60e3, 1e-4);
-  for (int c = 4; c < 6; c++) mps_assert_near(x.stress[c] / 60e3, -first.stress[c] / 60e3, 1e-4);
-  mps_assert_near(clay_p(&x) / 60e3, 1.0, 1e-10);
-  mps_material_destroy(&m);
+  OK(mps_material_point_drive(context, m, &x, L, 1.0, 1000)); /* by 180 degrees */
+  for (int c = 0; c < 4; c++) NEAR(x.stress[c] / 60e3, first.stress[c] / 60e3, 1e-4);
+  for (int c = 4; c < 6; c++) NEAR(x.stress[c] / 60e3, -first.stress[c] / 60e3, 1e-4);
+  NEAR(clay_p(&x) / 60e3, 1.0, 1e-10);
 }
 
 /* Plane strain and axisymmetry are space without their missing components. */
-static void geometries_agree(void **state) {
-  (void)state;
+TEST(geometries_agree) {
   enum { N = 70 };
   static double L[9][N], s[3][6][N], h[3][4][N], V[3][N];
   static int64_t flags[3][N];
   uint64_t seed = 11;
-  mps_material *m = make_clay(&clays[0]);
+  scoped_material *m = make_clay(&clays[0]);
   for (int k = 0; k < N; k++) {
     for (int c = 0; c < 9; c++)
       L[c][k] = c == 0 || c == 1 || c == 3 || c == 4 ? 5e-3 * random_number(&seed) : 0.0;
@@ -166,11 +156,8 @@ static void geometries_agree(void **state) {
     }
   }
   for (int g = 0; g < 3; g++) {
-    mps_material_block block = mps_material_block_defaults();
+    WITH_DEFAULTS(mps_material_block, block, .dim = g == 2 ? 3 : 2, .count = N, .dt = 1.0);
     double *history[4];
-    block.dim = g == 2 ? 3 : 2;
-    block.count = N;
-    block.dt = 1.0;
     for (int c = 0; c < 9; c++)
       if (g == 2 || c == 0 || c == 1 || c == 3 || c == 4 || (g == 1 && c == 8))
         block.gradient[c] = L[c];
@@ -180,31 +167,27 @@ static void geometries_agree(void **state) {
     block.history_count = 4;
     block.volume_ratio = V[g];
     block.flags = flags[g];
-    for (int step = 0; step < 5; step++)
-      mps_assert_ok(context, mps_material_update(context, m, &block));
+    for (int step = 0; step < 5; step++) OK(mps_material_update(context, m, &block));
   }
   for (int g = 1; g < 3; g++)
     for (int k = 0; k < N; k++) {
-      for (int c = 0; c < 4; c++) mps_assert_near(s[g][c][k] / 60e3, s[0][c][k] / 60e3, 1e-12);
-      for (int c = 0; c < 4; c++) mps_assert_near(h[g][c][k], h[0][c][k], 1e-9 * fabs(h[0][c][k]));
+      for (int c = 0; c < 4; c++) NEAR(s[g][c][k] / 60e3, s[0][c][k] / 60e3, 1e-12);
+      for (int c = 0; c < 4; c++) NEAR(h[g][c][k], h[0][c][k], 1e-9 * fabs(h[0][c][k]));
       assert_int_equal(flags[g][k], flags[0][k]);
     }
-  mps_material_destroy(&m);
 }
 
 /* Strains far beyond a solver's leave numbers, and absurd ones a NaN that a solver reports. */
-static void large_strains_are_divided(void **state) {
-  (void)state;
+TEST(large_strains_are_divided) {
   for (int k = 0; k < 2; k++) {
-    mps_material *m = make_clay(&clays[k]);
+    scoped_material *m = make_clay(&clays[k]);
     mps_material_point one = point_under(m, -clays[k].p0), many = one;
     const double L[9] = {0.1, 0.3, 0, 0, 0.1, 0, 0, 0, -0.2};
-    mps_assert_ok(context, mps_material_point_drive(context, m, &one, L, 1.0, 1));
-    mps_assert_ok(context, mps_material_point_drive(context, m, &many, L, 1.0, 1000));
-    mps_assert_near(clay_p(&one) / clay_p(&many), 1.0, 0.05);
+    OK(mps_material_point_drive(context, m, &one, L, 1.0, 1));
+    OK(mps_material_point_drive(context, m, &many, L, 1.0, 1000));
+    NEAR(clay_p(&one) / clay_p(&many), 1.0, 0.05);
     const double absurd[9] = {1e30, 0, 0, 0, 0, 0, 0, 0, 0};
     assert_int_equal(mps_material_point_drive(context, m, &one, absurd, 1.0, 1), MPS_ERROR_NUMERIC);
-    mps_material_destroy(&m);
   }
 }
 
@@ -268,33 +251,32 @@ static void compare_alone(const mps_material *m, const clay_block *first, const 
   }
   const double pc = x.pc;
   const int64_t flags = mpsi_cam_clay_step(&m->law, 3, d, s, &x);
-  for (int i = 0; i < 6; i++) mps_assert_near(now->stress[i][k] / pc, s[i] / pc, 1e-12);
-  mps_assert_near(now->history[CLAY_PC][k] / x.pc, 1.0, 1e-12);
-  mps_assert_near(now->history[CLAY_VOID][k], x.void_ratio, 1e-13);
-  mps_assert_near(now->history[CLAY_STRAIN][k], x.strain, 1e-12);
-  mps_assert_near(now->history[CLAY_GAP][k], x.gap, 1e-13);
-  mps_assert_near(now->volume[k], x.volume, 1e-13);
+  for (int i = 0; i < 6; i++) NEAR(now->stress[i][k] / pc, s[i] / pc, 1e-12);
+  NEAR(now->history[CLAY_PC][k] / x.pc, 1.0, 1e-12);
+  NEAR(now->history[CLAY_VOID][k], x.void_ratio, 1e-13);
+  NEAR(now->history[CLAY_STRAIN][k], x.strain, 1e-12);
+  NEAR(now->history[CLAY_GAP][k], x.gap, 1e-13);
+  NEAR(now->volume[k], x.volume, 1e-13);
   assert_int_equal(now->flags[k], flags);
 }
 
-static void blocks_agree_with_single_particles(void **state) {
-  (void)state;
+TEST(blocks_agree_with_single_particles) {
   uint64_t seed = 3;
   int64_t yields = 0, apart = 0, elastic = 0;
   for (int draw = 0; draw < 60; draw++) {
     const clay c = random_clay(&seed);
     mps_material_cam_clay_def def = clay_def(&c);
-    mps_material *m = NULL;
+    scoped_material *m = NULL;
     clay_block first, whole, cut;
     def.lode = draw % 2;
     if (draw % 3 == 0) def.shear_modulus = 20.0 * c.p0;
-    mps_assert_ok(context, mps_material_create_cam_clay(context, &def, &m));
+    OK(mps_material_create_cam_clay(context, &def, &m));
     for (int kind = 0; kind < 3; kind++) {
       fill_block(m, &c, &whole), fill_block(m, &c, &cut);
-      mps_assert_ok(context, step_block(m, kind, &whole, 0, BLOCK));
+      OK(step_block(m, kind, &whole, 0, BLOCK));
       for (int begin = 0, n = 1, end; begin < BLOCK; begin = end, n = 2 * n + 1) {
         end = begin + n < BLOCK ? begin + n : BLOCK;
-        mps_assert_ok(context, step_block(m, kind, &cut, begin, end));
+        OK(step_block(m, kind, &cut, begin, end));
       }
       assert_memory_equal(&whole, &cut, sizeof whole);
     }
@@ -304,28 +286,14 @@ static void blocks_agree_with_single_particles(void **state) {
       for (int i = 0; i < 3; i++)
         for (int j = 0; j < i; j++) first.gradient[3 * i + j][k] = first.gradient[3 * j + i][k];
     whole = first;
-    mps_assert_ok(context, step_block(m, 2, &whole, 0, BLOCK));
+    OK(step_block(m, 2, &whole, 0, BLOCK));
     for (int k = 0; k < BLOCK; k++) {
       compare_alone(m, &first, &whole, k);
       const bool parted = (whole.flags[k] & MPS_MATERIAL_FLAG_APEX) != 0;
       apart += parted, elastic += whole.flags[k] == 0;
       yields += !parted && whole.flags[k] != 0;
     }
-    mps_material_destroy(&m);
   }
   print_message("%d yield, %d elastic, %d apart\n", (int)yields, (int)elastic, (int)apart);
   assert_true(yields > 2000 && apart > 300 && elastic > 1000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(any_state_returns_to_the_surface),
-      cmocka_unit_test(a_gap_closes_where_it_opened),
-      cmocka_unit_test(elastic_cycles_do_not_drift),
-      cmocka_unit_test(a_rotation_rotates_the_stress),
-      cmocka_unit_test(geometries_agree),
-      cmocka_unit_test(large_strains_are_divided),
-      cmocka_unit_test(blocks_agree_with_single_particles),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -21,8 +21,8 @@ static mps_body *make_body(int which, const mps_body_def *def) {
   if (which == TORUS) mesh_torus(&shape);
   if (which == BLOCK) mesh_block(&shape, 0.3);
   mps_body *body = NULL;
-  mps_assert_ok(context, mps_body_create_mesh(context, def, 3 * shape.triangles, shape.xyz,
-                                              shape.triangles, shape.corner, &body));
+  OK(mps_body_create_mesh(context, def, 3 * shape.triangles, shape.xyz, shape.triangles,
+                          shape.corner, &body));
   return body;
 }
 
@@ -94,146 +94,126 @@ static void choose_point(int p, double *x) {
 static void check_point(mps_body *body, const double *x) {
   double d, n[3], foot[3], least = INFINITY;
   int64_t face;
-  mps_assert_ok(context, mps_body_distance(body, 1, x, &d, n, foot, &face));
+  OK(mps_body_distance(body, 1, x, &d, n, foot, &face));
   for (int64_t t = 0; t < shape.triangles; t++)
     least = fmin(least, triangle_distance(shape.xyz + 9 * t, x));
-  mps_assert_near(fabs(d), least, 1e-13);
+  NEAR(fabs(d), least, 1e-13);
   if (least > 1e-9) assert_int_equal(d<0.0, winding(x)> 0.5);
-  mps_assert_near(triangle_distance(shape.xyz + 9 * face, foot), 0.0, 1e-14);
-  mps_assert_near(dot(n, n), 1.0, 1e-14);
-  for (int c = 0; c < 3; c++) mps_assert_near(foot[c] + d * n[c], x[c], 1e-13);
+  NEAR(triangle_distance(shape.xyz + 9 * face, foot), 0.0, 1e-14);
+  NEAR(dot(n, n), 1.0, 1e-14);
+  for (int c = 0; c < 3; c++) NEAR(foot[c] + d * n[c], x[c], 1e-13);
 }
 
-static void distance_is_the_least(void **state) {
-  (void)state;
+TEST(distance_is_the_least) {
   for (int which = 0; which < SHAPES; which++) {
-    mps_body *body = make_body(which, NULL);
+    scoped_body *body = make_body(which, NULL);
     for (int p = 0; p < 2000; p++) {
       double x[3];
       choose_point(p, x);
       check_point(body, x);
     }
-    mps_body_destroy(&body);
   }
 }
 
 /* Triangles given inside out are turned, and keep their numbers; far away and near give the same
  * as a walk over all. */
-static void order_and_place_do_not_matter(void **state) {
-  (void)state;
-  mps_body *body = make_body(BLOCK, NULL), *other = NULL;
+TEST(order_and_place_do_not_matter) {
+  scoped_body *body = make_body(BLOCK, NULL), *other = NULL;
   for (int64_t s = 0; s < shape.triangles; s++) {
     const int32_t second = shape.corner[3 * s + 1];
     shape.corner[3 * s + 1] = shape.corner[3 * s + 2], shape.corner[3 * s + 2] = second;
   }
-  mps_assert_ok(context, mps_body_create_mesh(context, NULL, 3 * shape.triangles, shape.xyz,
-                                              shape.triangles, shape.corner, &other));
+  OK(mps_body_create_mesh(context, NULL, 3 * shape.triangles, shape.xyz, shape.triangles,
+                          shape.corner, &other));
   for (int p = 0; p < 500; p++) {
     double x[3], d, e, n[3], m[3];
     int64_t face, same;
     choose_point(p, x);
     for (int c = 0; c < 3 && p < 20; c++) x[c] *= p < 10 ? 1e3 : 1e8;
-    mps_assert_ok(context, mps_body_distance(body, 1, x, &d, n, NULL, &face));
-    mps_assert_ok(context, mps_body_distance(other, 1, x, &e, m, NULL, &same));
-    mps_assert_near(e, d, 1e-14 * fabs(d) + 1e-15);
-    for (int c = 0; c < 3; c++) mps_assert_near(m[c], n[c], 1e-6);
+    OK(mps_body_distance(body, 1, x, &d, n, NULL, &face));
+    OK(mps_body_distance(other, 1, x, &e, m, NULL, &same));
+    NEAR(e, d, 1e-14 * fabs(d) + 1e-15);
+    for (int c = 0; c < 3; c++) NEAR(m[c], n[c], 1e-6);
     if (p < 20) {
       double least = INFINITY;
       for (int64_t t = 0; t < shape.triangles; t++)
         least = fmin(least, triangle_distance(shape.xyz + 9 * t, x));
-      mps_assert_near(d, least, 1e-14 * least);
+      NEAR(d, least, 1e-14 * least);
     }
   }
-  mps_body_destroy(&body);
-  mps_body_destroy(&other);
 }
 
-static void fine_mesh_is_the_sphere(void **state) {
-  (void)state;
-  mps_body_def def = mps_body_defaults();
-  def.position[0] = 0.3, def.rotation[1] = 0.8;
-  mps_body *exact = NULL;
-  mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &exact));
+TEST(fine_mesh_is_the_sphere) {
+  DEF(body, def, .position[0] = 0.3, .rotation[1] = 0.8);
+  scoped_body *exact = NULL;
+  OK(mps_body_create_sphere(context, &def, 1.0, &exact));
   double last = 0.0;
   for (int level = 1; level <= 3; level++) {
-    mps_body *body = NULL;
+    scoped_body *body = NULL;
     mesh_sphere(&shape, level);
-    mps_assert_ok(context, mps_body_create_mesh(context, &def, 3 * shape.triangles, shape.xyz,
-                                                shape.triangles, shape.corner, &body));
+    OK(mps_body_create_mesh(context, &def, 3 * shape.triangles, shape.xyz, shape.triangles,
+                            shape.corner, &body));
     double worst = 0.0;
     for (int p = 0; p < 1000; p++) {
       const double x[3] = {uniform(-1.2, 1.8), uniform(-1.5, 1.5), uniform(-1.5, 1.5)};
       double d, e;
-      mps_assert_ok(context, mps_body_distance(body, 1, x, &d, NULL, NULL, NULL));
-      mps_assert_ok(context, mps_body_distance(exact, 1, x, &e, NULL, NULL, NULL));
+      OK(mps_body_distance(body, 1, x, &d, NULL, NULL, NULL));
+      OK(mps_body_distance(exact, 1, x, &e, NULL, NULL, NULL));
       worst = fmax(worst, fabs(d - e));
     }
     print_message("%lld triangles: %.4f m off\n", (long long)shape.triangles, worst);
     if (level > 1) assert_true(worst < 0.3 * last && worst > 0.2 * last); /* second order */
     last = worst;
-    mps_body_destroy(&body);
   }
-  mps_body_destroy(&exact);
 }
 
 /* A moved body sees a moved point as it saw the point before. */
-static void moves_with_its_frame(void **state) {
-  (void)state;
-  mps_body_def def = mps_body_defaults();
-  def.position[0] = -3.0, def.position[2] = 7.0;
-  def.rotation[0] = 1.0, def.rotation[1] = -2.0, def.rotation[2] = 0.5;
-  mps_body *still = make_body(TORUS, NULL), *moved = make_body(TORUS, &def);
+TEST(moves_with_its_frame) {
+  DEF(body, def, .position[0] = -3.0, .position[2] = 7.0, .rotation[0] = 1.0, .rotation[1] = -2.0,
+      .rotation[2] = 0.5);
+  scoped_body *still = make_body(TORUS, NULL), *moved = make_body(TORUS, &def);
   mps_body_state s;
-  mps_assert_ok(context, mps_body_get_state(moved, &s));
+  OK(mps_body_get_state(moved, &s));
   for (int p = 0; p < 500; p++) {
     double x[3], y[3], d, e, n[3], m[3], foot[3], there[3];
     choose_point(p, x);
     for (int r = 0; r < 3; r++) y[r] = s.position[r] + dot(s.orientation + 3 * r, x);
-    mps_assert_ok(context, mps_body_distance(still, 1, x, &d, n, foot, NULL));
-    mps_assert_ok(context, mps_body_distance(moved, 1, y, &e, m, there, NULL));
-    mps_assert_near(e, d, 1e-14);
+    OK(mps_body_distance(still, 1, x, &d, n, foot, NULL));
+    OK(mps_body_distance(moved, 1, y, &e, m, there, NULL));
+    NEAR(e, d, 1e-14);
     for (int r = 0; r < 3; r++)
-      mps_assert_near(there[r], s.position[r] + dot(s.orientation + 3 * r, foot), 1e-13);
-    for (int r = 0; r < 3 && fabs(d) > 1e-4; r++)
-      mps_assert_near(m[r], dot(s.orientation + 3 * r, n), 1e-9);
+      NEAR(there[r], s.position[r] + dot(s.orientation + 3 * r, foot), 1e-13);
+    for (int r = 0; r < 3 && fabs(d) > 1e-4; r++) NEAR(m[r], dot(s.orientation + 3 * r, n), 1e-9);
   }
-  mps_body_destroy(&still);
-  mps_body_destroy(&moved);
 }
 
 /* The block beside, on and in itself; its wall; a sphere in the hole of the torus. */
-static void overlap_and_walls(void **state) {
-  (void)state;
+TEST(overlap_and_walls) {
   const double shifts[] = {1.0, 0.99, 0.3, -0.29, 0.45};
   const int axes[] = {0, 0, 2, 2, 1};
   const bool expected[] = {false, true, false, true, true};
   mps_body *still = make_body(BLOCK, NULL);
-  mps_assert_near(mpsi_body_thickness(still), 0.3, 1e-12);
+  NEAR(mpsi_body_thickness(still), 0.3, 1e-12);
   for (int k = 0; k < 5; k++) {
-    mps_body_def def = mps_body_defaults();
-    def.position[axes[k]] = shifts[k];
-    mps_body *moved = make_body(BLOCK, &def);
+    DEF(body, def, .position[axes[k]] = shifts[k]);
+    scoped_body *moved = make_body(BLOCK, &def);
     assert_int_equal(mpsi_body_overlap(still, moved, 5e-3), expected[k]);
     assert_int_equal(mpsi_body_overlap(moved, still, 5e-3), expected[k]);
-    mps_body_destroy(&moved);
   }
   mps_body_destroy(&still);
-  mps_body *torus = make_body(TORUS, NULL);
+  scoped_body *torus = make_body(TORUS, NULL);
   assert_true(mpsi_body_thickness(torus) > 0.6 && mpsi_body_thickness(torus) < 0.7);
   for (int k = 0; k < 2; k++) {
-    mps_body *ball = NULL;
-    mps_assert_ok(context, mps_body_create_sphere(context, NULL, k ? 0.57 : 0.54, &ball));
+    scoped_body *ball = NULL;
+    OK(mps_body_create_sphere(context, NULL, k ? 0.57 : 0.54, &ball));
     assert_int_equal(mpsi_body_overlap(torus, ball, 5e-3), k);
-    mps_body_destroy(&ball);
   }
-  mps_body_destroy(&torus);
 }
 
 /* A block's faces do not narrow, on the sides of triangles within them neither; beside its edges
  * and corners no row of soil is of any surface. */
-static void faces_do_not_narrow(void **state) {
-  (void)state;
-  mps_body *body = make_body(BLOCK, NULL);
+TEST(faces_do_not_narrow) {
+  scoped_body *body = make_body(BLOCK, NULL);
   int flat = 0, edges = 0;
   for (int p = 0; p < 4000; p++) {
     double x[3];
@@ -248,17 +228,8 @@ static void faces_do_not_narrow(void **state) {
     if (foot.distance < 1e-3) continue;
     double most = 0.0;
     for (int c = 0; c < 3; c++) most = fmax(most, fabs(foot.normal[c]));
-    mps_assert_near(foot.narrowing, most > 1.0 - 1e-12 ? 1.0 : 0.0, 0.0);
+    NEAR(foot.narrowing, most > 1.0 - 1e-12 ? 1.0 : 0.0, 0.0);
     flat += foot.narrowing == 1.0, edges += foot.narrowing == 0.0;
   }
   assert_true(flat > 500 && edges > 500);
-  mps_body_destroy(&body);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(distance_is_the_least),   cmocka_unit_test(order_and_place_do_not_matter),
-      cmocka_unit_test(fine_mesh_is_the_sphere), cmocka_unit_test(moves_with_its_frame),
-      cmocka_unit_test(overlap_and_walls),       cmocka_unit_test(faces_do_not_narrow)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

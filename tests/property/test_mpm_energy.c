@@ -5,8 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/mpm_energy.h>
-
 static double uniform(uint64_t *seed) { /* 0 to 1: SplitMix64 */
   uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
   z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -16,8 +14,8 @@ static double uniform(uint64_t *seed) { /* 0 to 1: SplitMix64 */
 
 /* The residual as a part of the sizes of all terms. */
 static double open_part(mpm_scene *s, double start) {
-  mps_mpm_losses l;
-  mps_assert_ok(context, mps_mpm_get_losses(s->mpm, &l));
+  mps_mpm_energy_report l;
+  OK(mps_mpm_get_energy_report(s->mpm, &l));
   const mps_totals t = mpm_scene_totals(s);
   const double size = fabs(t.kinetic - start) + fabs(t.strain) + fabs(t.work_loads) +
                       fabs(t.work_boundaries) + fabs(t.work_bodies) + fabs(l.laws) +
@@ -32,7 +30,7 @@ enum { CELLS = 8 };
 /* Particles anywhere between the sides, the outermost at less than a tenth of a cell. */
 static void scatter(mpm_scene *s, int32_t geometry, uint64_t *seed) {
   const int dim = mps_particles_dim(s->particles);
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity", 0));
+  OK(mps_particles_add_field(s->particles, "velocity", 0));
   mps_edit x = mpm_scene_edit(s, "position");
   for (int64_t k = 0; k < x.view.shape[0]; k++)
     for (int c = 0; c < dim; c++) {
@@ -49,19 +47,16 @@ static void scatter(mpm_scene *s, int32_t geometry, uint64_t *seed) {
 
 static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uint64_t seed) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
-  mpm_scene s = mpm_scene_begin_in(context, dim, 0.1, 1.0, 1.0, 1e5);
+  scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.1, 1.0, 1.0, 1e5);
   const double lo[] = {1.0, 1.0, 1.0}, hi[] = {1.8, 1.8, dim == 3 ? 1.3 : 1.8};
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   scatter(&s, geometry, &seed);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry, def.spline = spline, def.walls = walls;
-  def.cell = 0.1, def.budget = 1;
-  def.courant = 0.2;
-  def.gravity[1] = -9.81;
+  DEF(mpm, def, .geometry = geometry, .spline = spline, .edge = walls, .cell = 0.1, .budget = 1,
+      .courant = 0.2, .gravity[1] = -9.81);
   for (int c = 0; c < dim; c++) def.lower[c] = 1.0, def.upper[c] = 1.8;
   mpm_scene_solve(&s, &def);
   for (int32_t side = 0; side < 2 * dim; side++)
-    if (walls == MPS_MPM_WALLS_MIRROR || side % 2 == 1)
+    if (walls == MPS_MPM_EDGE_MIRROR || side % 2 == 1)
       mpm_scene_side(&s, side, MPS_BOUNDARY_FREE, 0.0);
   const double start = mpm_scene_totals(&s).kinetic;
   double most = 0.0;
@@ -69,16 +64,14 @@ static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uin
     if (mps_mpm_step(s.mpm, 1) != MPS_OK) break; /* one has left by a free edge */
     most = fmax(most, open_part(&s, start));
   }
-  mpm_scene_end(&s);
   return most;
 }
 
-static void closes_beside_free_sides(void **state) {
-  (void)state;
+TEST(closes_beside_free_sides) {
   for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
        geometry++)
     for (int32_t spline = 2; spline <= 3; spline++)
-      for (int32_t walls = MPS_MPM_WALLS_MIRROR; walls <= MPS_MPM_WALLS_FIT; walls++) {
+      for (int32_t walls = MPS_MPM_EDGE_MIRROR; walls <= MPS_MPM_EDGE_FIT; walls++) {
         double most = 0.0;
         const int seeds = geometry == MPS_MPM_GEOMETRY_SPACE ? 4 : 16;
         for (int seed = 0; seed < seeds; seed++)
@@ -90,41 +83,35 @@ static void closes_beside_free_sides(void **state) {
 }
 
 /* A disc falls on soil and rolls: what the particles do on it is minus what it does on them. */
-static void works_between_soil_and_bodies_cancel(void **state) {
-  (void)state;
+TEST(works_between_soil_and_bodies_cancel) {
   for (int32_t method = MPS_CONTACT_METHOD_IMPULSE; method <= MPS_CONTACT_METHOD_PENALTY; method++)
     for (uint64_t seed = 0; seed < 3; seed++) {
-      mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e6);
-      mps_material_mohr_coulomb_def sand = mps_material_mohr_coulomb_defaults();
-      sand.young = 1e6, sand.friction = 0.5, sand.dilation = 0.2, sand.cohesion = 2e3;
+      scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e6);
+      DEF(material_mohr_coulomb, sand, .young = 1e6, .friction = 0.5, .dilation = 0.2,
+          .cohesion = 2e3);
       mps_material_destroy(&s.material);
-      mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &sand, &s.material));
+      OK(mps_material_create_mohr_coulomb(context, &sand, &s.material));
       mpm_scene_box(&s, 0.0, 0.0, 0.8, 0.2);
-      mps_mpm_def def = mps_mpm_defaults();
-      def.cell = 0.04, def.budget = 1, def.gravity[1] = -9.81;
+      DEF(mpm, def, .cell = 0.04, .budget = 1, .gravity[1] = -9.81);
       def.volumetric = (int32_t)seed; /* each option */
       def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.8, def.upper[1] = 1.0;
       mpm_scene_solve(&s, &def);
       uint64_t state_of = seed;
-      mps_body *body = NULL;
-      mps_body_def disc = mps_body_defaults();
-      disc.motion = MPS_BODY_MOTION_FREE;
-      disc.mass = 20.0 + 20.0 * uniform(&state_of), disc.inertia[2] = 0.1;
-      disc.position[0] = 0.3 + 0.2 * uniform(&state_of), disc.position[1] = 0.305;
-      disc.velocity[0] = uniform(&state_of), disc.velocity[1] = -1.0;
-      disc.spin[2] = 4.0 * uniform(&state_of) - 2.0;
-      disc.gravity[1] = -9.81;
+      scoped_body *body = NULL;
+      DEF(body, disc, .motion = MPS_BODY_MOTION_FREE, .mass = 20.0 + 20.0 * uniform(&state_of),
+          .inertia[2] = 0.1, .position[0] = 0.3 + 0.2 * uniform(&state_of), .position[1] = 0.305,
+          .velocity[0] = uniform(&state_of), .velocity[1] = -1.0,
+          .spin[2] = 4.0 * uniform(&state_of) - 2.0, .gravity[1] = -9.81);
       disc.damping[0] = disc.damping[1] = seed == 2 ? 1.0 : 0.0;
-      mps_assert_ok(context, mps_body_create_disc(context, &disc, 0.1, &body));
-      mps_contact_def contact = mps_contact_defaults();
-      contact.method = method, contact.friction = 0.4;
-      mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+      OK(mps_body_create_disc(context, &disc, 0.1, &body));
+      DEF(contact, contact, .method = method, .friction = 0.4);
+      OK(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
       mps_body_totals b;
-      mps_assert_ok(context, mps_body_get_totals(body, &b));
+      OK(mps_body_get_totals(body, &b));
       const double start = mpm_scene_totals(&s).kinetic + b.kinetic;
-      mps_assert_ok(context, mps_mpm_run(s.mpm, 0.08, 1, NULL, NULL));
+      OK(mps_mpm_run(s.mpm, 0.08, 1, NULL, NULL));
       const mps_totals t = mpm_scene_totals(&s);
-      mps_assert_ok(context, mps_body_get_totals(body, &b));
+      OK(mps_body_get_totals(body, &b));
       const double sum = t.work_bodies + b.work_contacts;
       const double all = t.kinetic + t.strain + t.dissipated + b.kinetic + b.dissipated -
                          t.work_loads - t.work_boundaries - b.work_loads;
@@ -135,13 +122,5 @@ static void works_between_soil_and_bodies_cancel(void **state) {
       assert_true(fabs(sum) < 1e-12 * fabs(b.work_contacts));
       assert_true(fabs(all - start) < 1e-11 * start);
       assert_true(open_part(&s, 0.0) < 1e-12);
-      mpm_scene_end(&s);
-      mps_body_destroy(&body);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(closes_beside_free_sides),
-                                     cmocka_unit_test(works_between_soil_and_bodies_cancel)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

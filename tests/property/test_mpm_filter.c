@@ -6,26 +6,20 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/geostatic.h>
-#include <mps/mpm_energy.h>
-
-#include <stdlib.h>
-
 #define DEGREE 0.017453292519943295
 
 static mps_material *make_water(void) {
   mps_material *out = NULL;
-  mps_material_newtonian_def law = mps_material_newtonian_defaults();
-  law.bulk_modulus = 1e6, law.no_tension = 1;
-  mps_assert_ok(context, mps_material_create_newtonian(context, &law, &out));
+  DEF(material_newtonian, law, .bulk_modulus = 1e6, .no_tension = 1);
+  OK(mps_material_create_newtonian(context, &law, &out));
   return out;
 }
 
 static mps_material *make_sand(double young, double cohesion) {
   mps_material *out = NULL;
-  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-  law.young = young, law.friction = 30.0 * DEGREE, law.dilation = 0.0, law.cohesion = cohesion;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &law, &out));
+  DEF(material_mohr_coulomb, law, .young = young, .friction = 30.0 * DEGREE, .dilation = 0.0,
+      .cohesion = cohesion);
+  OK(mps_material_create_mohr_coulomb(context, &law, &out));
   return out;
 }
 
@@ -86,18 +80,17 @@ static double find_extent(mpm_scene *s, int c) {
 /* A column of sand, 0.2 x 0.3 m, that has collapsed on a rough floor. */
 static heap collapse(double young, int32_t volumetric, int32_t spline) {
   const double h = 0.02;
-  mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
   mps_material_destroy(&s.material);
   s.material = make_sand(young, 0.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.spline = spline, def.volumetric = volumetric, def.budget = 1;
+  DEF(mpm, def, .cell = h, .spline = spline, .volumetric = volumetric, .budget = 1);
   def.lower[0] = def.lower[1] = 0.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 1.2, INT64_MAX, NULL, NULL));
-  mps_mpm_losses l;
-  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
+  OK(mps_mpm_run(s.mpm, 1.2, INT64_MAX, NULL, NULL));
+  mps_mpm_energy_report l;
+  OK(mps_mpm_get_energy_report(s.mpm, &l));
   const heap out = {.noise = find_noise(&s, h),
                     .front = find_extent(&s, 0),
                     .top = find_extent(&s, 1),
@@ -109,12 +102,10 @@ static heap collapse(double young, int32_t volumetric, int32_t spline) {
       "%.2f J, residual %.2g J\n",
       young, (int)volumetric, (int)spline, out.noise, out.front, out.top, out.volume, out.spent,
       out.residual);
-  mpm_scene_end(&s);
   return out;
 }
 
-static void flowed_sand_has_smooth_pressures(void **state) {
-  (void)state;
+TEST(flowed_sand_has_smooth_pressures) {
   static const double young[] = {1e6, 3e6, 1e7};
   for (int k = 0; k < 6; k++) {
     const int32_t spline = 2 + k % 2;
@@ -122,10 +113,10 @@ static void flowed_sand_has_smooth_pressures(void **state) {
     const heap filtered = collapse(young[k / 2], MPS_MPM_VOLUMETRIC_BY_LAW, spline);
     assert_true(own.noise > 0.6);
     assert_true(filtered.noise < 0.16); /* 0.1 but for cubic weights at the last */
-    mps_assert_near(filtered.front / own.front, 1.0, 0.02);
-    mps_assert_near(filtered.top / own.top, 1.0, 0.02);
-    mps_assert_near(filtered.volume / own.volume, 1.0, 5e-4);
-    mps_assert_near(filtered.residual, 0.0, 1e-10 * filtered.spent);
+    NEAR(filtered.front / own.front, 1.0, 0.02);
+    NEAR(filtered.top / own.top, 1.0, 0.02);
+    NEAR(filtered.volume / own.volume, 1.0, 5e-4);
+    NEAR(filtered.residual, 0.0, 1e-10 * filtered.spent);
   }
 }
 
@@ -150,9 +141,9 @@ static mpm_scene step_rough(bool water, int32_t volumetric, int32_t geometry, in
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double h = 0.1, lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.9, 1.1, 0.5};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * h, 0.0, 0.0, 1e6);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
-  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 0, 0.0));
-  mps_assert_ok(context, mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_set(s.particles, "stress", 0, 0.0));
+  OK(mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
   mps_material_destroy(&s.material);
   s.material = water ? make_water() : make_sand(1e6, 0.0);
   mps_edit stress = mpm_scene_edit(&s, "stress"), ratio = mpm_scene_edit(&s, "volume_ratio");
@@ -165,20 +156,18 @@ static mpm_scene step_rough(bool water, int32_t volumetric, int32_t geometry, in
   }
   mpm_scene_commit(&s, &stress);
   mpm_scene_commit(&s, &ratio);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry, def.cell = h, def.spline = spline, def.volumetric = volumetric;
+  DEF(mpm, def, .geometry = geometry, .cell = h, .spline = spline, .volumetric = volumetric);
   def.dt = 1e-4; /* no particle opens */
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  OK(mps_mpm_step(s.mpm, 1));
   return s;
 }
 
-static void the_sum_of_volumes_times_pressures_is_kept(void **state) {
-  (void)state;
+TEST(the_sum_of_volumes_times_pressures_is_kept) {
   for (int k = 0; k < 12; k++) {
-    mpm_scene own = step_rough(k >= 6, MPS_MPM_VOLUMETRIC_POINT, k % 6 / 2, 2 + k % 2);
-    mpm_scene filtered = step_rough(k >= 6, MPS_MPM_VOLUMETRIC_BY_LAW, k % 6 / 2, 2 + k % 2);
+    scoped_mpm_scene own = step_rough(k >= 6, MPS_MPM_VOLUMETRIC_POINT, k % 6 / 2, 2 + k % 2);
+    scoped_mpm_scene filtered = step_rough(k >= 6, MPS_MPM_VOLUMETRIC_BY_LAW, k % 6 / 2, 2 + k % 2);
     mps_view p[2] = {mpm_scene_view(&own, "stress"), mpm_scene_view(&filtered, "stress")};
     mps_view V = mpm_scene_view(&own, "volume");
     double sum = 0.0, change = 0.0, largest = 0.0, rough[2] = {0.0, 0.0};
@@ -191,23 +180,21 @@ static void the_sum_of_volumes_times_pressures_is_kept(void **state) {
     }
     assert_true(largest > 10.0);
     if (k >= 6) assert_true(rough[1] < 0.25 * rough[0]); /* at once */
-    mps_assert_near(change, 0.0, 1e-12 * sum);
+    NEAR(change, 0.0, 1e-12 * sum);
     const double volume[2] = {mpm_scene_totals(&own).volume, mpm_scene_totals(&filtered).volume};
     /* p/K of sand is 0.01; the modulus of water differs by 7 p from particle to particle */
-    mps_assert_near(volume[1] / volume[0], 1.0, k < 6 ? 1e-6 : 2e-5);
-    mpm_scene_end(&own);
-    mpm_scene_end(&filtered);
+    NEAR(volume[1] / volume[0], 1.0, k < 6 ? 1e-6 : 2e-5);
   }
 }
 
 /* Two halves with different pressures on either side of a thin plate: the largest difference from
  * these after some steps. */
 static double beside_plate(bool water, int32_t volumetric) {
-  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.5, 1.0);
   mpm_scene_box(&s, 0.55, 0.0, 1.0, 1.0);
-  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 0, 0.0));
-  mps_assert_ok(context, mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
+  OK(mps_particles_set(s.particles, "stress", 0, 0.0));
+  OK(mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
   mps_material_destroy(&s.material);
   s.material = water ? make_water() : make_sand(1e6, 0.0);
   mps_edit stress = mpm_scene_edit(&s, "stress"), ratio = mpm_scene_edit(&s, "volume_ratio");
@@ -219,28 +206,23 @@ static double beside_plate(bool water, int32_t volumetric) {
   }
   mpm_scene_commit(&s, &stress);
   mpm_scene_commit(&s, &ratio);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1, def.volumetric = volumetric;
+  DEF(mpm, def, .cell = 0.1, .volumetric = volumetric);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 1.0;
   mpm_scene_solve(&s, &def);
-  mps_body_def at = mps_body_defaults();
-  at.position[0] = 0.525, at.position[1] = 0.5;
-  mps_body *plate = NULL;
-  mps_assert_ok(context, mps_body_create_box(context, &at, 0.05, 1.4, &plate));
+  DEF(body, at, .position[0] = 0.525, .position[1] = 0.5);
+  scoped_body *plate = NULL;
+  OK(mps_body_create_box(context, &at, 0.05, 1.4, &plate));
   mpm_scene_contact(&s, plate, 0.0);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 97));
+  OK(mps_mpm_step(s.mpm, 97));
   mps_view p = mpm_scene_view(&s, "stress");
   x = mpm_scene_view(&s, "position");
   double off = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++)
     off = fmax(off, fabs(pressure(&p, k) - (*mps_view_f64(&x, k, 0) < 0.5 ? 1e4 : 2e4)));
-  mpm_scene_end(&s);
-  mps_body_destroy(&plate);
   return off;
 }
 
-static void nothing_passes_a_thin_plate(void **state) {
-  (void)state;
+TEST(nothing_passes_a_thin_plate) {
   for (int water = 0; water < 2; water++) {
     const double own = beside_plate(water != 0, MPS_MPM_VOLUMETRIC_POINT);
     const double filtered = beside_plate(water != 0, MPS_MPM_VOLUMETRIC_BY_LAW);
@@ -253,65 +235,59 @@ static void nothing_passes_a_thin_plate(void **state) {
 /* ---- water ----------------------------------------------------------------------------------- */
 
 /* A column of water collapses and strikes a wall; what the laws and transfers lose in J. */
-static mps_mpm_losses splash(int32_t volumetric, double *noise) {
+static mps_mpm_energy_report splash(int32_t volumetric, double *noise) {
   const double h = 0.05;
-  mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.5, 1.0);
   mps_material_destroy(&s.material);
   s.material = make_water();
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.volumetric = volumetric, def.budget = 1;
+  OK(mps_particles_set(s.particles, "density", 0, 1000.0));
+  DEF(mpm, def, .cell = h, .volumetric = volumetric, .budget = 1);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.5, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.8, INT64_MAX, NULL, NULL));
-  mps_mpm_losses out;
-  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &out));
+  OK(mps_mpm_run(s.mpm, 0.8, INT64_MAX, NULL, NULL));
+  mps_mpm_energy_report out;
+  OK(mps_mpm_get_energy_report(s.mpm, &out));
   *noise = find_noise(&s, h);
   print_message("splash, volumetric %d: %lld steps, noise %.3f, laws %.3g J, transfers %.3g J, "
                 "residual %.2g J\n",
                 (int)volumetric, (long long)mps_mpm_steps(s.mpm), *noise, out.laws, out.transfer,
                 out.residual);
-  mpm_scene_end(&s);
   return out;
 }
 
-static void the_budget_of_water_counts_the_filter(void **state) {
-  (void)state;
+TEST(the_budget_of_water_counts_the_filter) {
   double noise[2];
-  const mps_mpm_losses own = splash(MPS_MPM_VOLUMETRIC_POINT, &noise[0]);
-  const mps_mpm_losses filtered = splash(MPS_MPM_VOLUMETRIC_BY_LAW, &noise[1]);
+  const mps_mpm_energy_report own = splash(MPS_MPM_VOLUMETRIC_POINT, &noise[0]);
+  const mps_mpm_energy_report filtered = splash(MPS_MPM_VOLUMETRIC_BY_LAW, &noise[1]);
   assert_true(noise[1] < 0.4 * noise[0]);
   assert_true(filtered.laws > own.laws); /* the filter takes energy */
   assert_true(filtered.laws < 50.0);     /* of 1226 J that the water can lose */
-  mps_assert_near(filtered.residual, 0.0, 1e-8);
+  NEAR(filtered.residual, 0.0, 1e-8);
 }
 
 /* Sand without cohesion at its K0 stress under gravity, between rollers, with a free surface. */
-static void ground_at_rest_does_not_move(void **state) {
-  (void)state;
+TEST(ground_at_rest_does_not_move) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     double moved[2] = {0.0, 0.0}, off[2] = {0.0, 0.0};
     for (int option = 0; option < 2; option++) {
-      mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e7);
+      scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e7);
       mpm_scene_box(&s, 0.0, 0.0, 2.0, 1.0);
       mps_material_destroy(&s.material);
       s.material = make_sand(1e6, 0.0);
-      mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+      OK(mps_particles_set(s.particles, "density", 0, 1000.0));
       const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.5, .density = NAN};
-      mps_geostatic_def rest = mps_geostatic_defaults();
-      rest.layers = &layer, rest.layer_count = 1, rest.gravity = 9.81, rest.surface = 1.0;
-      mps_assert_ok(context, mps_particles_set_geostatic(s.particles, &rest));
-      mps_mpm_def def = mps_mpm_defaults();
-      def.cell = 0.1, def.spline = spline, def.gravity[1] = -9.81;
-      def.volumetric = option == 0 ? MPS_MPM_VOLUMETRIC_POINT : MPS_MPM_VOLUMETRIC_BY_LAW;
+      DEF(geostatic, rest, .layers = &layer, .layer_count = 1, .gravity = 9.81, .surface = 1.0);
+      OK(mps_particles_set_geostatic(s.particles, &rest));
+      DEF(mpm, def, .cell = 0.1, .spline = spline, .gravity[1] = -9.81,
+          .volumetric = option == 0 ? MPS_MPM_VOLUMETRIC_POINT : MPS_MPM_VOLUMETRIC_BY_LAW);
       def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
       mpm_scene_solve(&s, &def);
       double start[800];
       mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
       assert_int_equal(x.shape[0], 800);
       for (int64_t k = 0; k < 800; k++) start[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&x, k, 1);
-      mps_assert_ok(context, mps_mpm_step(s.mpm, 800));
+      OK(mps_mpm_step(s.mpm, 800));
       mps_view stress = mpm_scene_view(&s, "stress");
       x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
       for (int64_t k = 0; k < 800; k++) {
@@ -320,7 +296,6 @@ static void ground_at_rest_does_not_move(void **state) {
         off[option] =
             fmax(off[option], fabs(*mps_view_f64(&stress, k, 1) + 9810.0 * (1.0 - y)) / 9810.0);
       }
-      mpm_scene_end(&s);
     }
     print_message("spline %d: moved %.3g and %.3g m, stress off by %.3g and %.3g of the largest\n",
                   (int)spline, moved[0], moved[1], off[0], off[1]);
@@ -337,32 +312,29 @@ static double creep(int32_t volumetric, double push) {
   mpm_scene_box(&s, 0.0, 0.0, 1.2, 0.5);
   mps_material_destroy(&s.material);
   s.material = make_sand(2e7, 200.0);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1600.0));
+  OK(mps_particles_set(s.particles, "density", 0, 1600.0));
   const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.5, .density = NAN};
-  mps_geostatic_def rest = mps_geostatic_defaults();
-  rest.layers = &layer, rest.layer_count = 1, rest.gravity = 9.81, rest.surface = 0.5;
-  mps_assert_ok(context, mps_particles_set_geostatic(s.particles, &rest));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.gravity[1] = -9.81, def.volumetric = volumetric;
+  DEF(geostatic, rest, .layers = &layer, .layer_count = 1, .gravity = 9.81, .surface = 0.5);
+  OK(mps_particles_set_geostatic(s.particles, &rest));
+  DEF(mpm, def, .cell = h, .gravity[1] = -9.81, .volumetric = volumetric);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.2;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_body_def at = mps_body_defaults();
-  at.motion = MPS_BODY_MOTION_FREE;
-  at.position[0] = 0.6, at.position[1] = 0.55, at.gravity[1] = -9.81;
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  DEF(body, at, .motion = MPS_BODY_MOTION_FREE, .position[0] = 0.6, .position[1] = 0.55,
+      .gravity[1] = -9.81);
   at.mass = weight / 9.81, at.inertia[2] = 0.1 * at.mass * width * width;
   mps_body *block = NULL;
-  mps_assert_ok(context, mps_body_create_box(context, &at, width, 0.1, &block));
+  OK(mps_body_create_box(context, &at, width, 0.1, &block));
   mpm_scene_contact(&s, block, 0.5);
   mps_body_state first, last;
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.5, INT64_MAX, NULL, NULL));
-  mps_assert_ok(context, mps_body_get_state(block, &first));
+  OK(mps_mpm_run(s.mpm, 0.5, INT64_MAX, NULL, NULL));
+  OK(mps_body_get_state(block, &first));
   for (int k = 0; k < 8; k++) {
     const double force[3] = {k % 2 ? -push * weight : push * weight, 0.0, 0.0};
     const double none[3] = {0.0};
-    mps_assert_ok(context, mps_body_set_load(block, force, none));
-    mps_assert_ok(context, mps_mpm_run(s.mpm, 0.75 + 0.25 * k, INT64_MAX, NULL, NULL));
+    OK(mps_body_set_load(block, force, none));
+    OK(mps_mpm_run(s.mpm, 0.75 + 0.25 * k, INT64_MAX, NULL, NULL));
   }
-  mps_assert_ok(context, mps_body_get_state(block, &last));
+  OK(mps_body_get_state(block, &last));
   print_message("volumetric %d, push %g: in %lld steps down by %.4g mm of %.4g\n", (int)volumetric,
                 push, (long long)mps_mpm_steps(s.mpm), 1e3 * (first.position[1] - last.position[1]),
                 1e3 * (0.55 - last.position[1]));
@@ -372,8 +344,7 @@ static double creep(int32_t volumetric, double push) {
 }
 
 /* Its true gradients are not filtered away. */
-static void loaded_ground_does_not_creep(void **state) {
-  (void)state;
+TEST(loaded_ground_does_not_creep) {
   for (int k = 0; k < (test_quick() ? 1 : 2); k++) {
     const double own = creep(MPS_MPM_VOLUMETRIC_POINT, 0.02 * k);
     const double filtered = creep(MPS_MPM_VOLUMETRIC_BY_LAW, 0.02 * k);
@@ -418,7 +389,7 @@ static mps_material *make_law(choice which) {
   if (which == JELLY) status = mps_material_create_linear_elastic(context, 1e6, 0.49, &out);
   if (which == SOIL) status = mps_material_create_linear_elastic(context, 1e6, 0.44, &out);
   if (which == WATER) status = mps_material_create_newtonian(context, &fluid, &out);
-  mps_assert_ok(context, status);
+  OK(status);
   return out;
 }
 
@@ -430,20 +401,18 @@ static mpm_scene strike(choice which, int32_t volumetric, bool later) {
   const double v0[2] = {0.0, -1.0}, still[4] = {0.5, 0.0, 0.0, 0.0};
   mpm_scene_affine(&s, v0, still);
   mps_material *law = make_law(which);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1, def.volumetric = volumetric, def.lower[1] = 0.0, def.dt = 2e-4;
+  DEF(mpm, def, .cell = 0.1, .volumetric = volumetric, .lower[1] = 0.0, .dt = 2e-4);
   if (!later) mps_material_destroy(&s.material), s.material = law;
   mpm_scene_solve(&s, &def);
   if (later) {
-    mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 0, NULL));
+    OK(mps_mpm_set_material(s.mpm, law, NULL, 0));
     mps_material_destroy(&law);
   }
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+  OK(mps_mpm_step(s.mpm, 40));
   return s;
 }
 
-static void each_law_has_what_suits_it(void **state) {
-  (void)state;
+TEST(each_law_has_what_suits_it) {
   static const int32_t expected[CHOICES] = {[SAND] = MPS_MPM_VOLUMETRIC_NODES,
                                             [CONE] = MPS_MPM_VOLUMETRIC_NODES,
                                             [CLAY] = MPS_MPM_VOLUMETRIC_CELL,
@@ -454,68 +423,50 @@ static void each_law_has_what_suits_it(void **state) {
                                             [SOIL] = MPS_MPM_VOLUMETRIC_POINT,
                                             [WATER] = -1}; /* a filter of its own */
   for (int which = 0; which < CHOICES; which++) {
-    mpm_scene by_law = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, false);
+    scoped_mpm_scene by_law = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, false);
     for (int32_t option = MPS_MPM_VOLUMETRIC_POINT; option <= MPS_MPM_VOLUMETRIC_NODES; option++) {
-      mpm_scene s = strike(which, option, false);
+      scoped_mpm_scene s = strike(which, option, false);
       const double apart = mpm_scene_stress_difference(&by_law, &s);
       if (option == expected[which])
-        mps_assert_near(apart, 0.0, 0.0);
+        NEAR(apart, 0.0, 0.0);
       else
         assert_true(apart > 1e-6);
-      mpm_scene_end(&s);
     }
-    mpm_scene later = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, true);
-    mps_assert_near(mpm_scene_stress_difference(&by_law, &later), 0.0, 0.0);
-    mpm_scene_end(&later);
-    mpm_scene_end(&by_law);
+    scoped_mpm_scene later = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, true);
+    NEAR(mpm_scene_stress_difference(&by_law, &later), 0.0, 0.0);
   }
 }
 
 /* Stresses (Pa) by id of 100 particles of sand that strike the floor, beside falling water or not.
  */
 static void strike_beside(bool beside, double (*stress)[4]) {
-  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
   const double v0[2] = {0.0, -1.0}, still[4] = {0.5, 0.0, 0.0, 0.0};
   mpm_scene_box(&s, 0.1, 0.0, 0.6, 0.5);
   if (beside) mpm_scene_box(&s, 2.1, 0.0, 2.6, 0.5);
   mpm_scene_affine(&s, v0, still);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1, def.lower[1] = 0.0, def.dt = 2e-4;
+  DEF(mpm, def, .cell = 0.1, .lower[1] = 0.0, .dt = 2e-4);
   mps_material_destroy(&s.material);
   s.material = make_law(SAND);
   mpm_scene_solve(&s, &def);
   mps_material *water = make_law(WATER);
   int64_t ids[100];
   for (int k = 0; k < 100; k++) ids[k] = 100 + k;
-  if (beside) mps_assert_ok(context, mps_mpm_set_material(s.mpm, water, 100, ids));
+  if (beside) OK(mps_mpm_set_material(s.mpm, water, ids, 100));
   mps_material_destroy(&water);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+  OK(mps_mpm_step(s.mpm, 40));
   mps_view all = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
   assert_int_equal(all.shape[0], beside ? 200 : 100);
   for (int64_t k = 0; k < all.shape[0]; k++) {
     const int64_t at = *mps_view_i64(&id, k, 0);
     for (int c = 0; c < 4 && at < 100; c++) stress[at][c] = *mps_view_f64(&all, k, c);
   }
-  mpm_scene_end(&s);
 }
 
-static void water_does_not_change_the_filter_of_sand(void **state) {
-  (void)state;
+TEST(water_does_not_change_the_filter_of_sand) {
   double alone[100][4], beside[100][4];
   strike_beside(false, alone);
   strike_beside(true, beside);
   for (int k = 0; k < 100; k++)
-    for (int c = 0; c < 4; c++) mps_assert_near(beside[k][c], alone[k][c], 0.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(flowed_sand_has_smooth_pressures),
-                                     cmocka_unit_test(the_sum_of_volumes_times_pressures_is_kept),
-                                     cmocka_unit_test(nothing_passes_a_thin_plate),
-                                     cmocka_unit_test(the_budget_of_water_counts_the_filter),
-                                     cmocka_unit_test(ground_at_rest_does_not_move),
-                                     cmocka_unit_test(loaded_ground_does_not_creep),
-                                     cmocka_unit_test(each_law_has_what_suits_it),
-                                     cmocka_unit_test(water_does_not_change_the_filter_of_sand)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+    for (int c = 0; c < 4; c++) NEAR(beside[k][c], alone[k][c], 0.0);
 }

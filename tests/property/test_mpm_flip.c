@@ -4,9 +4,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/experimental.h>
-#include <mps/pore_water.h>
-
 #define PI 3.14159265358979323846
 #define CELL 0.02 /* m */
 
@@ -18,28 +15,23 @@
 static double wet_energy_left(int32_t scheme, int32_t volumetric, double flip_time, double dt,
                               int64_t steps) {
   const double k = 2.0 * PI / (12.0 * CELL), width = 12.0 * CELL;
-  mpm_scene s = mpm_scene_begin(context, 0.5 * CELL, 0.0, 0.0, 1e-6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * CELL, 0.0, 0.0, 1e-6);
   mpm_scene_box(&s, 0.0, 0.0, width, width);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t p = 0; p < x.shape[0]; p++)
     *mps_edit_f64(&v, p, 1) = 1e-3 * cos(k * *mps_view_f64(&x, p, 0));
   mpm_scene_commit(&s, &v);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = CELL, def.dt = dt, def.flip_time = flip_time;
-  def.lower[0] = 0.0, def.upper[0] = width;
-  def.volumetric = volumetric;
+  DEF(mpm, def, .cell = CELL, .dt = dt, .flip_time = flip_time, .lower[0] = 0.0, .upper[0] = width,
+      .volumetric = volumetric);
   mpm_scene_solve(&s, &def);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.scheme = scheme, water.porosity = 0.4;
-  if (scheme >= 0) mps_assert_ok(context, mps_mpm_add_pore_water(s.mpm, &water));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 5)); /* slopes have become those of the wave */
+  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4);
+  if (scheme >= 0) OK(mps_mpm_add_pore_water(s.mpm, &water));
+  OK(mps_mpm_step(s.mpm, 5)); /* slopes have become those of the wave */
   const double start = mpm_scene_totals(&s).kinetic;
-  mps_assert_ok(context, mps_mpm_step(s.mpm, steps));
-  const double left = mpm_scene_totals(&s).kinetic / start;
-  mpm_scene_end(&s);
-  return left;
+  OK(mps_mpm_step(s.mpm, steps));
+  return mpm_scene_totals(&s).kinetic / start;
 }
 
 static double energy_left(double flip_time, double dt, int64_t steps) {
@@ -49,8 +41,7 @@ static double energy_left(double flip_time, double dt, int64_t steps) {
 /* Without it twice the steps lose twice as much; with it as much in the same time: (1 - k)/(1 - b)
  * of that in each step, k = exp(-dt/flip_time), where b is the part of the nodes' velocity that
  * comes from the slopes: 1 - sinc^8(pi/12) = 0.087 for cubic weights, up to the loss itself. */
-static void loss_is_by_time(void **state) {
-  (void)state;
+TEST(loss_is_by_time) {
   const double dt = 1e-3, time = 20e-3;
   const double loss = -log(energy_left(0.0, dt, 40)), halved = -log(energy_left(0.0, 0.5 * dt, 80));
   const double kept = -log(energy_left(time, dt, 40)), fine = -log(energy_left(time, 0.5 * dt, 80));
@@ -59,20 +50,16 @@ static void loss_is_by_time(void **state) {
   print_message("loss %.5f, at half the step %.5f; with flip_time %.6f, %.6f, ratio %.4f (%.4f)\n",
                 loss, halved, kept, fine, kept / loss, expected);
   assert_true(loss > 0.1);
-  mps_assert_near(halved / loss, 2.0, 0.05);
-  mps_assert_near(fine / kept, 1.0, 0.05);
-  mps_assert_near(kept / loss, expected, 0.1 * expected);
+  NEAR(halved / loss, 2.0, 0.05);
+  NEAR(fine / kept, 1.0, 0.05);
+  NEAR(kept / loss, expected, 0.1 * expected);
 }
 
-static void a_long_time_loses_nothing(void **state) {
-  (void)state;
-  mps_assert_near(energy_left(1e9, 1e-3, 40), 1.0, 1e-9);
-}
+TEST(a_long_time_loses_nothing) { NEAR(energy_left(1e9, 1e-3, 40), 1.0, 1e-9); }
 
 /* Water in the pores has no part in a wave without changes of volume, whichever part of the step
  * finds its pressures. */
-static void water_changes_nothing(void **state) {
-  (void)state;
+TEST(water_changes_nothing) {
   const double dt = 1e-3, time = 20e-3, dry = energy_left(time, dt, 40);
   for (int32_t scheme = MPS_PORE_SCHEME_EXPLICIT; scheme <= MPS_PORE_SCHEME_IMPLICIT; scheme++)
     for (int32_t q = 0; q < 2; q++) {
@@ -80,7 +67,7 @@ static void water_changes_nothing(void **state) {
       const double wet = wet_energy_left(scheme, by, time, dt, 40);
       print_message("scheme %d, volumetric %d: %.9f of the energy, dry %.9f\n", scheme, by, wet,
                     dry);
-      mps_assert_near(wet, dry, 1e-6);
+      NEAR(wet, dry, 1e-6);
     }
 }
 
@@ -91,23 +78,18 @@ static mps_totals shaken(int dim, double flip_time, mps_totals *start) {
   const double v0[] = {0.4, -0.3, 0.2}, centre[] = {0.0, 0.0, 0.0};
   const double plane[] = {0.5, -6.0, 5.0, -0.8};
   const double space[] = {0.5, -6.0, 2.0, 5.0, -0.8, 3.0, -1.0, -4.0, 0.3};
-  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, -0.001, 1e5);
-  mps_assert_ok(context,
-                mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
+  scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, -0.001, 1e5);
+  OK(mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
-  def.cell = CELL, def.flip_time = flip_time;
+  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
+      .cell = CELL, .flip_time = flip_time);
   mpm_scene_solve(&s, &def);
   *start = mpm_scene_totals(&s);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, dim == 3 ? 300 : 1000));
-  const mps_totals end = mpm_scene_totals(&s);
-  mpm_scene_end(&s);
-  return end;
+  OK(mps_mpm_step(s.mpm, dim == 3 ? 300 : 1000));
+  return mpm_scene_totals(&s);
 }
 
-static void momentum_is_kept(void **state) {
-  (void)state;
+TEST(momentum_is_kept) {
   for (int dim = 2; dim <= 3; dim++) {
     mps_totals start;
     const mps_totals without = shaken(dim, 0.0, &start), with = shaken(dim, 0.01, &start);
@@ -128,33 +110,21 @@ static void momentum_is_kept(void **state) {
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-static void times_are_checked(void **state) {
-  (void)state;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+TEST(times_are_checked) {
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  OK(mps_particles_set(s.particles, "density", 0, 1000.0));
   const double bad[] = {-1e-3, NAN, INFINITY, 2e9};
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = CELL;
+  DEF(mpm, def, .cell = CELL);
   for (int k = 0; k < 4; k++) {
     def.flip_time = bad[k];
-    mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm),
-                     MPS_ERROR_ARGUMENT, "must be 0 to 1e+09");
+    REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm),
+            "must be in 0 to 1e+09");
   }
   def.flip_time = 0.01;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_ARGUMENT,
-                   "flip_time of the definition is 0.01 s");
-  mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
-                   MPS_ERROR_ARGUMENT, "flip_time of the definition is 0.01 s");
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
-  mpm_scene_end(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(loss_is_by_time), cmocka_unit_test(a_long_time_loses_nothing),
-      cmocka_unit_test(water_changes_nothing), cmocka_unit_test(momentum_is_kept),
-      cmocka_unit_test(times_are_checked)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  REFUSES(mps_experimental_mpm_standard(s.mpm, 1.0), "flip_time of the definition is 0.01 s");
+  REFUSES(mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
+          "flip_time of the definition is 0.01 s");
+  OK(mps_mpm_step(s.mpm, 3));
 }

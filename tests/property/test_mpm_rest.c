@@ -14,20 +14,12 @@ static void rests(rest_edge first, rest_edge last, double degrees, int count,
       }
 }
 
-static void ground_rests_beside_edges(void **state) {
-  (void)state;
+TEST(ground_rests_beside_edges) {
   const double shifts[] = {0.3, 0.6};
   rests(REST_WALLS, REST_EDGES - 1, 0.0, 2, shifts);
 }
 
-static void ground_rests_on_a_turned_grid(void **state) {
-  (void)state;
+TEST(ground_rests_on_a_turned_grid) {
   const double shift = 0.3;
   rests(REST_WALLS, REST_BOX, 17.0, 1, &shift);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ground_rests_beside_edges),
-                                     cmocka_unit_test(ground_rests_on_a_turned_grid)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -13,13 +13,6 @@ static void rests(rest_edge last, double degrees, int shifts) {
       }
 }
 
-static void along_the_grid(void **state) { (void)state, rests(REST_EDGES - 1, 0.0, 10); }
-static void turned_by_17_degrees(void **state) { (void)state, rests(REST_BOX, 17.0, 3); }
-static void turned_by_45_degrees(void **state) { (void)state, rests(REST_BOX, 45.0, 3); }
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(along_the_grid),
-                                     cmocka_unit_test(turned_by_17_degrees),
-                                     cmocka_unit_test(turned_by_45_degrees)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
-}
+TEST(along_the_grid) { rests(REST_EDGES - 1, 0.0, 10); }
+TEST(turned_by_17_degrees) { rests(REST_BOX, 17.0, 3); }
+TEST(turned_by_45_degrees) { rests(REST_BOX, 45.0, 3); }

@@ -6,10 +6,6 @@
 
 #include "test_fixture.h"
 
-#include <mps/io.h>
-#include <mps/mpm_energy.h>
-#include <mps/soil.h>
-
 #define HEIGHT 1.0
 #define WIDTH 0.2
 #define SHEAR 1e6 /* Pa; of density 1000: Vs = sqrt(1000) m/s */
@@ -17,10 +13,9 @@
 #define PI 3.14159265358979323846
 
 static mps_material *make_small(void) {
-  mps_material_small_strain_def def = mps_material_small_strain_defaults();
+  DEF(material_small_strain, def, .shear_modulus = SHEAR, .reference_strain = STRAIN_R);
   mps_material *m = NULL;
-  def.shear_modulus = SHEAR, def.reference_strain = STRAIN_R;
-  mps_assert_ok(context, mps_material_create_small_strain(context, &def, &m));
+  OK(mps_material_create_small_strain(context, &def, &m));
   return m;
 }
 
@@ -33,11 +28,10 @@ static mpm_scene column(double gamma, bool small) {
     s.material = make_small();
   }
   mpm_scene_box(&s, 0.5, 0.0, 0.5 + WIDTH, HEIGHT);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1, def.lower[1] = 0.0, def.budget = 1, def.dt = 2e-4;
+  DEF(mpm, def, .cell = 0.1, .lower[1] = 0.0, .budget = 1, .dt = 2e-4);
   const double k = PI / (2.0 * HEIGHT), speed = gamma * sqrt(SHEAR / 1000.0);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity_gradient", 0));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
+  OK(mps_particles_add_field(s.particles, "velocity_gradient", 0));
   mps_edit v = mpm_scene_edit(&s, "velocity"), L = mpm_scene_edit(&s, "velocity_gradient");
   mps_view x = mpm_scene_view(&s, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) {
@@ -48,11 +42,11 @@ static mpm_scene column(double gamma, bool small) {
   mpm_scene_commit(&s, &v);
   mpm_scene_commit(&s, &L);
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double lower[2] = {-1.0, -1.0}, upper[2] = {3.0, 3.0};
   mps_mpm_boundary_def still = mpm_scene_box_def(s.mpm, lower, upper, 1, NULL, 1.0);
   int32_t number;
-  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &still, &number));
+  OK(mps_mpm_add_boundary(s.mpm, &still, &number));
   return s;
 }
 
@@ -71,7 +65,7 @@ static double half_period(mpm_scene *s, double *swing) {
   double before = 0.0;
   *swing = 0.0;
   for (int k = 1; k < 2000; k++) {
-    mps_assert_ok(context, mps_mpm_step(s->mpm, 1));
+    OK(mps_mpm_step(s->mpm, 1));
     const double now = top_of(s);
     *swing = fmax(*swing, now);
     if (now < 0.0 && before > 0.0) return 2e-4 * (k - now / (now - before));
@@ -81,8 +75,7 @@ static double half_period(mpm_scene *s, double *swing) {
 }
 
 /* In strains that no layer resists the column is elastic; in larger ones it is softer. */
-static void columns_swing_slower_the_wider(void **state) {
-  (void)state;
+TEST(columns_swing_slower_the_wider) {
   const double exact = 2.0 * HEIGHT / sqrt(SHEAR / 1000.0);
   double swing, last = 0.0;
   mpm_scene elastic = column(1e-6, false);
@@ -90,28 +83,26 @@ static void columns_swing_slower_the_wider(void **state) {
   mpm_scene_end(&elastic);
   for (int k = 0; k < 3; k++) {
     const double gamma = STRAIN_R * (k == 0 ? 1e-3 : k == 1 ? 0.1 : 0.3);
-    mpm_scene s = column(gamma, true);
+    scoped_mpm_scene s = column(gamma, true);
     const double t = half_period(&s, &swing);
     print_message("gamma/gamma_r %g: half a period %.5f s, 2 H/Vs %.5f s, swing %.4g of elastic\n",
                   gamma / STRAIN_R, t, exact, swing / (gamma * 2.0 * HEIGHT / PI));
-    if (k == 0) mps_assert_near(t / plain, 1.0, 1e-6);
-    if (k == 0) mps_assert_near(t / exact, 1.0, 0.01);
+    if (k == 0) NEAR(t / plain, 1.0, 1e-6);
+    if (k == 0) NEAR(t / exact, 1.0, 0.01);
     assert_true(t > last * 1.02);
     last = t;
-    mpm_scene_end(&s);
   }
 }
 
 /* What the laws dissipate in the budget is the field times the volumes, which shear keeps. */
-static void the_budget_knows_the_loops(void **state) {
-  (void)state;
-  mpm_scene s = column(2.0 * STRAIN_R, true);
+TEST(the_budget_knows_the_loops) {
+  scoped_mpm_scene s = column(2.0 * STRAIN_R, true);
   mps_totals before, t;
-  mps_mpm_losses l;
-  mps_assert_ok(context, mps_mpm_get_totals(s.mpm, &before));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1500));
-  mps_assert_ok(context, mps_mpm_get_totals(s.mpm, &t));
-  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  mps_mpm_energy_report l;
+  OK(mps_mpm_get_totals(s.mpm, &before));
+  OK(mps_mpm_step(s.mpm, 1500));
+  OK(mps_mpm_get_totals(s.mpm, &t));
+  OK(mps_mpm_get_energy_report(s.mpm, &l));
   mps_view lost = mpm_scene_view(&s, "small_strain.dissipated"), V = mpm_scene_view(&s, "volume");
   double sum = 0.0;
   for (int64_t i = 0; i < lost.shape[0]; i++)
@@ -119,64 +110,45 @@ static void the_budget_knows_the_loops(void **state) {
   print_message("kinetic %.4g to %.4g J, strain %.4g, laws %.4g J, by the field %.4g J\n",
                 before.kinetic, t.kinetic, t.strain, l.laws, sum);
   assert_true(l.laws > 0.3 * before.kinetic && t.strain >= 0.0);
-  mps_assert_near(l.laws / sum, 1.0, 1e-3);
+  NEAR(l.laws / sum, 1.0, 1e-3);
   assert_true(fabs(l.residual) < 1e-11 * before.kinetic);
-  mpm_scene_end(&s);
 }
 
 /* The deviators of the layers belong to the state. */
-static void snapshots_and_files_continue_bit_for_bit(void **state) {
-  (void)state;
-  mpm_scene s = column(2.0 * STRAIN_R, true), other = column(1e-6, true);
+TEST(snapshots_and_files_continue_bit_for_bit) {
+  scoped_mpm_scene s = column(2.0 * STRAIN_R, true), other = column(1e-6, true);
   mps_snapshot *snapshot = NULL;
   static const char path[] = TEST_TMP "/small_strain.h5";
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 150));
-  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &snapshot));
-  if (mps_library_has(MPS_FEATURE_HDF5)) mps_assert_ok(context, mps_mpm_save(s.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
+  OK(mps_mpm_step(s.mpm, 150));
+  OK(mps_mpm_snapshot(s.mpm, &snapshot));
+  if (mps_library_has(MPS_FEATURE_HDF5)) OK(mps_mpm_save(s.mpm, path, NULL));
+  OK(mps_mpm_step(s.mpm, 200));
   const double once = top_of(&s);
-  mps_assert_ok(context, mps_mpm_rollback(s.mpm, snapshot));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
-  mps_assert_near(top_of(&s), once, 0.0);
+  OK(mps_mpm_rollback(s.mpm, snapshot));
+  OK(mps_mpm_step(s.mpm, 200));
+  NEAR(top_of(&s), once, 0.0);
   if (mps_library_has(MPS_FEATURE_HDF5)) {
     mps_checkpoint info = mps_checkpoint_defaults();
-    mps_assert_ok(context, mps_mpm_restore(other.mpm, path, &info));
-    mps_assert_ok(context, mps_mpm_step(other.mpm, 200));
-    mps_assert_near(top_of(&other), once, 0.0);
+    OK(mps_mpm_restore(other.mpm, path, &info));
+    OK(mps_mpm_step(other.mpm, 200));
+    NEAR(top_of(&other), once, 0.0);
   }
   mps_snapshot_destroy(&snapshot);
   (void)remove(path);
-  mpm_scene_end(&s);
-  mpm_scene_end(&other);
 }
 
 /* Twice the stiffness and three times the strength: the backbone of these constants. */
-static void factors_scale_every_layer(void **state) {
-  (void)state;
-  mps_material *law = make_small(), *varying = NULL, *plain = NULL;
-  mps_material_small_strain_def def = mps_material_small_strain_defaults();
-  def.shear_modulus = 2.0 * SHEAR, def.reference_strain = 1.5 * STRAIN_R;
-  mps_assert_ok(context, mps_material_create_by_field(context, law, &varying));
-  mps_assert_ok(context, mps_material_create_small_strain(context, &def, &plain));
+TEST(factors_scale_every_layer) {
+  scoped_material *law = make_small(), *varying = NULL, *plain = NULL;
+  DEF(material_small_strain, def, .shear_modulus = 2.0 * SHEAR, .reference_strain = 1.5 * STRAIN_R);
+  OK(mps_material_create_by_field(context, law, &varying));
+  OK(mps_material_create_small_strain(context, &def, &plain));
   mps_material_point x, y;
-  mps_assert_ok(context, mps_material_point_init(context, varying, &x));
-  mps_assert_ok(context, mps_material_point_init(context, plain, &y));
+  OK(mps_material_point_init(context, varying, &x));
+  OK(mps_material_point_init(context, plain, &y));
   x.history[52] = 2.0, x.history[53] = 3.0;
   const double shear[9] = {0, 4e-3, 0, 0, 0, 0, 0, 0, 0};
-  mps_assert_ok(context, mps_material_point_drive(context, varying, &x, shear, 1.0, 50));
-  mps_assert_ok(context, mps_material_point_drive(context, plain, &y, shear, 1.0, 50));
-  mps_assert_near(x.stress[3] / y.stress[3], 1.0, 1e-12);
-  mps_material_destroy(&law);
-  mps_material_destroy(&varying);
-  mps_material_destroy(&plain);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(columns_swing_slower_the_wider),
-      cmocka_unit_test(the_budget_knows_the_loops),
-      cmocka_unit_test(snapshots_and_files_continue_bit_for_bit),
-      cmocka_unit_test(factors_scale_every_layer),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  OK(mps_material_point_drive(context, varying, &x, shear, 1.0, 50));
+  OK(mps_material_point_drive(context, plain, &y, shear, 1.0, 50));
+  NEAR(x.stress[3] / y.stress[3], 1.0, 1e-12);
 }

@@ -4,10 +4,6 @@
 #include "pthread_executor.h"
 #include "test_common.h"
 
-#include <mps/neighbours.h>
-
-#include <stdbool.h>
-
 static uint64_t seed = 1;
 
 static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
@@ -50,8 +46,8 @@ static mps_neighbours *lists_of(mps_context *context, const double *x, int64_t n
   def.dim = dim;
   def.radius = radius;
   def.half = half;
-  mps_assert_ok(context, mps_neighbours_create(context, &def, &nb));
-  mps_assert_ok(context, mps_neighbours_build(nb, &view));
+  OK(mps_neighbours_create(context, &def, &nb));
+  OK(mps_neighbours_build(nb, &view));
   return nb;
 }
 
@@ -80,9 +76,8 @@ static int64_t check_against_all_pairs(const mps_neighbours *nb, const double *x
   return found;
 }
 
-static void lists_are_those_of_all_pairs(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(lists_are_those_of_all_pairs) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double *x = malloc(3 * SIZE * sizeof *x);
   assert_non_null(x);
   for (int32_t kind = 0; kind < CLOUDS; kind++)
@@ -101,14 +96,12 @@ static void lists_are_those_of_all_pairs(void **state) {
       assert_true(pairs[1] > 30 || (kind == LATTICE && dim == 2 && pairs[1] == 0));
     }
   free(x);
-  mps_context_destroy(&context);
 }
 
 /* Neighbours closer than the radius by one rounding error, all the way across the cells, near
  * zero and far from it: cells must not lose them. */
-static void pairs_just_inside_the_radius_are_found_everywhere(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(pairs_just_inside_the_radius_are_found_everywhere) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double places[] = {0.0, -1.0, 1.0 / 3.0, 1e3, -1e6 - 0.1, 1e9 + 0.7};
   const double radius = 0.1;
   for (int p = 0; p < 6; p++)
@@ -121,49 +114,36 @@ static void pairs_just_inside_the_radius_are_found_everywhere(void **state) {
       check_against_all_pairs(nb, xy, 3, 2, radius, 1, "edge");
       int64_t n;
       const int64_t *offsets;
-      mps_assert_ok(context, mps_neighbours_lists(nb, &n, &offsets, NULL));
+      OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
       assert_true(offsets[3] - offsets[1] == 1);
       mps_neighbours_destroy(&nb);
     }
-  mps_context_destroy(&context);
 }
 
-static void lists_do_not_depend_on_the_threads(void **state) {
-  (void)state;
+TEST(lists_do_not_depend_on_the_threads) {
   const int64_t n = 40000;
   double *x = malloc(3 * (size_t)n * sizeof *x);
   assert_non_null(x);
-  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int32_t half = 0; half < 2; half++) {
       make_cloud(UNIFORM, dim, n, x);
       mps_neighbours *expected = lists_of(serial, x, n, dim, 0.4, half);
       const int64_t *offsets, *indices, *other_offsets, *other_indices;
-      mps_assert_ok(serial, mps_neighbours_lists(expected, NULL, &offsets, &indices));
+      OK(mps_neighbours_lists(expected, NULL, &offsets, &indices));
       for (int t = 0; t < 4; t++) {
         int32_t threads = (const int32_t[]){1, 2, 3, 8}[t];
         const mps_context_def def = pthread_executor_def(&threads);
-        mps_context *context = NULL;
+        scoped_context *context = NULL;
         assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
         mps_neighbours *nb = lists_of(context, x, n, dim, 0.4, half);
-        mps_assert_ok(context, mps_neighbours_lists(nb, NULL, &other_offsets, &other_indices));
+        OK(mps_neighbours_lists(nb, NULL, &other_offsets, &other_indices));
         assert_memory_equal(offsets, other_offsets, (size_t)(n + 1) * sizeof *offsets);
         assert_memory_equal(indices, other_indices, (size_t)offsets[n] * sizeof *indices);
         mps_neighbours_destroy(&nb);
-        mps_context_destroy(&context);
       }
       assert_true(offsets[n] > 3000);
       mps_neighbours_destroy(&expected);
     }
   free(x);
-  mps_context_destroy(&serial);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lists_are_those_of_all_pairs),
-      cmocka_unit_test(pairs_just_inside_the_radius_are_found_everywhere),
-      cmocka_unit_test(lists_do_not_depend_on_the_threads),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,13 @@
 /* test_context.c - status table, definition structs, error record, executors, hooks.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/context/retain.h"
 #include "test_common.h"
 #include "test_allocator.h"
 
 #include "core/context/guard.h"
 #include "core/context/levels.h"
 
-#include <mps/kernel.h>
-#include <mps/particles.h>
-
-static void status_texts_are_distinct(void **state) {
-  (void)state;
+TEST(status_texts_are_distinct) {
   assert_string_equal(mps_status_text(MPS_OK), "success");
   for (int a = 0; a <= MPS_ERROR_INTERNAL; a++)
     for (int b = 0; b < a; b++)
@@ -18,15 +15,14 @@ static void status_texts_are_distinct(void **state) {
   assert_string_equal(mps_status_text((mps_status)99), "unknown status code");
 }
 
-static void a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero(void **state) {
-  (void)state;
+TEST(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero) {
   struct {
     mps_context_def def;
     uint64_t newer_member;
   } newer;
   mps_context *context = NULL;
   char text[256];
-  assert_int_equal(mps_context_def_init(&newer.def, sizeof newer), MPS_OK);
+  assert_int_equal(mps_def_init(MPS_DEF_CONTEXT, &newer.def, sizeof newer), MPS_OK);
   assert_int_equal(newer.def.struct_size, sizeof newer);
   assert_int_equal(newer.newer_member, 0);
   assert_int_equal(mps_context_create(&newer.def, &context, text, sizeof text), MPS_OK);
@@ -37,53 +33,26 @@ static void a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_
   assert_null(context);
 }
 
-static void bad_definitions_are_refused_with_the_reason(void **state) {
-  (void)state;
-  mps_context *context = NULL;
-  char text[256];
-  mps_context_def def = mps_context_defaults();
-  def.threads = -3;
-  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
-  assert_non_null(strstr(text, "threads is -3"));
-  def = mps_context_defaults();
-  def.executor = 7;
-  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
-  assert_non_null(strstr(text, "executor is 7"));
-  def = mps_context_defaults();
-  def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
-  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
-  def = mps_context_defaults();
-  def.struct_size = 0;
-  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_context_create(NULL, NULL, NULL, 0), MPS_ERROR_ARGUMENT);
-}
-
 static mps_status refuse_node(void *user, const double *x, int32_t *inside) {
   (void)x, (void)inside;
   return mps_context_set_error(user, MPS_ERROR_IO, "my_reader", "the tape has ended");
 }
 
-static void a_callback_says_why_it_has_failed(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_particles_def def = mps_particles_defaults();
-  mps_particles *set = NULL;
+TEST(a_callback_says_why_it_has_failed) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  DEF(particles, def, .spacing = 0.5);
+  scoped_particles *set = NULL;
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 1.0, 1.0};
-  def.spacing = 0.5;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_fails(context, mps_particles_fill_where(set, lo, hi, refuse_node, context, NULL),
-                   MPS_ERROR_IO, "my_reader: the tape has ended");
-  mps_assert_fails(context, mps_context_set_error(context, MPS_OK, "f", "nothing"),
-                   MPS_ERROR_ARGUMENT, "status is 0");
-  mps_assert_fails(context, mps_context_set_error(context, MPS_ERROR_IO, NULL, NULL),
-                   MPS_ERROR_ARGUMENT, "message NULL");
-  assert_int_equal(mps_context_set_error(NULL, MPS_ERROR_IO, "f", "x"), MPS_ERROR_ARGUMENT);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&context);
+  OK(mps_particles_create(context, &def, &set));
+  FAILS(mps_particles_fill_where(set, lo, hi, refuse_node, context, NULL), MPS_ERROR_IO,
+        "my_reader: the tape has ended");
+  REFUSES(mps_context_set_error(context, MPS_OK, "f", "nothing"), "status is 0");
+  REFUSES(mps_context_set_error(context, MPS_ERROR_IO, NULL, NULL), "message NULL");
+  assert_int_equal(mps_context_set_error(NULL, MPS_ERROR_IO, "f", "x"), MPS_ERROR_IO);
+  assert_string_equal(mps_last_error()->message, "x");
 }
 
-static void the_instruction_level_is_one_that_the_machine_has(void **state) {
-  (void)state;
+TEST(the_instruction_level_is_one_that_the_machine_has) {
   char text[256];
   mps_context_def def = mps_context_defaults();
   assert_int_equal(def.instruction_level, 0);
@@ -107,20 +76,16 @@ static void the_instruction_level_is_one_that_the_machine_has(void **state) {
   assert_non_null(strstr(text, "instruction_level is 99, allowed are 0"));
 }
 
-static void errors_are_recorded_and_cleared(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(errors_are_recorded_and_cleared) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_kernel *kernel = (mps_kernel *)&kernel;
-  mps_assert_fails(context, mps_kernel_create(context, MPS_KERNEL_MPS, -2.0, &kernel),
-                   MPS_ERROR_ARGUMENT, "-2 m");
+  REFUSES(mps_kernel_create(context, MPS_KERNEL_MPS, -2.0, &kernel), "-2 m");
   assert_null(kernel);
   assert_string_equal(mps_context_error(context)->function, "mps_kernel_create");
   assert_int_equal(mps_context_error(context)->step, -1);
-  mps_assert_fails(context, mps_kernel_create(context, MPS_KERNEL_MPS, NAN, &kernel),
-                   MPS_ERROR_ARGUMENT, "nan");
+  REFUSES(mps_kernel_create(context, MPS_KERNEL_MPS, NAN, &kernel), "nan");
   mps_context_clear_error(context);
   assert_int_equal(mps_context_error(context)->status, MPS_OK);
-  mps_context_destroy(&context);
   mps_context_destroy(&context);
 }
 
@@ -135,9 +100,8 @@ static void backwards(void *user, int64_t count, mps_context_task_fn task, void 
   for (int64_t i = count - 1; i >= 0; i--) task(data, i, 0);
 }
 
-static void an_error_names_its_object(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(an_error_names_its_object) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_error *error = mps_context_error(context);
   (void)mpsi_fail(context, "mps_body_create_disc", MPS_ERROR_ARGUMENT, "x");
   assert_string_equal(error->object, "body");
@@ -147,7 +111,6 @@ static void an_error_names_its_object(void **state) {
   assert_string_equal(error->object, "mpm");
   mps_context_clear_error(context);
   assert_string_equal(error->object, "");
-  mps_context_destroy(&context);
 }
 
 static void count_log(void *user, int32_t level, const char *message) {
@@ -164,58 +127,53 @@ static int32_t say_stop(void *user) {
   return 1;
 }
 
-static void hooks_can_be_replaced(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(hooks_can_be_replaced) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   int first = 0, second = 0;
-  mps_context_set_log(context, count_log, &first);
+  mps_context_set_log(context, count_log, &first, NULL);
   mpsi_log(context, MPS_CONTEXT_LOG_INFO, "a");
-  mps_context_set_log(context, count_log, &second);
+  mps_context_set_log(context, count_log, &second, NULL);
   mpsi_log(context, MPS_CONTEXT_LOG_INFO, "b");
-  mps_context_set_log(context, NULL, NULL);
+  mps_context_set_log(context, NULL, NULL, NULL);
   mpsi_log(context, MPS_CONTEXT_LOG_INFO, "c");
   assert_int_equal(first, 1);
   assert_int_equal(second, 1);
-  mps_context_set_progress(context, count_progress, &first);
+  mps_context_set_progress(context, count_progress, &first, NULL);
   mpsi_progress(context, "task", 1, 0.0, 1.0);
   assert_int_equal(first, 2);
   assert_false(mpsi_cancelled(context));
-  mps_context_set_cancel(context, say_stop, &second);
+  mps_context_set_cancel(context, say_stop, &second, NULL);
   assert_true(mpsi_cancelled(context));
   assert_int_equal(second, 2);
-  mps_context_set_log(NULL, NULL, NULL);
-  mps_context_destroy(&context);
+  mps_context_set_log(NULL, NULL, NULL, NULL);
 }
 
-static void a_callback_is_guarded_and_its_status_explained(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_callback_is_guarded_and_its_status_explained) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_error *error = mps_context_error(context);
   mpsi_guard guard = {0};
   assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
   mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
-  mps_assert_fails(context, mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_ERROR_STATE,
-                   "from the callback of mps_mpm_run");
+  FAILS(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_ERROR_STATE,
+        "from the callback of mps_mpm_run");
   assert_int_equal(mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_OK), MPS_OK);
   assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
 
   /* A status of the callback's own: a former failure is not its reason. */
   (void)mpsi_fail(context, "mps_before", MPS_ERROR_IO, "the disk is full");
   mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
-  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO),
-                   MPS_ERROR_IO, "the callback of mps_mpm_run returned status 5");
+  FAILS(mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO), MPS_ERROR_IO,
+        "the callback of mps_mpm_run returned status 5");
   assert_null(strstr(error->message, "disk"));
   assert_string_equal(error->function, "mps_mpm_run");
   /* One that it was given inside. */
   mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
   (void)mpsi_fail(context, "mps_recorder_write", MPS_ERROR_IO, "the disk is full");
-  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO),
-                   MPS_ERROR_IO, "mps_recorder_write: the disk is full");
+  FAILS(mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO), MPS_ERROR_IO,
+        "mps_recorder_write: the disk is full");
   /* No status at all. */
   mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
-  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", (mps_status)-7),
-                   MPS_ERROR_ARGUMENT, "status -7");
-  mps_context_destroy(&context);
+  REFUSES(mpsi_guard_leave(&guard, context, "mps_mpm_run", (mps_status)-7), "status -7");
 }
 
 /* Executors that number their workers from 1, or leave the last unit out. */
@@ -236,14 +194,11 @@ static void note_worker(void *data, int64_t index, int32_t worker) {
   if (worker < 0 || worker > 1) *(int *)data = 1;
 }
 
-static void a_bad_executor_is_noticed(void **state) {
-  (void)state;
+TEST(a_bad_executor_is_noticed) {
   char text[256];
-  mps_context *context = NULL;
-  mps_context_def def = mps_context_defaults();
-  def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
-  def.threads = 2;
-  def.parallel_for = count_from_one;
+  scoped_context *context = NULL;
+  DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_CALLER, .threads = 2,
+      .parallel_for = count_from_one);
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(text, "parallel_for did not run each index"));
   def.parallel_for = forget_one;
@@ -253,51 +208,75 @@ static void a_bad_executor_is_noticed(void **state) {
   def.parallel_for = go_wrong_later;
   def.parallel_user = &calls;
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
-  mps_assert_fails(context, mps_context_parallel_for(context, 3, note_worker, &seen),
-                   MPS_ERROR_STATE, "gave a worker outside 0 to 1");
+  FAILS(mps_context_parallel_for(context, 3, note_worker, &seen), MPS_ERROR_STATE,
+        "gave a worker outside 0 to 1");
   assert_int_equal(seen, 0); /* the unit did not run */
-  mps_context_destroy(&context);
 }
 
-static void the_library_tells_what_it_is(void **state) {
-  (void)state;
+/* Each text is kept once, up to a bound, without a log hook too; contexts have lists of their own.
+ */
+TEST(warnings_are_a_list) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_context_warning w;
+  assert_int_equal(mps_context_warning_count(context), 0);
+  REFUSES(mps_context_get_warning(context, 0, &w), "index is 0, and the context has 0 warnings");
+  for (int k = 0; k < 3; k++) mpsi_log(context, MPS_CONTEXT_LOG_WARNING, "dt is %g s", 0.5);
+  mpsi_log(context, MPS_CONTEXT_LOG_INFO, "no warning");
+  mpsi_log(context, MPS_CONTEXT_LOG_WARNING, "%600d", 7);
+  assert_int_equal(mps_context_warning_count(context), 2);
+  assert_int_equal(mps_context_warning_count(other), 0);
+  OK(mps_context_get_warning(context, 0, &w));
+  assert_int_equal(w.times, 3);
+  assert_string_equal(w.text, "dt is 0.5 s");
+  OK(mps_context_get_warning(context, 1, &w));
+  assert_int_equal(strlen(w.text), sizeof w.text - 1);
+  REFUSES(mps_context_get_warning(context, 2, &w), "has 2 warnings");
+  REFUSES(mps_context_get_warning(context, -1, &w), "index is -1");
+  for (int k = 0; k < 100; k++) mpsi_log(context, MPS_CONTEXT_LOG_WARNING, "number %d", k);
+  assert_int_equal(mps_context_warning_count(context), 32);
+  mps_context_clear_warnings(context);
+  assert_int_equal(mps_context_warning_count(context), 0);
+  mps_context_clear_warnings(NULL);
+  assert_int_equal(mps_context_warning_count(NULL), 0);
+}
+
+TEST(enumerators_have_names) {
+  assert_string_equal(mps_boundary_kind_name(MPS_BOUNDARY_FREE_FIELD), "MPS_BOUNDARY_FREE_FIELD");
+  assert_null(mps_boundary_kind_name(8));
+  assert_string_equal(mps_enumerator_name("mps_side", MPS_SIDE_ANY), "MPS_SIDE_ANY");
+  assert_string_equal(mps_enumerator_name("mps_side", MPS_SIDE_Z_UPPER), "MPS_SIDE_Z_UPPER");
+  /* values on the next line of a header, and of X macros */
+  assert_string_equal(mps_enumerator_name("mps_contact_inside", MPS_CONTACT_INSIDE_REMOVE),
+                      "MPS_CONTACT_INSIDE_REMOVE");
+  assert_string_equal(mps_enumerator_name("mps_table_interpolation", 0),
+                      "MPS_TABLE_INTERPOLATION_NEAREST");
+  assert_string_equal(mps_enumerator_name("mps_feature", MPS_FEATURE_PETSC), "MPS_FEATURE_PETSC");
+  assert_string_equal(mps_enumerator_name("mps_def_kind", MPS_DEF_CONTEXT), "MPS_DEF_CONTEXT");
+  assert_string_equal(mps_enumerator_name("mps_status", MPS_ERROR_IO), "MPS_ERROR_IO");
+  assert_null(mps_enumerator_name("mps_nothing", 0));
+  assert_null(mps_enumerator_name(NULL, 0));
+}
+
+TEST(the_library_tells_what_it_is) {
   int major, minor, patch;
   assert_int_equal(sscanf(mps_version(), "%d.%d.%d", &major, &minor, &patch), 3);
   assert_int_equal(mps_version_number(), 10000 * major + 100 * minor + patch);
-  int32_t count = 1;
-  while (mps_library_feature_name(count)) {
-    const int32_t has = mps_library_has(count);
-    assert_true(has == 0 || has == 1);
-    count++;
-  }
-  assert_int_equal(count, MPS_FEATURE_PETSC + 1);
   assert_int_equal(mps_library_has(0), 0);
-  assert_int_equal(mps_library_has(count), 0);
+  assert_int_equal(mps_library_has(MPS_FEATURE_PETSC + 1), 0);
   assert_int_equal(mps_library_has(MPS_FEATURE_HDF5), TEST_HDF5);
   assert_int_equal(mps_library_has(MPS_FEATURE_CHOLMOD), TEST_CHOLMOD);
   assert_int_equal(mps_library_has(MPS_FEATURE_ARPACK), TEST_ARPACK);
   assert_int_equal(mps_library_has(MPS_FEATURE_EMBREE), TEST_EMBREE);
   assert_int_equal(mps_library_has(MPS_FEATURE_PETSC), 0);
-  assert_null(mps_library_feature_name(0));
-  mps_context *context = NULL;
-  mps_context_def def = mps_context_defaults();
-  def.executor = MPS_CONTEXT_EXECUTOR_OPENMP;
+  scoped_context *context = NULL;
+  DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_OPENMP);
   assert_int_equal(mps_context_create(&def, &context, NULL, 0) == MPS_OK,
                    mps_library_has(MPS_FEATURE_OPENMP));
-  mps_context_destroy(&context);
-  assert_int_equal(mps_library_has_level(1), 1);
-  assert_int_equal(mps_library_has_level(0), 0);
-  assert_int_equal(mps_library_has_level(2), 0);
-  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  const int32_t used = mps_context_instruction_level(context);
-  assert_int_equal(mps_library_has_level(used), 1);
-  for (int32_t level = used + 1; level < 6; level++)
-    assert_int_equal(mps_library_has_level(level), 0);
-  mps_context_destroy(&context);
+  assert_int_equal(mpsi_level(1), 1);
 }
 
-static void every_executor_runs_every_unit_once(void **state) {
-  (void)state;
+TEST(every_executor_runs_every_unit_once) {
   int calls = 0;
   for (int kind = 0; kind < 3; kind++) {
     mps_context_def def = mps_context_defaults();
@@ -309,21 +288,18 @@ static void every_executor_runs_every_unit_once(void **state) {
       def.parallel_for = backwards;
       def.parallel_user = &calls;
     }
-    mps_context *context = NULL;
+    scoped_context *context = NULL;
     char text[256];
     assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
     int64_t values[1000] = {0};
-    mps_assert_ok(context, mps_context_parallel_for(context, 1000, add_index, values));
+    OK(mps_context_parallel_for(context, 1000, add_index, values));
     for (int i = 0; i < 1000; i++) assert_int_equal(values[i], i + 1);
-    mps_assert_fails(context, mps_context_parallel_for(context, -1, add_index, values),
-                     MPS_ERROR_ARGUMENT, "count is -1");
-    mps_context_destroy(&context);
+    REFUSES(mps_context_parallel_for(context, -1, add_index, values), "count is -1");
   }
   assert_int_equal(calls, 2); /* once at its trial */
 }
 
-static void the_callers_allocator_is_used_and_everything_returned(void **state) {
-  (void)state;
+TEST(the_callers_allocator_is_used_and_everything_returned) {
   for (int64_t refuse = 0; refuse < 3; refuse++) {
     test_allocator counts = {.refuse_at = refuse};
     mps_context_def def = mps_context_defaults();
@@ -342,41 +318,12 @@ static void the_callers_allocator_is_used_and_everything_returned(void **state) 
   }
 }
 
-static void lattice_density_is_the_sheet_value(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_kernel *kernel = NULL;
-  double n0 = 0.0;
-  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 1.5 * 0.7, &kernel));
-  mps_assert_ok(context, mps_kernel_density(context, kernel, 2, 0.7, &n0));
-  mps_assert_near(n0, 4 * 0.5 + 4 * (1.5 / sqrt(2.0) - 1.0), 1e-14); /* 2.2426 */
-  mps_assert_ok(context, mps_kernel_density(context, kernel, 3, 0.7, &n0));
-  mps_assert_near(n0, 6 * 0.5 + 12 * (1.5 / sqrt(2.0) - 1.0), 1e-14);
-  mps_assert_near(mps_kernel_weight(kernel, 0.7), 0.5, 1e-15);
+TEST(lattice_density_is_the_sheet_value) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_kernel *kernel = NULL;
+  OK(mps_kernel_create(context, MPS_KERNEL_MPS, 1.5 * 0.7, &kernel));
+  NEAR(mpsi_kernel_density(kernel, 0.7), 4 * 0.5 + 4 * (1.5 / sqrt(2.0) - 1.0), 1e-14); /* 2.2426 */
+  NEAR(mps_kernel_weight(kernel, 0.7), 0.5, 1e-15);
   assert_true(mps_kernel_weight(kernel, 0.0) == 0.0);
   assert_true(mps_kernel_weight(kernel, 1.05) == 0.0);
-  mps_assert_fails(context, mps_kernel_density(context, kernel, 4, 0.7, &n0), MPS_ERROR_ARGUMENT,
-                   "dim is 4");
-  mps_kernel_destroy(&kernel);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(status_texts_are_distinct),
-      cmocka_unit_test(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero),
-      cmocka_unit_test(bad_definitions_are_refused_with_the_reason),
-      cmocka_unit_test(a_callback_says_why_it_has_failed),
-      cmocka_unit_test(the_instruction_level_is_one_that_the_machine_has),
-      cmocka_unit_test(errors_are_recorded_and_cleared),
-      cmocka_unit_test(an_error_names_its_object),
-      cmocka_unit_test(hooks_can_be_replaced),
-      cmocka_unit_test(a_callback_is_guarded_and_its_status_explained),
-      cmocka_unit_test(a_bad_executor_is_noticed),
-      cmocka_unit_test(the_library_tells_what_it_is),
-      cmocka_unit_test(every_executor_runs_every_unit_once),
-      cmocka_unit_test(the_callers_allocator_is_used_and_everything_returned),
-      cmocka_unit_test(lattice_density_is_the_sheet_value),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@ static double noise(uint64_t *seed) {
 }
 
 /* A v = value v, directions orthonormal, also where values coincide or scales differ. */
-static void principal_values_and_directions(void **state) {
-  (void)state;
+TEST(principal_values_and_directions) {
   uint64_t seed = 1;
   for (int n = 0; n < 2000; n++) {
     double a[3][3], value[3], axis[3][3], size = 0.0;
@@ -27,8 +26,8 @@ static void principal_values_and_directions(void **state) {
         double product = 0.0, cosine = 0.0;
         for (int j = 0; j < 3; j++) product += a[i][j] * axis[j][k];
         for (int j = 0; j < 3; j++) cosine += axis[j][i] * axis[j][k];
-        mps_assert_near(product, value[k] * axis[i][k], 1e-14 * size);
-        mps_assert_near(cosine, i == k, 1e-14);
+        NEAR(product, value[k] * axis[i][k], 1e-14 * size);
+        NEAR(cosine, i == k, 1e-14);
       }
     double alone[3];
     mpsi_symmetric_principal((const double(*)[3])a, alone, NULL);
@@ -40,8 +39,7 @@ static void principal_values_and_directions(void **state) {
   assert_true(isnan(value[0]));
 }
 
-static void the_order_of_components(void **state) {
-  (void)state;
+TEST(the_order_of_components) {
   static const char names[6][3] = {"xx", "yy", "zz", "xy", "zx", "yz"};
   for (int k = 0; k < 6; k++) {
     const char row = "xyz"[mpsi_symmetric_row[k]], column = "xyz"[mpsi_symmetric_column[k]];
@@ -50,8 +48,7 @@ static void the_order_of_components(void **state) {
   }
 }
 
-static void identifiers(void **state) {
-  (void)state;
+TEST(identifiers) {
   assert_int_equal(mpsi_identifier("density", 48), 7);
   assert_int_equal(mpsi_identifier("_1", 48), 2);
   assert_int_equal(mpsi_identifier("sand.strain", 48), 4);
@@ -60,13 +57,4 @@ static void identifiers(void **state) {
   assert_int_equal(mpsi_identifier("a b", 48), 1);
   assert_int_equal(mpsi_identifier("abc", 4), 3);
   assert_int_equal(mpsi_identifier("abcd", 4), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(principal_values_and_directions),
-      cmocka_unit_test(the_order_of_components),
-      cmocka_unit_test(identifiers),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,12 +4,6 @@
 #include "test_fixture.h"
 #include "test_journal.h"
 
-#include <mps/couple.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 enum { N = 24 };
 
 /* A is symmetric, with the eigenvalues 9, 4, 1 and 0.25 on smooth shapes and 0 across them: an
@@ -38,12 +32,9 @@ static void answer_to(const double *exact, const double *x, double *answer) {
 }
 
 static mps_coupling *make(int32_t method, int64_t size) {
-  mps_coupling_def def = mps_coupling_defaults();
+  DEF(coupling, def, .method = method, .size = size, .tolerance = 1e-8);
   mps_coupling *c = NULL;
-  def.method = method;
-  def.size = size;
-  def.tolerance = 1e-8;
-  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
+  OK(mps_coupling_create(context, &def, &c));
   return c;
 }
 
@@ -52,42 +43,40 @@ static int take_step(mps_coupling *c, int step, double *x) {
   double exact[N], answer[N];
   int32_t done = 0;
   exact_at(step, exact);
-  mps_assert_ok(context, mps_coupling_begin(c, NULL, x));
+  OK(mps_coupling_begin(c, NULL, x));
   while (!done) {
     answer_to(exact, x, answer);
-    mps_assert_ok(context, mps_coupling_next(c, answer, x, &done));
+    OK(mps_coupling_next(c, answer, x, &done));
   }
-  mps_assert_ok(context, mps_coupling_accept(c));
-  for (int i = 0; i < N; i++) mps_assert_near(x[i], exact[i], 1e-6);
+  OK(mps_coupling_accept(c));
+  for (int i = 0; i < N; i++) NEAR(x[i], exact[i], 1e-6);
   mps_coupling_report report;
-  mps_assert_ok(context, mps_coupling_get_report(c, &report));
+  OK(mps_coupling_get_report(c, &report));
   return report.repeats;
 }
 
-static void one_value_takes_three_repeats_then_two(void **state) {
-  (void)state;
+TEST(one_value_takes_three_repeats_then_two) {
   mps_coupling *c = make(MPS_COUPLING_METHOD_AITKEN, 1);
   for (int step = 0; step < 4;
        step++) { /* x = 5 + step - 20 x: by fixed-point iteration it diverges */
     double x, answer;
     int32_t done = 0;
     int repeats = 0;
-    mps_assert_ok(context, mps_coupling_begin(c, NULL, &x));
+    OK(mps_coupling_begin(c, NULL, &x));
     while (!done) {
       answer = 5.0 + step * step - 20.0 * x;
-      mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+      OK(mps_coupling_next(c, &answer, &x, &done));
       repeats++;
     }
-    mps_assert_ok(context, mps_coupling_accept(c));
-    mps_assert_near(x, (5.0 + step * step) / 21.0, 1e-7);
+    OK(mps_coupling_accept(c));
+    NEAR(x, (5.0 + step * step) / 21.0, 1e-7);
     assert_true(repeats <= (step == 0 ? 3 : 2));
   }
   mps_coupling_destroy(&c);
 }
 
 /* Four eigenvalues besides zero: what they do is known after five differences. */
-static void a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes(void **state) {
-  (void)state;
+TEST(a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes) {
   double x[N];
   mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
   const int first = take_step(c, 0, x);
@@ -99,8 +88,7 @@ static void a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes(void **s
   mps_coupling_destroy(&c);
 }
 
-static void a_field_by_one_factor_takes_more(void **state) {
-  (void)state;
+TEST(a_field_by_one_factor_takes_more) {
   double x[N], y[N];
   mps_coupling *newton = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N),
                *aitken = make(MPS_COUPLING_METHOD_AITKEN, N);
@@ -115,69 +103,65 @@ static void a_field_by_one_factor_takes_more(void **state) {
   mps_coupling_destroy(&aitken);
 }
 
-static void what_does_not_agree_is_an_error_and_can_begin_again(void **state) {
-  (void)state;
+TEST(what_does_not_agree_is_an_error_and_can_begin_again) {
   double x = 0.0, answer = 0.0;
   int32_t done = 0;
   mps_coupling *c = NULL;
-  mps_coupling_def def = mps_coupling_defaults();
-  def.method = MPS_COUPLING_METHOD_CONSTANT;
-  def.size = 1, def.relaxation = 0.5, def.repeats = 7;
-  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
-  mps_assert_ok(context, mps_coupling_begin(c, NULL, &x));
+  DEF(coupling, def, .method = MPS_COUPLING_METHOD_CONSTANT, .size = 1, .relaxation = 0.5,
+      .repeats = 7);
+  OK(mps_coupling_create(context, &def, &c));
+  OK(mps_coupling_begin(c, NULL, &x));
   mps_status status = MPS_OK;
   for (int k = 0; k < 7 && status == MPS_OK; k++) {
     answer = 1.0 - 9.0 * x;
     status = mps_coupling_next(c, &answer, &x, &done);
   }
-  mps_assert_fails(context, status, MPS_ERROR_NUMERIC, "does not agree after 7 repeats");
-  mps_assert_fails(context, mps_coupling_accept(c), MPS_ERROR_STATE, "not agreed on");
+  FAILS(status, MPS_ERROR_NUMERIC, "does not agree after 7 repeats");
+  FAILS(mps_coupling_accept(c), MPS_ERROR_STATE, "not agreed on");
   const double start = 0.25;
-  mps_assert_ok(context, mps_coupling_begin(c, &start, &x));
+  OK(mps_coupling_begin(c, &start, &x));
   assert_true(x == start);
   answer = start;
-  mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+  OK(mps_coupling_next(c, &answer, &x, &done));
   assert_int_equal(done, 1);
-  mps_assert_ok(context, mps_coupling_accept(c));
+  OK(mps_coupling_accept(c));
   mps_coupling_destroy(&c);
 }
 
-static void guesses_lie_on_a_line_through_the_last_steps(void **state) {
-  (void)state;
+TEST(guesses_lie_on_a_line_through_the_last_steps) {
   mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 1);
   for (int step = 0; step < 4; step++) {
     double x, answer = 2.0 + 3.0 * step;
     int32_t done;
-    mps_assert_ok(context, mps_coupling_begin(c, step ? NULL : &answer, &x));
-    if (step != 1) mps_assert_near(x, answer, 1e-12);
-    if (step == 1) mps_assert_ok(context, mps_coupling_begin(c, &answer, &x));
-    mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+    OK(mps_coupling_begin(c, step ? NULL : &answer, &x));
+    if (step != 1) NEAR(x, answer, 1e-12);
+    if (step == 1) OK(mps_coupling_begin(c, &answer, &x));
+    OK(mps_coupling_next(c, &answer, &x, &done));
     assert_int_equal(done, 1);
-    mps_assert_ok(context, mps_coupling_accept(c));
+    OK(mps_coupling_accept(c));
   }
   mps_coupling_destroy(&c);
 }
 
 /* Memory put into another object: both continue bit for bit. */
-static void what_is_learnt_can_be_kept(void **state) {
-  (void)state;
+TEST(what_is_learnt_can_be_kept) {
   double x[N], y[N], memory[4000];
   int64_t count = 0, again = 0;
   mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N),
                *d = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
   for (int step = 0; step < 5; step++) take_step(c, step, x);
-  mps_assert_ok(context, mps_coupling_get_memory(c, 0, &count, NULL));
+  OK(mps_coupling_get_memory(c, 0, &count, NULL));
   assert_in_range(count, 1, 4000);
-  mps_assert_ok(context, mps_coupling_get_memory(c, 4000, &again, memory));
+  OK(mps_coupling_get_memory(c, 4000, &again, memory));
   assert_int_equal(count, again);
-  mps_assert_ok(context, mps_coupling_set_memory(d, count, memory));
+  OK(mps_coupling_set_memory(d, count, memory));
   for (int step = 5; step < 9; step++) {
     assert_int_equal(take_step(c, step, x), take_step(d, step, y));
     assert_memory_equal(x, y, sizeof x);
   }
   memory[1] = 3.0;
-  mps_assert_fails(context, mps_coupling_set_memory(d, count, memory), MPS_ERROR_FORMAT,
-                   "not the memory of a coupling of 24 values");
+  FAILS(mps_coupling_set_memory(d, count, memory), MPS_ERROR_FORMAT,
+        "not the memory of a coupling of 24 values");
   mps_coupling_destroy(&c);
   mps_coupling_destroy(&d);
 }
@@ -190,8 +174,8 @@ static int warnings(journal *j, double large, double w, double noise) {
   uint64_t seed = 7;
   *j = (journal){0};
   def.size = 2, def.floor = 1e-3;
-  mps_context_set_log(context, journal_note, j);
-  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
+  mps_context_set_log(context, journal_note, j, NULL);
+  OK(mps_coupling_create(context, &def, &c));
   for (int n = 0; n < 300; n++) {
     double x[2];
     int32_t done;
@@ -200,19 +184,18 @@ static int warnings(journal *j, double large, double w, double noise) {
       x[i] = 5.0 + cos(0.04 * n) + large * cos(w * n + i) +
              noise * ((double)(seed >> 11) * 0x1p-52 - 1.0);
     }
-    mps_assert_ok(context, mps_coupling_begin(c, x, x));
-    mps_assert_ok(context, mps_coupling_next(c, x, x, &done));
+    OK(mps_coupling_begin(c, x, x));
+    OK(mps_coupling_next(c, x, x, &done));
     assert_true(done);
-    mps_assert_ok(context, mps_coupling_accept(c));
+    OK(mps_coupling_accept(c));
   }
   mps_coupling_destroy(&c);
-  mps_context_set_log(context, NULL, NULL);
+  mps_context_set_log(context, NULL, NULL, NULL);
   return j->count;
 }
 
 /* Only a swing that dominates is one: noise and waves, however large, say nothing of the step. */
-static void a_step_too_long_for_what_swings_is_warned_of(void **state) {
-  (void)state;
+TEST(a_step_too_long_for_what_swings_is_warned_of) {
   journal j;
   assert_int_equal(warnings(&j, 1.0, 0.5, 0.0), 1);
   assert_non_null(strstr(j.last, "oscillate by 0.50 rad a step"));
@@ -224,38 +207,15 @@ static void a_step_too_long_for_what_swings_is_warned_of(void **state) {
   assert_int_equal(warnings(&j, 0.0, 0.5, 0.01), 0);
 }
 
-static void bad_input_is_refused(void **state) {
-  (void)state;
-  mps_coupling_def def = mps_coupling_defaults();
-  mps_coupling *c = NULL;
-  mps_assert_fails(context, mps_coupling_create(context, &def, &c), MPS_ERROR_ARGUMENT,
-                   "size of the coupling is 0");
-  def.size = 2, def.relaxation = 1.5;
-  mps_assert_fails(context, mps_coupling_create(context, &def, &c), MPS_ERROR_ARGUMENT,
-                   "relaxation of the coupling is 1.5");
-  assert_null(c);
-  c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 2);
+TEST(bad_input_is_refused) {
+  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 2);
   double x[2] = {0.0, 0.0}, answer[2] = {1.0, NAN};
   int32_t done;
-  mps_assert_fails(context, mps_coupling_next(c, x, x, &done), MPS_ERROR_STATE, "begin");
-  mps_assert_ok(context, mps_coupling_begin(c, NULL, x));
-  mps_assert_fails(context, mps_coupling_next(c, answer, x, &done), MPS_ERROR_NUMERIC,
-                   "answer 1 at repeat 1 of the coupling is nan");
-  mps_assert_fails(context, mps_coupling_begin(c, answer, x), MPS_ERROR_ARGUMENT, "start value 1");
+  FAILS(mps_coupling_next(c, x, x, &done), MPS_ERROR_STATE, "begin");
+  OK(mps_coupling_begin(c, NULL, x));
+  FAILS(mps_coupling_next(c, answer, x, &done), MPS_ERROR_NUMERIC,
+        "answer 1 at repeat 1 of the coupling is nan");
+  REFUSES(mps_coupling_begin(c, answer, x), "start value 1");
   mps_coupling_destroy(&c);
   mps_coupling_destroy(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_value_takes_three_repeats_then_two),
-      cmocka_unit_test(a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes),
-      cmocka_unit_test(a_field_by_one_factor_takes_more),
-      cmocka_unit_test(what_does_not_agree_is_an_error_and_can_begin_again),
-      cmocka_unit_test(guesses_lie_on_a_line_through_the_last_steps),
-      cmocka_unit_test(what_is_learnt_can_be_kept),
-      cmocka_unit_test(a_step_too_long_for_what_swings_is_warned_of),
-      cmocka_unit_test(bad_input_is_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

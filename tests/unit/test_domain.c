@@ -7,8 +7,6 @@
 #include "domain/domain_internal.h"
 #include "domain_threads.h"
 
-#include <mps/domain.h>
-
 #include <float.h>
 
 /* ---- exact sums ------------------------------------------------------------------------------ */
@@ -19,8 +17,7 @@ static double sum_of(int count, const double *terms) {
   return mpsi_exact_value(&sum);
 }
 
-static void test_exact_sums(void **state) {
-  (void)state;
+TEST(test_exact_sums) {
   static const struct {
     double term[4], sum;
   } cases[] = {
@@ -48,14 +45,13 @@ static void test_exact_sums(void **state) {
   /* against long double, which holds these four terms' sum exactly */
   const long double exact =
       (long double)0.1 + (long double)0.2 + (long double)0.3 - (long double)0.6;
-  mps_assert_near(sum_of(4, cases[count - 1].term), (double)exact, 0.0);
+  NEAR(sum_of(4, cases[count - 1].term), (double)exact, 0.0);
   const double infinities[2] = {INFINITY, -INFINITY}, none[1] = {NAN};
   assert_true(isnan(sum_of(2, infinities)));
   assert_true(isnan(sum_of(1, none)));
 }
 
-static void test_exact_sums_have_no_order(void **state) {
-  (void)state;
+TEST(test_exact_sums_have_no_order) {
   enum { TERMS = 5000 };
   static double term[TERMS];
   uint64_t h = 1;
@@ -80,7 +76,7 @@ static void test_exact_sums_have_no_order(void **state) {
   assert_memory_equal(&a, &b, sizeof a);
   assert_memory_equal(&a, &c, sizeof a);
   for (int k = 0; k < TERMS; k++) mpsi_exact_add(&forth, -term[k]);
-  mps_assert_near(mpsi_exact_value(&forth), 0.0, 0.0);
+  NEAR(mpsi_exact_value(&forth), 0.0, 0.0);
 }
 
 /* ---- ranks ----------------------------------------------------------------------------------- */
@@ -118,8 +114,8 @@ static mps_domain *join_domain(scene *s, team *t, int32_t rank, mps_context **ow
 static void run_sums(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   mpsi_exact sum = {{0}};
   mpsi_exact_add(&sum, ldexp(1.0, 60 * rank));
   mpsi_exact_add(&sum, -1e-3);
@@ -131,12 +127,9 @@ static void run_sums(void *user, team *t, int32_t rank) {
   f->value[2] = most[1];
   f->status[3] = mps_domain_agree(domain, MPS_OK);
   f->good = mps_domain_rank(domain) == rank && mps_domain_size(domain) == t->size;
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
-static void test_reductions(void **state) {
-  (void)state;
+TEST(test_reductions) {
   for (int32_t size = 1; size <= 7; size += 3) {
     scene s = {.what = 0};
     team_compute(size, run_sums, &s);
@@ -147,9 +140,9 @@ static void test_reductions(void **state) {
     }
     for (int32_t r = 0; r < size; r++) {
       for (int k = 0; k < 4; k++) assert_int_equal(s.rank[r].status[k], MPS_OK);
-      mps_assert_near(s.rank[r].value[0], mpsi_exact_value(&sum), 0.0);
-      mps_assert_near(s.rank[r].value[1], size - 1, 0.0);
-      mps_assert_near(s.rank[r].value[2], 0.0, 0.0);
+      NEAR(s.rank[r].value[0], mpsi_exact_value(&sum), 0.0);
+      NEAR(s.rank[r].value[1], size - 1, 0.0);
+      NEAR(s.rank[r].value[2], 0.0, 0.0);
       assert_true(s.rank[r].good);
       assert_int_equal(s.allocator[r].live, 0);
     }
@@ -160,8 +153,8 @@ static void test_reductions(void **state) {
 static void run_errors(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   mps_status status = MPS_OK;
   if (rank == 2) status = mpsi_fail(own, "mps_two", MPS_ERROR_ARGUMENT, "two is %d", 2);
   if (rank == 3) {
@@ -177,12 +170,9 @@ static void run_errors(void *user, team *t, int32_t rank) {
   f->status[2] = mpsi_domain_agree_same(domain, "test", MPS_OK, "dt", rank == 1 ? NAN : 1e-3);
   f->status[3] = mpsi_domain_agree_same(domain, "test", MPS_OK, "dt", NAN);
   f->status[4] = mps_domain_agree(domain, rank == 0 ? MPS_ERROR_IO : MPS_OK); /* no record */
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
-static void test_errors_are_shared(void **state) {
-  (void)state;
+TEST(test_errors_are_shared) {
   scene s = {.what = 0};
   team_compute(4, run_errors, &s);
   for (int32_t r = 0; r < 4; r++) {
@@ -201,8 +191,7 @@ static void test_errors_are_shared(void **state) {
 
 /* Every rank makes 4 x 3 particles and keeps those whose id is its own modulo size, and id 0. */
 static mps_status make_share(mps_context *own, int32_t rank, int32_t size, mps_particles **out) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.5;
+  DEF(particles, def, .spacing = 0.5);
   mps_status status = mps_particles_create(own, &def, out);
   const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 1.5};
   if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
@@ -210,22 +199,22 @@ static mps_status make_share(mps_context *own, int32_t rank, int32_t size, mps_p
   int64_t gone[12], count = 0;
   for (int64_t id = 1; id < 12; id++)
     if (id % size != rank) gone[count++] = id;
-  if (status == MPS_OK) status = mps_particles_remove(*out, count, gone);
+  if (status == MPS_OK) status = mps_particles_remove(*out, gone, count);
   return status;
 }
 
 static void run_gather(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_particles *share = NULL, *whole = NULL;
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   if (f->status[0] == MPS_OK)
     f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
   if (f->status[0] == MPS_OK && f->status[1] == MPS_OK) {
     if (s->what == 1 && rank == 1)
       f->status[3] = mps_particles_set(share, "pressure", 0, 1.0); /* others lack it */
-    f->status[2] = mps_domain_gather(domain, share, &whole);
+    f->status[2] = mps_domain_gather_fields(domain, share, 0, NULL, &whole);
     f->count = mps_particles_count(whole);
     f->good = true;
     int32_t before = 0;
@@ -242,14 +231,11 @@ static void run_gather(void *user, team *t, int32_t rank) {
       before = from;
     }
     const uint64_t epoch = mps_particles_epoch(whole);
-    if (f->status[2] == MPS_OK) f->status[7] = mps_domain_gather(domain, share, &whole);
+    if (f->status[2] == MPS_OK)
+      f->status[7] = mps_domain_gather_fields(domain, share, 0, NULL, &whole);
     f->good = f->good && epoch == mps_particles_epoch(whole); /* views stay good */
   }
   snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
-  mps_particles_destroy(&whole);
-  mps_particles_destroy(&share);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
 /* On 1, 3 and 5 ranks: all well, and the twelve particles on rank 0. */
@@ -266,8 +252,7 @@ static void assert_gathered(team_fn work) {
   }
 }
 
-static void test_gather(void **state) {
-  (void)state;
+TEST(test_gather) {
   assert_gathered(run_gather);
   scene s = {.what = 1};
   team_compute(2, run_gather, &s);
@@ -284,15 +269,15 @@ static void run_fields(void *user, team *t, int32_t rank) {
   static const char *const wanted[] = {"density"}, *const wrong[] = {"density", "density_of"};
   const int64_t ids[4] = {7, 0, 3, 7}, missing[2] = {3, 99}, other[1] = {rank};
   double density[4] = {0.0}, place[8] = {0.0}, id[4] = {0.0};
-  mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_particles *share = NULL, *whole = NULL;
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
   f->status[2] = mps_domain_agree(domain, mps_particles_set(share, "pressure", 0, 1.0));
   f->status[3] = mps_domain_gather_fields(domain, share, 1, wanted, &whole);
-  f->status[4] = mps_domain_get_field(domain, share, "density", 4, ids, density);
-  f->status[5] = mps_domain_get_field(domain, share, "position", 4, ids, place);
-  f->status[6] = mps_domain_get_field(domain, share, "id", 4, ids, id);
+  f->status[4] = mps_domain_get_field(domain, share, "density", ids, 4, density);
+  f->status[5] = mps_domain_get_field(domain, share, "position", ids, 4, place);
+  f->status[6] = mps_domain_get_field(domain, share, "id", ids, 4, id);
   f->count = mps_particles_count(whole);
   f->good = mps_particles_field_count(whole) == (rank == 0 ? 3 : 0);
   for (int k = 0; k < 4; k++) {
@@ -302,29 +287,21 @@ static void run_fields(void *user, team *t, int32_t rank) {
               place[2 * k + 1] == 0.25 + 0.5 * (double)(ids[k] / 4);
   }
   f->good = f->good &&
-            mps_domain_get_field(domain, share, "id", 2, missing, id) == MPS_ERROR_ARGUMENT &&
-            mps_domain_get_field(domain, share, "none", 4, ids, id) == MPS_ERROR_FIELD &&
+            mps_domain_get_field(domain, share, "id", missing, 2, id) == MPS_ERROR_ARGUMENT &&
+            mps_domain_get_field(domain, share, "none", ids, 4, id) == MPS_ERROR_FIELD &&
             mps_domain_gather_fields(domain, share, 2, wrong, &whole) == MPS_ERROR_FIELD &&
             mps_domain_gather_fields(domain, share, rank == 0, wanted, &whole) ==
                 (t->size > 1 ? MPS_ERROR_FIELD : MPS_OK);
   if (t->size > 1)
     f->good =
-        f->good && mps_domain_get_field(domain, share, "id", 1, other, id) == MPS_ERROR_ARGUMENT;
-  f->status[7] = mps_domain_get_field(domain, share, "id", 0, NULL, NULL);
-  mps_particles_destroy(&whole);
-  mps_particles_destroy(&share);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
+        f->good && mps_domain_get_field(domain, share, "id", other, 1, id) == MPS_ERROR_ARGUMENT;
+  f->status[7] = mps_domain_get_field(domain, share, "id", NULL, 0, NULL);
 }
 
-static void test_fields(void **state) {
-  (void)state;
-  assert_gathered(run_fields);
-}
+TEST(test_fields) { assert_gathered(run_fields); }
 
 /* One rank is refused one allocation after the other: all ranks report it, none hangs. */
-static void test_refused_memory(void **state) {
-  (void)state;
+TEST(test_refused_memory) {
   for (int64_t refuse = 3;; refuse++) { /* 1: the context, 2: the domain, which none knows yet */
     scene s = {.refuse = refuse};
     team t;
@@ -352,9 +329,9 @@ static void test_refused_memory(void **state) {
 static void run_calls(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_particles *share = NULL, *whole = NULL;
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   double value = rank;
   f->status[1] = rank == 1 ? mps_domain_max(domain, 1, &value) : mps_domain_agree(domain, MPS_OK);
   snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
@@ -362,8 +339,8 @@ static void run_calls(void *user, team *t, int32_t rank) {
       f->status[1] == MPS_OK || strcmp(mps_context_error(own)->function,
                                        rank == 1 ? "mps_domain_max" : "mps_domain_agree") == 0;
   f->status[2] = make_share(own, rank, t->size, &share);
-  f->status[3] = rank == 0 ? mps_domain_gather(domain, share, &whole)
-                           : mps_domain_get_field(domain, share, "id", 0, NULL, NULL);
+  f->status[3] = rank == 0 ? mps_domain_gather_fields(domain, share, 0, NULL, &whole)
+                           : mps_domain_get_field(domain, share, "id", NULL, 0, NULL);
   f->status[4] = mps_domain_max(domain, 1, &value); /* they are together again */
   f->value[0] = value;
   if (rank == 2) mps_domain_destroy(&domain);
@@ -371,14 +348,9 @@ static void run_calls(void *user, team *t, int32_t rank) {
   if (rank != 2)
     f->good = f->good && strstr(mps_context_error(own)->message, "rank 2 has destroyed its domain");
   f->status[6] = rank == 2 ? MPS_ERROR_STATE : mps_domain_max(domain, 1, &value);
-  mps_particles_destroy(&whole);
-  mps_particles_destroy(&share);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
-static void test_different_calls(void **state) {
-  (void)state;
+TEST(test_different_calls) {
   static const mps_status expected[7] = {MPS_OK, MPS_ERROR_STATE, MPS_OK,         MPS_ERROR_STATE,
                                          MPS_OK, MPS_ERROR_STATE, MPS_ERROR_STATE};
   for (int32_t size = 3; size <= 7; size += 2) {
@@ -398,7 +370,7 @@ static void test_different_calls(void **state) {
       assert_string_equal(s.rank[r].message, s.rank[0].message);
       assert_non_null(strstr(s.rank[r].message,
                              "rank 0 has called mps_domain_agree and rank 1 mps_domain_max"));
-      mps_assert_near(s.rank[r].value[0], size - 1, 0.0);
+      NEAR(s.rank[r].value[0], size - 1, 0.0);
       assert_int_equal(s.allocator[r].live, 0);
     }
   }
@@ -408,16 +380,13 @@ static void test_different_calls(void **state) {
 static void run_lost(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_context *own = NULL;
-  mps_domain *domain = join_domain(s, t, rank, &own);
+  scoped_context *own = NULL;
+  scoped_domain *domain = join_domain(s, t, rank, &own);
   for (int k = 1; domain && k < 4; k++) f->status[k] = mps_domain_agree(domain, MPS_OK);
   snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
-static void test_lost_partner(void **state) {
-  (void)state;
+TEST(test_lost_partner) {
   for (int64_t deaf = 1; deaf <= 6; deaf++) {
     scene s = {.what = 0};
     team t;
@@ -436,47 +405,23 @@ static void test_lost_partner(void **state) {
 
 /* ---- arguments ------------------------------------------------------------------------------- */
 
-static void test_arguments(void **state) {
-  (void)state;
-  mps_domain *domain = NULL;
+TEST(test_arguments) {
+  scoped_domain *domain = NULL;
   team t;
   team_begin(&t, 1);
   mps_domain_def def = team_domain_def(&t, 0);
   assert_int_equal(mps_domain_create(NULL, &def, &domain), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_domain_create(context, NULL, &domain), MPS_ERROR_ARGUMENT, "NULL");
-  mps_assert_fails(context, mps_domain_create(context, &def, NULL), MPS_ERROR_ARGUMENT, "out");
-  def.size = 0;
-  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
-                   "size is 0 ranks");
-  def.size = 1, def.rank = 1;
-  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
-                   "rank is 1");
-  def.rank = 0, def.star_end = NULL;
-  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
-                   "star_end is NULL");
-  def = team_domain_def(&t, 0);
-  mps_assert_ok(context, mps_domain_create(context, &def, &domain));
+  REFUSES(mps_domain_create(context, NULL, &domain), "NULL");
+  REFUSES(mps_domain_create(context, &def, NULL), "out");
+  OK(mps_domain_create(context, &def, &domain));
   double value[1] = {NAN};
-  mps_assert_fails(context, mps_domain_max(domain, 1, value), MPS_ERROR_ARGUMENT, "NaN");
-  mps_assert_fails(context, mps_domain_max(domain, 1, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  REFUSES(mps_domain_max(domain, 1, value), "NaN");
+  REFUSES(mps_domain_max(domain, 1, NULL), "NULL");
   mps_particles *whole = NULL;
-  mps_assert_fails(context, mps_domain_gather(domain, NULL, &whole), MPS_ERROR_ARGUMENT,
-                   "particles is NULL");
+  REFUSES(mps_domain_gather_fields(domain, NULL, 0, NULL, &whole), "particles is NULL");
   assert_int_equal(mps_domain_agree(NULL, MPS_OK), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_domain_rank(NULL), -1);
   assert_int_equal(mps_domain_size(NULL), 0);
   mps_domain_destroy(&domain);
-  mps_domain_destroy(&domain);
   team_end(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exact_sums),     cmocka_unit_test(test_exact_sums_have_no_order),
-      cmocka_unit_test(test_reductions),     cmocka_unit_test(test_errors_are_shared),
-      cmocka_unit_test(test_gather),         cmocka_unit_test(test_fields),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_different_calls),
-      cmocka_unit_test(test_lost_partner),   cmocka_unit_test(test_arguments),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

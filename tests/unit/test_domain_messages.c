@@ -91,10 +91,10 @@ static counts call(mps_mpm *mpm, const counted *c, int64_t steps, mps_status *so
 static void measure(void *user, team *t, int32_t rank) {
   measured *m = user;
   counted c = {.inner = team_domain_def(t, rank)};
-  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = counting(&c);
-  mps_domain *domain = NULL;
-  scene s = {.set = NULL};
+  scoped_domain *domain = NULL;
+  SCOPED(end_scene) scene s = {.set = NULL};
   mps_status status = mps_domain_create(own, &def, &domain);
   TRY(make_scene(own, domain, m->what, &s));
   TRY(mps_particles_set(s.set, "velocity", 0, 0.0));
@@ -105,9 +105,6 @@ static void measure(void *user, team *t, int32_t rank) {
                            many.copies - few.copies, many.bytes - few.bytes};
   m->sorted[rank] = s.set && mps_particles_epoch(s.set) != epoch;
   m->status[rank] = status;
-  end_scene(&s);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
 static measured run(int what, int32_t size) {
@@ -136,15 +133,11 @@ static void expect(int what, int64_t reductions, int64_t rare, int64_t meetings,
 }
 
 /* A message to the neighbours and a reduction. */
-static void test_alone(void **state) { (void)state, expect(SLIDE, 1, 0, 0, 1, 40000); }
+TEST(test_alone) { expect(SLIDE, 1, 0, 0, 1, 40000); }
 
 /* Bodies by impulses: what is reached and the tiles; ready, partners, contacts, loads and the end,
  * with how much the sweeps have left; twice the filter of the sand's stress, each eighth step. */
-static void test_bodies(void **state) {
-  (void)state, expect(PILES, 5, 2 * (STEPS / 8), 1, 2, 60000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_alone), cmocka_unit_test(test_bodies)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+TEST(test_bodies) {
+  /* of the six reductions one agrees on the memory of the state that a fast step saves */
+  expect(PILES, 6, 2 * (STEPS / 8), 1, 2, 60000);
 }

@@ -11,11 +11,10 @@ static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
 
 /* 6 x 6 particles of 1 m, at rest: 54 t a metre. */
 static mps_dynamics *block(mps_particles **set) {
-  mps_dynamics_def def = mps_dynamics_defaults();
+  DEF(dynamics, def, .dt = DT);
   mps_dynamics *dynamics = NULL;
-  def.dt = DT;
   *set = soil_particles(context, 1.0, 6.0, 6.0, 1, &soil);
-  mps_assert_ok(context, mps_dynamics_create(context, *set, &def, &dynamics));
+  OK(mps_dynamics_create(context, *set, &def, &dynamics));
   return dynamics;
 }
 
@@ -26,107 +25,85 @@ static void drop(mps_dynamics *dynamics, mps_particles *set) {
 
 static mps_totals totals_of(mps_dynamics *dynamics) {
   mps_totals t;
-  mps_assert_ok(context, mps_dynamics_get_totals(dynamics, &t));
+  OK(mps_dynamics_get_totals(dynamics, &t));
   return t;
 }
 
-static void a_changed_load_pushes_anew(void **state) {
-  (void)state;
+TEST(a_changed_load_pushes_anew) {
   mps_particles *set;
   mps_dynamics *dynamics = block(&set);
-  mps_dynamics_load_def def = mps_dynamics_load_defaults();
+  DEF(dynamics_load, def, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.81);
   int32_t number = -1;
   const double mass = totals_of(dynamics).mass;
-  def.kind = MPS_DYNAMICS_LOAD_BODY;
-  def.acceleration[1] = -9.81;
-  mps_assert_ok(context, mps_dynamics_add_load(dynamics, &def, &number));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
+  OK(mps_dynamics_add_load(dynamics, &def, &number));
+  OK(mps_dynamics_step(dynamics, STEPS));
   const double fallen = mass * -9.81 * STEPS * DT;
-  mps_assert_near(totals_of(dynamics).linear[1], fallen, 1e-11 * mass);
+  NEAR(totals_of(dynamics).linear[1], fallen, 1e-11 * mass);
 
   /* Another acceleration, then a traction on the six particles of the top. */
   def.acceleration[0] = 2.0, def.acceleration[1] = 0.0;
-  mps_assert_ok(context, mps_dynamics_set_load(dynamics, number, &def));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
-  mps_assert_near(totals_of(dynamics).linear[0], mass * 2.0 * STEPS * DT, 1e-11 * mass);
-  mps_assert_near(totals_of(dynamics).linear[1], fallen, 1e-11 * mass);
+  OK(mps_dynamics_set_load(dynamics, number, &def));
+  OK(mps_dynamics_step(dynamics, STEPS));
+  NEAR(totals_of(dynamics).linear[0], mass * 2.0 * STEPS * DT, 1e-11 * mass);
+  NEAR(totals_of(dynamics).linear[1], fallen, 1e-11 * mass);
   def = mps_dynamics_load_defaults();
   def.lower[0] = -INFINITY, def.lower[1] = 5.0, def.upper[0] = INFINITY, def.upper[1] = INFINITY;
   def.lower[2] = def.upper[2] = 0.0;
   def.traction[1] = 3000.0; /* Pa on 6 m2 */
-  mps_assert_ok(context, mps_dynamics_set_load(dynamics, number, &def));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
+  OK(mps_dynamics_set_load(dynamics, number, &def));
+  OK(mps_dynamics_step(dynamics, STEPS));
   const double lifted = fallen + 3000.0 * 6.0 * STEPS * DT;
-  mps_assert_near(totals_of(dynamics).linear[1], lifted, 1e-11 * mass);
+  NEAR(totals_of(dynamics).linear[1], lifted, 1e-11 * mass);
 
   /* A refused definition changes nothing; without the load the momentum stays. */
   def.traction[0] = NAN;
-  mps_assert_fails(context, mps_dynamics_set_load(dynamics, number, &def), MPS_ERROR_ARGUMENT,
-                   "traction[0] is nan");
-  mps_assert_fails(context, mps_dynamics_set_load(dynamics, number + 1, &def), MPS_ERROR_ARGUMENT,
-                   "no load number 1");
-  mps_assert_fails(context, mps_dynamics_set_load(dynamics, number, NULL), MPS_ERROR_ARGUMENT,
-                   "NULL");
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
+  REFUSES(mps_dynamics_set_load(dynamics, number, &def), "traction[0] is nan");
+  REFUSES(mps_dynamics_set_load(dynamics, number + 1, &def), "number is 1: there is no load");
+  REFUSES(mps_dynamics_set_load(dynamics, number, NULL), "NULL");
+  OK(mps_dynamics_step(dynamics, STEPS));
   const double twice = lifted + 3000.0 * 6.0 * STEPS * DT;
-  mps_assert_near(totals_of(dynamics).linear[1], twice, 1e-11 * mass);
-  mps_assert_ok(context, mps_dynamics_remove_load(dynamics, number));
-  mps_assert_fails(context, mps_dynamics_remove_load(dynamics, number), MPS_ERROR_ARGUMENT,
-                   "no load number 0");
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
-  mps_assert_near(totals_of(dynamics).linear[1], twice, 1e-11 * mass);
+  NEAR(totals_of(dynamics).linear[1], twice, 1e-11 * mass);
+  OK(mps_dynamics_remove_load(dynamics, number));
+  REFUSES(mps_dynamics_remove_load(dynamics, number), "number is 0: there is no load");
+  OK(mps_dynamics_step(dynamics, STEPS));
+  NEAR(totals_of(dynamics).linear[1], twice, 1e-11 * mass);
   drop(dynamics, set);
 }
 
 /* The budget of momentum: what the body gains is what load and boundary gave. */
-static void a_changed_boundary_keeps_its_account(void **state) {
-  (void)state;
+TEST(a_changed_boundary_keeps_its_account) {
   mps_particles *set;
   mps_dynamics *dynamics = block(&set);
-  mps_dynamics_load_def gravity = mps_dynamics_load_defaults();
+  DEF(dynamics_load, gravity, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.81);
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   int32_t load, number;
   mps_reaction r;
   const double mass = totals_of(dynamics).mass;
-  gravity.kind = MPS_DYNAMICS_LOAD_BODY;
-  gravity.acceleration[1] = -9.81;
-  mps_assert_ok(context, mps_dynamics_add_load(dynamics, &gravity, &load));
+  OK(mps_dynamics_add_load(dynamics, &gravity, &load));
   base.dofs = MPS_DOF_X | MPS_DOF_Y;
   base.lower[0] = base.lower[1] = -INFINITY, base.upper[0] = INFINITY, base.upper[1] = 1.0;
   base.lower[2] = base.upper[2] = 0.0;
-  mps_assert_ok(context, mps_dynamics_add_boundary(dynamics, &base, &number));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
-  mps_assert_ok(context, mps_dynamics_get_reaction(dynamics, number, &r));
+  OK(mps_dynamics_add_boundary(dynamics, &base, &number));
+  OK(mps_dynamics_step(dynamics, STEPS));
+  OK(mps_dynamics_get_reaction(dynamics, number, &r));
   assert_int_equal(r.count, 6);
   assert_true(r.impulse[1] > 0.0);
-  mps_assert_near(totals_of(dynamics).linear[1], r.impulse[1] - mass * 9.81 * STEPS * DT,
-                  1e-10 * mass);
+  NEAR(totals_of(dynamics).linear[1], r.impulse[1] - mass * 9.81 * STEPS * DT, 1e-10 * mass);
 
   /* Half the base now; what it has exerted so far stays counted. */
   base.upper[0] = 3.0;
-  mps_assert_ok(context, mps_dynamics_set_boundary(dynamics, number, &base));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
-  mps_assert_ok(context, mps_dynamics_get_reaction(dynamics, number, &r));
+  OK(mps_dynamics_set_boundary(dynamics, number, &base));
+  OK(mps_dynamics_step(dynamics, STEPS));
+  OK(mps_dynamics_get_reaction(dynamics, number, &r));
   assert_int_equal(r.count, 3);
-  mps_assert_near(totals_of(dynamics).linear[1], r.impulse[1] - 2.0 * mass * 9.81 * STEPS * DT,
-                  1e-10 * mass);
-  mps_assert_fails(context, mps_dynamics_set_boundary(dynamics, number, NULL), MPS_ERROR_ARGUMENT,
-                   "NULL");
+  NEAR(totals_of(dynamics).linear[1], r.impulse[1] - 2.0 * mass * 9.81 * STEPS * DT, 1e-10 * mass);
+  REFUSES(mps_dynamics_set_boundary(dynamics, number, NULL), "NULL");
 
   /* Released, the block falls freely. */
   const double before = totals_of(dynamics).linear[1];
-  mps_assert_ok(context, mps_dynamics_remove_boundary(dynamics, number));
-  mps_assert_fails(context, mps_dynamics_get_reaction(dynamics, number, &r), MPS_ERROR_ARGUMENT,
-                   "boundary");
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
-  mps_assert_near(totals_of(dynamics).linear[1], before - mass * 9.81 * STEPS * DT, 1e-10 * mass);
+  OK(mps_dynamics_remove_boundary(dynamics, number));
+  REFUSES(mps_dynamics_get_reaction(dynamics, number, &r), "boundary");
+  OK(mps_dynamics_step(dynamics, STEPS));
+  NEAR(totals_of(dynamics).linear[1], before - mass * 9.81 * STEPS * DT, 1e-10 * mass);
   drop(dynamics, set);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_changed_load_pushes_anew),
-      cmocka_unit_test(a_changed_boundary_keeps_its_account),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

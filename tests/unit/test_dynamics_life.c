@@ -7,58 +7,51 @@
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static void a_set_is_pinned_while_a_solver_lives(void **state) {
-  (void)state;
-  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
+TEST(a_set_is_pinned_while_a_solver_lives) {
+  scoped_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
   mps_dynamics *d = soil_solver(context, set), *second = NULL;
   const double x[2] = {9.5, 0.5};
   const int32_t fields = mps_particles_field_count(set);
-  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "held by");
-  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &second), MPS_ERROR_STATE,
-                   "held by a solver of elastodynamics");
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2),
-                   MPS_ERROR_STATE, "held by");
+  FAILS(mps_particles_append(set, 1, x), MPS_ERROR_STATE, "held by");
+  FAILS(mps_dynamics_create(context, set, NULL, &second), MPS_ERROR_STATE,
+        "held by a solver of elastodynamics");
+  FAILS(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 2), MPS_ERROR_STATE, "held by");
   assert_int_equal(mps_particles_field_count(set), fields);
   mps_dynamics_destroy(&d);
   assert_null(d);
-  mps_assert_ok(context, mps_particles_append(set, 1, x));
-  mps_particles_destroy(&set);
+  OK(mps_particles_append(set, 1, x));
 }
 
-static void added_and_moved_particles_get_new_references(void **state) {
-  (void)state;
-  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
-  mps_dynamics *d = soil_solver(context, set);
+TEST(added_and_moved_particles_get_new_references) {
+  scoped_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
+  scoped_dynamics *d = soil_solver(context, set);
   mps_dynamics_destroy(&d);
   const double x[2] = {3.5, 0.5};
-  mps_assert_ok(context, mps_particles_append(set, 1, x)); /* its reference is (0, 0) */
-  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
-  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
-  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  OK(mps_particles_append(set, 1, x)); /* its reference is (0, 0) */
+  OK(mps_particles_set(set, "density", 0, 1500.0));
+  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
+  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
   mps_edit at;
-  mps_assert_ok(context, mps_particles_edit(set, "position", &at));
+  OK(mps_particles_edit(set, "position", &at));
   *mps_edit_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
-  mps_assert_ok(context, mps_particles_commit(set, &at));
+  OK(mps_particles_commit(set, &at));
   d = soil_solver(context, set);
-  mps_assert_near(soil_value(context, set, "position", 9, 0), 3.5, 0.0);
-  mps_assert_near(soil_value(context, set, "position", 9, 1), 0.5, 0.0);
-  mps_assert_near(soil_value(context, set, "reference", 8, 1), 3.0, 0.0);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  NEAR(soil_value(set, "position", 9, 0), 3.5, 0.0);
+  NEAR(soil_value(set, "position", 9, 1), 0.5, 0.0);
+  NEAR(soil_value(set, "reference", 8, 1), 3.0, 0.0);
 }
 
 /* Parts given up in each of the 24 orders; the address sanitizer looks for leaks. */
-static void parts_may_go_in_any_order(void **state) {
-  (void)state;
+TEST(parts_may_go_in_any_order) {
   for (int order = 0; order < 24; order++) {
     mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil_plain);
     mps_dynamics *d = NULL;
     mps_signal *signal = NULL;
     const int64_t id = 0;
-    mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
-    mps_assert_ok(own, mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
-    mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &id));
+    OK(mps_dynamics_create(own, set, NULL, &d));
+    OK(mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
+    OK(soil_add_driven(d, 0, signal, 1.0, 1, &id));
     int left[4] = {0, 1, 2, 3};
     for (int k = 0, rest = order; k < 4; k++) {
       const int pick = rest % (4 - k);
@@ -77,13 +70,12 @@ static void parts_may_go_in_any_order(void **state) {
 
 /* Everything that allocates: set, columns, solver, boundaries, limits, energy, a run. */
 static mps_status everything(mps_context *own, int integrator) {
-  mps_particles_def set_def = mps_particles_defaults();
-  mps_particles *set = NULL;
-  mps_dynamics *d = NULL;
-  mps_signal *signal = NULL;
+  DEF(particles, set_def, .spacing = 1.0);
+  scoped_particles *set = NULL;
+  scoped_dynamics *d = NULL;
+  scoped_signal *signal = NULL, *factor = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
   const int64_t ids[3] = {0, 1, 2};
-  set_def.spacing = 1.0;
   mps_status status = mps_particles_create(own, &set_def, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(set, "density", 0, 1500.0);
@@ -96,11 +88,12 @@ static mps_status everything(mps_context *own, int integrator) {
     if (status == MPS_OK) *mps_edit_f64(&h, 5, 0) = 0.2; /* uneven */
     if (status == MPS_OK) status = mps_particles_commit(set, &h);
   }
-  if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2);
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = integrator;
+  if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 2);
+  DEF(dynamics, def, .integrator = integrator);
   if (status == MPS_OK) status = mps_dynamics_create(own, set, &def, &d);
   if (status == MPS_OK) status = mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal);
+  if (status == MPS_OK)
+    status = mps_signal_create_sine(own, MPS_SIGNAL_QUANTITY_VALUE, 4.0, 1.0, 0.0, &factor);
   if (status == MPS_OK) status = soil_add_held(d, MPS_DOF_Y, 3, ids);
   if (status == MPS_OK) status = soil_add_driven(d, 0, signal, 1.0, 3, ids);
   mps_dynamics_boundary_def viscous = mps_dynamics_boundary_defaults();
@@ -108,26 +101,20 @@ static mps_status everything(mps_context *own, int integrator) {
   if (status == MPS_OK) status = soil_add_viscous(d, &viscous, 3, ids);
   mps_dynamics_linear_limit limit;
   if (status == MPS_OK) status = mps_dynamics_find_limit(d, 1.0, &limit);
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  DEF(dynamics_load, load, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.8,
+      .signal[1] = factor);
   int32_t number;
-  load.kind = MPS_DYNAMICS_LOAD_BODY;
-  load.acceleration[1] = -9.8;
-  load.signal[1] = signal;
   if (status == MPS_OK) status = mps_dynamics_add_load(d, &load, &number);
   if (status == MPS_OK) status = mps_dynamics_run(d, 0.01, 1, NULL, NULL);
   if (status == MPS_OK) status = mps_dynamics_set_dt(d, 1e-3);
   mps_totals energy;
   if (status == MPS_OK) status = mps_dynamics_get_totals(d, &energy);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_signal_destroy(&signal);
   return status;
 }
 
 /* Refuses one allocation after the other. Arrays that belong together are requested together, so
  * unlike test_allocator_sweep this does not mind if some follow the refused one. */
-static void a_refused_allocation_leaks_nothing(void **state) {
-  (void)state;
+TEST(a_refused_allocation_leaks_nothing) {
   for (int integrator = 0; integrator < 3; integrator++) {
     mps_status status = MPS_ERROR_MEMORY;
     int64_t refuse = 2;
@@ -147,39 +134,27 @@ static void a_refused_allocation_leaks_nothing(void **state) {
   }
 }
 
-static void steps_allocate_nothing(void **state) {
-  (void)state;
+TEST(steps_allocate_nothing) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
   mps_particles *set = soil_particles(own, 1.0, 10.0, 20.0, 1, &soil_plain);
   mps_dynamics *d = NULL;
   mps_signal *signal = NULL;
   const int64_t ids[2] = {0, 199};
-  mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
-  mps_assert_ok(own, mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
-  mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &ids[0]));
-  mps_assert_ok(own, soil_add_viscous(d, NULL, 1, &ids[1]));
-  mps_assert_ok(own, mps_dynamics_step(d, 1)); /* finds dt */
+  OK(mps_dynamics_create(own, set, NULL, &d));
+  OK(mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
+  OK(soil_add_driven(d, 0, signal, 1.0, 1, &ids[0]));
+  OK(soil_add_viscous(d, NULL, 1, &ids[1]));
+  OK(mps_dynamics_step(d, 1)); /* finds dt */
   const int64_t calls = allocator.calls;
-  mps_assert_ok(own, mps_dynamics_step(d, 20));
-  mps_assert_ok(own, mps_dynamics_run(d, mps_dynamics_time(d) + 0.1, 3, NULL, NULL));
-  mps_assert_ok(own, mps_dynamics_restart(d, 0.0));
-  mps_assert_ok(own, mps_dynamics_step(d, 20));
+  OK(mps_dynamics_step(d, 20));
+  OK(mps_dynamics_run(d, mps_dynamics_time(d) + 0.1, 3, NULL, NULL));
+  OK(mps_dynamics_restart(d, 0.0));
+  OK(mps_dynamics_step(d, 20));
   assert_int_equal(allocator.calls, calls);
   mps_dynamics_destroy(&d);
   mps_signal_destroy(&signal);
   mps_particles_destroy(&set);
   mps_context_destroy(&own);
   assert_int_equal(allocator.live, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_set_is_pinned_while_a_solver_lives),
-      cmocka_unit_test(added_and_moved_particles_get_new_references),
-      cmocka_unit_test(parts_may_go_in_any_order),
-      cmocka_unit_test(a_refused_allocation_leaks_nothing),
-      cmocka_unit_test(steps_allocate_nothing),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

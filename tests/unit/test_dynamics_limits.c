@@ -4,19 +4,17 @@
 #include "soil_column.h"
 #include "test_fixture.h"
 
-#include <mps/experimental.h>
-
 static const double pi = 3.14159265358979323846;
 
 static mps_dynamics *solver(mps_particles *set, const mps_dynamics_def *def) {
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, set, def, &dynamics));
+  OK(mps_dynamics_create(context, set, def, &dynamics));
   return dynamics;
 }
 
 static mps_dynamics_linear_limit linear(mps_dynamics *dynamics, double duration) {
   mps_dynamics_linear_limit limit;
-  mps_assert_ok(context, mps_dynamics_find_limit(dynamics, duration, &limit));
+  OK(mps_dynamics_find_limit(dynamics, duration, &limit));
   return limit;
 }
 
@@ -26,42 +24,37 @@ static bool printed_torque; /* of what limit_of makes */
 static mps_dynamics_linear_limit limit_of(const mps_dynamics_def *def, int width, int height,
                                           double ratio, double damping) {
   const soil_layer soil = {1e9, 1700.0, 120.0, 120.0 * ratio, damping};
-  mps_particles *set = soil_particles(context, 0.5, 0.5 * width, 0.5 * height, 1, &soil);
-  mps_dynamics *d = solver(set, def);
-  if (printed_torque) mps_assert_ok(context, mps_experimental_dynamics_printed_torque(d));
+  scoped_particles *set = soil_particles(context, 0.5, 0.5 * width, 0.5 * height, 1, &soil);
+  scoped_dynamics *d = solver(set, def);
+  if (printed_torque) OK(mps_experimental_dynamics_printed_torque(d));
   const mps_dynamics_linear_limit limit = linear(d, 0.0);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
   return limit;
 }
 
 /* ---- linear theory against closed forms ------------------------------------------------------ */
 
-static void a_large_lattice_spins_at_root_24(void **state) {
-  (void)state;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.period_x = 4.0;
+TEST(a_large_lattice_spins_at_root_24) {
+  DEF(dynamics, def, .period_x = 4.0);
   for (int torque = 0; torque < 2; torque++) {
     printed_torque = torque;
     const double omega = sqrt(torque ? 48.0 : 24.0) * 120.0 / 0.5;
     const mps_dynamics_linear_limit undamped = limit_of(&def, 8, 300, 2.0, 0.0);
     assert_true(undamped.omega <= omega * (1.0 + 1e-12)); /* its ends are softer */
-    mps_assert_near(undamped.omega / omega, 1.0, 1e-4);
-    mps_assert_near(undamped.dt, 2.0 / undamped.omega, 1e-15);
+    NEAR(undamped.omega / omega, 1.0, 1e-4);
+    NEAR(undamped.dt, 2.0 / undamped.omega, 1e-15);
     assert_true(undamped.residual < 1e-6 && undamped.iterations > 0);
     const double h = 0.1, w = undamped.omega, alpha = 4.0 * pi * 14.0 / 15.0 * h;
     const double b = h / (pi * 15.0) + alpha / (w * w);
     const mps_dynamics_linear_limit damped = limit_of(&def, 8, 300, 2.0, h);
-    mps_assert_near(damped.dt / (-b + sqrt(b * b + 4.0 / (w * w))), 1.0, 1e-9);
-    mps_assert_near(damped.omega / w, 1.0, 1e-9);
+    NEAR(damped.dt / (-b + sqrt(b * b + 4.0 / (w * w))), 1.0, 1e-9);
+    NEAR(damped.omega / w, 1.0, 1e-9);
   }
   printed_torque = false;
 }
 
 /* Two particles: w^2 = 5 k Vs^2/D^2 of the shear and spin mode, 2 k Vs^2/D^2 + 4 (l kc)^2 of the
  * stretching, with k = (4d/n0) w and kc = (d/n0) w; l^2 = Vp^2 - 2 Vs^2. */
-static void two_particles_have_two_modes(void **state) {
-  (void)state;
+TEST(two_particles_have_two_modes) {
   const double w = 0.5, n0 = 4.0 * w + 4.0 * (1.5 / sqrt(2.0) - 1.0), k = 8.0 / n0 * w;
   const double kc = 2.0 / n0 * w, V2 = 120.0 * 120.0 / (0.5 * 0.5);
   for (int turned = 0; turned < 2; turned++)
@@ -70,13 +63,12 @@ static void two_particles_have_two_modes(void **state) {
       const double stretch = (2.0 * k + 4.0 * (ratio * ratio - 2.0) * kc * kc) * V2;
       const mps_dynamics_linear_limit limit =
           limit_of(NULL, turned ? 1 : 2, turned ? 2 : 1, ratio, 0.0);
-      mps_assert_near(limit.omega / sqrt(fmax(shear, stretch)), 1.0, 1e-9);
+      NEAR(limit.omega / sqrt(fmax(shear, stretch)), 1.0, 1e-9);
     }
 }
 
 /* What is predicted without particles holds for bodies with edges, and does not waste all. */
-static void the_predicted_step_suits_thin_strips(void **state) {
-  (void)state;
+TEST(the_predicted_step_suits_thin_strips) {
   const double reach[] = {1.2, 1.5, 2.0, 2.6, 3.3}, ratio[] = {1.5, 3.2, 3.7, 5.0, 20.0};
   for (int r = 0; r < 5; r++)
     for (int v = 0; v < 5; v++)
@@ -88,7 +80,7 @@ static void the_predicted_step_suits_thin_strips(void **state) {
         question.spacing = 0.5;
         question.shear_velocity = 120.0;
         question.pressure_velocity = 120.0 * ratio[v];
-        mps_assert_ok(context, mps_dynamics_predict(context, &question, &predicted));
+        OK(mps_dynamics_predict(context, &question, &predicted));
         const double limit = limit_of(&def, thick, 20, ratio[v], 0.0).dt;
         if (!(predicted.dt <= limit * (1.0 + 1e-6) && predicted.dt > 0.3 * limit))
           fail_msg("re = %g D, Vp = %g Vs, %d particles thick: predicted %g s, limit %g s",
@@ -96,38 +88,31 @@ static void the_predicted_step_suits_thin_strips(void **state) {
       }
 }
 
-static void without_forces_only_alpha_limits(void **state) {
-  (void)state;
+TEST(without_forces_only_alpha_limits) {
   for (int integrator = 0; integrator < 3; integrator++) {
-    mps_dynamics_def def = mps_dynamics_defaults();
-    def.integrator = integrator;
+    DEF(dynamics, def, .integrator = integrator);
     const mps_dynamics_linear_limit free_one = limit_of(&def, 1, 1, 2.0, 0.0);
     assert_true(isinf(free_one.dt) && free_one.dt > 0.0);
-    mps_assert_near(free_one.omega, 0.0, 0.0);
+    NEAR(free_one.omega, 0.0, 0.0);
     const double alpha = 4.0 * pi * 14.0 / 15.0 * 0.3;
-    mps_assert_near(limit_of(&def, 1, 1, 2.0, 0.3).dt, 2.0 / alpha, 1e-14);
+    NEAR(limit_of(&def, 1, 1, 2.0, 0.3).dt, 2.0 / alpha, 1e-14);
     const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
-    mps_particles *set = soil_particles(context, 0.5, 2.0, 2.0, 1, &soil);
-    mps_dynamics *d = solver(set, &def);
-    soil_hold(context, set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
+    scoped_particles *set = soil_particles(context, 0.5, 2.0, 2.0, 1, &soil);
+    scoped_dynamics *d = solver(set, &def);
+    soil_hold(set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
     assert_true(isinf(linear(d, 0.0).dt));
-    mps_dynamics_destroy(&d);
-    mps_particles_destroy(&set);
   }
 }
 
-static void boundaries_change_the_limit(void **state) {
-  (void)state;
+TEST(boundaries_change_the_limit) {
   const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
-  mps_particles *set = soil_particles(context, 0.5, 4.0, 4.0, 1, &soil);
-  mps_dynamics *d = solver(set, NULL);
+  scoped_particles *set = soil_particles(context, 0.5, 4.0, 4.0, 1, &soil);
+  scoped_dynamics *d = solver(set, NULL);
   const double spinning = linear(d, 0.0).dt;
-  soil_hold(context, set, d, MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
+  soil_hold(set, d, MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
   const double still = linear(d, 0.0).dt;
   assert_true(still > 1.05 * spinning);
-  mps_assert_near(mps_dynamics_dt(d), 0.9 * still, 1e-12);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  NEAR(mps_dynamics_dt(d), 0.9 * still, 1e-12);
 }
 
 /* ---- linear theory against runs -------------------------------------------------------------- */
@@ -143,15 +128,15 @@ static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) 
   const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, damping};
   mps_particles *set = soil_particles(context, 1.0, 8.0, 8.0, 1, &soil);
   mps_edit x, u, th, rho, vs, vp, h;
-  mps_assert_ok(context, mps_particles_add_field(set, "displacement", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "rotation", 0));
-  mps_assert_ok(context, mps_particles_edit(set, "displacement", &u));
-  mps_assert_ok(context, mps_particles_edit(set, "rotation", &th));
-  mps_assert_ok(context, mps_particles_edit(set, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(set, "density", &rho));
-  mps_assert_ok(context, mps_particles_edit(set, "shear_velocity", &vs));
-  mps_assert_ok(context, mps_particles_edit(set, "pressure_velocity", &vp));
-  mps_assert_ok(context, mps_particles_edit(set, "damping", &h));
+  OK(mps_particles_add_field(set, "displacement", 0));
+  OK(mps_particles_add_field(set, "rotation", 0));
+  OK(mps_particles_edit(set, "displacement", &u));
+  OK(mps_particles_edit(set, "rotation", &th));
+  OK(mps_particles_edit(set, "position", &x));
+  OK(mps_particles_edit(set, "density", &rho));
+  OK(mps_particles_edit(set, "shear_velocity", &vs));
+  OK(mps_particles_edit(set, "pressure_velocity", &vp));
+  OK(mps_particles_edit(set, "damping", &h));
   for (int64_t k = 0; k < x.view.shape[0]; k++) {
     if (random_part(&seed) > 0.3) {
       *mps_edit_f64(&rho, k, 0) = 2000.0;
@@ -166,13 +151,13 @@ static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) 
       *mps_edit_f64(&x, k, c) += *mps_view_f64(&u.view, k, c);
     }
   }
-  mps_assert_ok(context, mps_particles_commit(set, &vp));
-  mps_assert_ok(context, mps_particles_commit(set, &vs));
-  mps_assert_ok(context, mps_particles_commit(set, &rho));
-  mps_assert_ok(context, mps_particles_commit(set, &u));
-  mps_assert_ok(context, mps_particles_commit(set, &x));
-  mps_assert_ok(context, mps_particles_commit(set, &th));
-  mps_assert_ok(context, mps_particles_commit(set, &h));
+  OK(mps_particles_commit(set, &vp));
+  OK(mps_particles_commit(set, &vs));
+  OK(mps_particles_commit(set, &rho));
+  OK(mps_particles_commit(set, &u));
+  OK(mps_particles_commit(set, &x));
+  OK(mps_particles_commit(set, &th));
+  OK(mps_particles_commit(set, &h));
   return set;
 }
 
@@ -185,14 +170,14 @@ static double growth(const mps_dynamics_def *user_def, uint64_t seed, double dam
   def.divergence = 1e6;
   mps_dynamics *d = solver(set, &def);
   *dt = linear(d, duration).dt;
-  mps_assert_ok(context, mps_dynamics_set_dt(d, factor * *dt));
+  OK(mps_dynamics_set_dt(d, factor * *dt));
   if (duration > 0.0) steps = (int64_t)(duration / (factor * *dt) + 0.5);
   mps_view u, th;
   double most = 0.0;
   const mps_status status = mps_dynamics_step(d, steps);
   assert_true(status == MPS_OK || status == MPS_ERROR_DIVERGED);
-  mps_assert_ok(context, mps_particles_view(set, "displacement", &u));
-  mps_assert_ok(context, mps_particles_view(set, "rotation", &th));
+  OK(mps_particles_view(set, "displacement", &u));
+  OK(mps_particles_view(set, "rotation", &th));
   for (int64_t k = 0; k < u.shape[0]; k++) {
     most = fmax(most, fabs(*mps_view_f64(&th, k, 0)));
     for (int c = 0; c < 2; c++) most = fmax(most, fabs(*mps_view_f64(&u, k, c)));
@@ -202,17 +187,14 @@ static double growth(const mps_dynamics_def *user_def, uint64_t seed, double dam
   return status == MPS_OK ? most / 1e-20 : INFINITY;
 }
 
-static void runs_hold_below_the_limit_and_not_above(void **state) {
-  (void)state;
+TEST(runs_hold_below_the_limit_and_not_above) {
   const double damping[4] = {0.0, 0.02, 0.2, 1.0};
   for (int integrator = 0; integrator < 2; integrator++)
     for (int form = 0; form < 2; form++)
       for (int k = 0; k < 4; k++)
         for (int uneven = 0; uneven < 2; uneven++) {
-          mps_dynamics_def def = mps_dynamics_defaults();
+          DEF(dynamics, def, .integrator = integrator, .damping = form);
           double dt;
-          def.integrator = integrator;
-          def.damping = form;
           const uint64_t seed = 17u + (uint64_t)k;
           const double below = growth(&def, seed, damping[k], uneven, 0.0, 0.995, &dt, 1500);
           const double above = growth(&def, seed, damping[k], uneven, 0.0, 1.02, &dt, 1500);
@@ -223,10 +205,8 @@ static void runs_hold_below_the_limit_and_not_above(void **state) {
         }
 }
 
-static void euler_holds_below_its_limit_and_not_above(void **state) {
-  (void)state;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = MPS_DYNAMICS_INTEGRATOR_EULER;
+TEST(euler_holds_below_its_limit_and_not_above) {
+  DEF(dynamics, def, .integrator = MPS_DYNAMICS_INTEGRATOR_EULER);
   const double damping[4] = {0.01, 0.05, 0.3, 1.0};
   for (int k = 0; k < 4; k++) {
     double dt;
@@ -240,10 +220,8 @@ static void euler_holds_below_its_limit_and_not_above(void **state) {
 
 /* Undamped Euler grows, over the duration requested, by at most 1e15; at the limit by nearly that:
  * the part of the highest mode in the initial state is a few per cent. */
-static void eulers_limit_for_a_duration(void **state) {
-  (void)state;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = MPS_DYNAMICS_INTEGRATOR_EULER;
+TEST(eulers_limit_for_a_duration) {
+  DEF(dynamics, def, .integrator = MPS_DYNAMICS_INTEGRATOR_EULER);
   const double durations[2] = {0.4, 2.0};
   for (int k = 0; k < 2; k++) {
     double dt;
@@ -258,47 +236,27 @@ static void eulers_limit_for_a_duration(void **state) {
 /* ---- Yoshida's column ------------------------------------------------------------------------ */
 
 /* The paper's column with the limits of the reference values. */
-static void the_papers_column(void **state) {
-  (void)state;
+TEST(the_papers_column) {
   const struct {
     char wave;
     double h, linear; /* ms */
   } cases[] = {{'S', 0.0, 4.1047},  {'S', 0.001, 4.084}, {'S', 0.048, 3.209}, {'S', 0.22, 1.546},
                {'P', 0.001, 8.184}, {'P', 0.048, 7.242}, {'P', 0.22, 4.750}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    mps_particles *set;
+    scoped_particles *set = NULL;
     const bool P = cases[k].wave == 'P';
-    mps_dynamics *d = paper_column(context, 0.5, P ? 50.0 : 100.0, P ? 100.0 : 200.0, cases[k].h,
-                                   cases[k].wave, NULL, &set);
+    scoped_dynamics *d = paper_column(context, 0.5, P ? 50.0 : 100.0, P ? 100.0 : 200.0, cases[k].h,
+                                      cases[k].wave, NULL, &set);
     const double quick = mps_dynamics_limit(d), exact = linear(d, 0.0).dt;
-    mps_assert_near(1e3 * exact / cases[k].linear, 1.0, 1e-3);
+    NEAR(1e3 * exact / cases[k].linear, 1.0, 1e-3);
     assert_true(quick < exact && quick > 0.75 * exact); /* at once, before the search */
-    mps_assert_near(mps_dynamics_limit(d), exact, 0.0);
-    mps_dynamics_destroy(&d);
-    mps_particles_destroy(&set);
+    NEAR(mps_dynamics_limit(d), exact, 0.0);
   }
-  mps_particles *set;
+  scoped_particles *set = NULL;
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *d = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &set);
-  mps_assert_ok(context, mps_experimental_dynamics_printed_torque(d));
-  mps_assert_near(linear(d, 0.0).dt, 2.9048e-3, 1e-7);
-  mps_assert_ok(context, mps_dynamics_step(d, 1));
-  mps_assert_fails(context, mps_experimental_dynamics_printed_torque(d), MPS_ERROR_STATE, "steps");
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_large_lattice_spins_at_root_24),
-      cmocka_unit_test(two_particles_have_two_modes),
-      cmocka_unit_test(the_predicted_step_suits_thin_strips),
-      cmocka_unit_test(without_forces_only_alpha_limits),
-      cmocka_unit_test(boundaries_change_the_limit),
-      cmocka_unit_test(runs_hold_below_the_limit_and_not_above),
-      cmocka_unit_test(euler_holds_below_its_limit_and_not_above),
-      cmocka_unit_test(eulers_limit_for_a_duration),
-      cmocka_unit_test(the_papers_column),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  scoped_dynamics *d = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &set);
+  OK(mps_experimental_dynamics_printed_torque(d));
+  NEAR(linear(d, 0.0).dt, 2.9048e-3, 1e-7);
+  OK(mps_dynamics_step(d, 1));
+  FAILS(mps_experimental_dynamics_printed_torque(d), MPS_ERROR_STATE, "steps");
 }

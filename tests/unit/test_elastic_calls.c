@@ -22,13 +22,12 @@ static test_body square(mps_context *context, int cells) {
   test_body b = test_body_begin(context, 2, 0.5);
   test_body_box(&b, 0, 0, 0, 0.5 * cells, 0.5 * cells, 0);
   test_body_finish(&b, 2.0, 0.3, NULL);
-  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
+  OK(mps_particles_set(b.particles, "density", 0, 1.0));
   int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
-  for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, test_prescribe(b.elastic, c, count, ids, NULL));
+  for (int c = 0; c < 2; c++) OK(test_prescribe(b.elastic, c, count, ids, NULL));
   free(ids);
   const double gravity[2] = {0.2, -1.0};
-  mps_assert_ok(context, test_body_force(b.elastic, gravity));
+  OK(test_body_force(b.elastic, gravity));
   return b;
 }
 
@@ -51,78 +50,61 @@ static int32_t cancel(void *user) {
 }
 
 static mps_context *hooked(hook *h) {
-  mps_context_def def = mps_context_defaults();
+  DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_SERIAL, .cancel = cancel, .cancel_user = h);
   mps_context *context = NULL;
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  def.cancel = cancel;
-  def.cancel_user = h;
   assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
   return context;
 }
 
 /* ---- tests ----------------------------------------------------------------------------------- */
 
-static void a_set_of_another_context_is_refused(void **state) {
-  (void)state;
-  mps_context *one = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1), *other = test_context(0, 1);
-  test_body b = square(one, 3);
+TEST(a_set_of_another_context_is_refused) {
+  scoped_context *one = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1), *other = test_context(0, 1);
+  scoped_test_body b = square(one, 3);
   mps_elastic *e = NULL;
-  mps_assert_fails(other, mps_elastic_create(other, b.particles, NULL, &e), MPS_ERROR_ARGUMENT,
-                   "another context");
+  FAILS_ON(other, mps_elastic_create(other, b.particles, NULL, &e), MPS_ERROR_ARGUMENT,
+           "another context");
   assert_null(e);
   assert_ptr_equal(mps_elastic_context(b.elastic), one);
   assert_null(mps_elastic_context(NULL));
-  test_body_end(&b);
-  mps_context_destroy(&one);
-  mps_context_destroy(&other);
 }
 
-static void blas_has_the_threads_of_the_context_while_it_works(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  test_body b = square(context, 12);
+TEST(blas_has_the_threads_of_the_context_while_it_works) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_test_body b = square(context, 12);
   blas_threads = blas_least = 7;
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  OK(mps_elastic_solve(b.elastic));
   assert_int_equal(blas_least, 1);
   assert_int_equal(blas_threads, 7); /* as the process had it */
-  test_body_end(&b);
-  mps_context_destroy(&context);
 }
 
 /* Wherever the hook says stop, the call ends and the fields are as before. */
-static void a_cancelled_solution_changes_nothing(void **state) {
-  (void)state;
+TEST(a_cancelled_solution_changes_nothing) {
   hook h = {.at = INT32_MAX};
-  mps_context *context = hooked(&h);
-  test_body b = square(context, 12);
+  scoped_context *context = hooked(&h);
+  scoped_test_body b = square(context, 12);
   for (h.at = 1; h.at <= 3; h.at++) {
     h.calls = 0;
-    mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_CANCELLED, "cancelled");
+    FAILS(mps_elastic_solve(b.elastic), MPS_ERROR_CANCELLED, "cancelled");
     for (int64_t i = 0; i < b.n; i++) assert_true(test_value(&b, "displacement", i, 1) == 0.0);
   }
   h.at = INT32_MAX;
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  OK(mps_elastic_solve(b.elastic));
   assert_true(test_value(&b, "displacement", b.n - 1, 1) < 0.0);
-  test_body_end(&b);
-  mps_context_destroy(&context);
 }
 
 /* It deadlocked: the hook computes modes while modes are computed. */
-static void modes_within_modes_are_an_error(void **state) {
-  (void)state;
+TEST(modes_within_modes_are_an_error) {
   hook h = {.at = INT32_MAX};
-  mps_context *context = hooked(&h);
-  test_body b = square(context, 6), other = square(context, 5);
+  scoped_context *context = hooked(&h);
+  scoped_test_body b = square(context, 6), other = square(context, 5);
   double omega[2];
-  mps_assert_ok(context, mps_elastic_modes(b.elastic, 1, omega, NULL));
-  mps_assert_ok(context, mps_elastic_modes(other.elastic, 1, omega, NULL)); /* both factors made */
+  OK(mps_elastic_modes(b.elastic, 1, omega, NULL));
+  OK(mps_elastic_modes(other.elastic, 1, omega, NULL)); /* both factors made */
   h.modes = other.elastic;
-  mps_assert_ok(context, mps_elastic_modes(b.elastic, 2, omega, NULL));
+  OK(mps_elastic_modes(b.elastic, 2, omega, NULL));
   assert_int_equal(h.status, MPS_ERROR_STATE);
   assert_true(omega[0] > 0.0 && omega[1] > omega[0]);
-  test_body_end(&b);
-  test_body_end(&other);
-  mps_context_destroy(&context);
 }
 
 static void *find_modes(void *data) {
@@ -133,8 +115,7 @@ static void *find_modes(void *data) {
   return NULL;
 }
 
-static void modes_of_two_threads_wait_for_one_another(void **state) {
-  (void)state;
+TEST(modes_of_two_threads_wait_for_one_another) {
   mps_context *context[2];
   test_body b[2];
   pthread_t thread[2];
@@ -154,15 +135,4 @@ static void modes_of_two_threads_wait_for_one_another(void **state) {
     test_body_end(&b[k]);
     mps_context_destroy(&context[k]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_set_of_another_context_is_refused),
-      cmocka_unit_test(blas_has_the_threads_of_the_context_while_it_works),
-      cmocka_unit_test(a_cancelled_solution_changes_nothing),
-      cmocka_unit_test(modes_within_modes_are_an_error),
-      cmocka_unit_test(modes_of_two_threads_wait_for_one_another),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

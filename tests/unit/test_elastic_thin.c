@@ -3,13 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_journal.h"
 
-#include <mps/mps.h>
-
-#include <math.h>
-
-#define OK(call) mps_assert_ok(own, call)
-
-static void hold_lowest(mps_context *own, mps_elastic *e, int32_t axis) {
+static void hold_lowest(mps_elastic *e, int32_t axis) {
   mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   for (int c = 0; c < 3; c++) foot.lower[c] = -INFINITY, foot.upper[c] = INFINITY;
   foot.upper[axis] = 0.1;
@@ -21,13 +15,11 @@ static void hold_lowest(mps_context *own, mps_elastic *e, int32_t axis) {
 static int warnings(journal *j, double bending, int boxes, const int cells[][3]) {
   *j = (journal){0};
   mps_context *own = journal_context(j, NULL);
-  mps_particles_def def = mps_particles_defaults();
-  mps_elastic_def method = mps_elastic_defaults();
+  DEF(particles, def, .spacing = 0.1, .dim = cells[0][2] ? 3 : 2);
+  DEF(elastic, method, .bending = bending);
   mps_particles *set = NULL;
   mps_elastic *e = NULL;
   double lo[3] = {0.0, 0.0, 0.0};
-  def.spacing = 0.1, def.dim = cells[0][2] ? 3 : 2;
-  method.bending = bending;
   OK(mps_particles_create(own, &def, &set));
   for (int k = 0; k < boxes; k++) {
     double hi[3];
@@ -38,7 +30,7 @@ static int warnings(journal *j, double bending, int boxes, const int cells[][3])
   OK(mps_particles_set(set, "young", 0, 1e6));
   OK(mps_particles_set(set, "poisson", 0, 0.3));
   OK(mps_elastic_create(own, set, &method, &e));
-  hold_lowest(own, e, 1);
+  hold_lowest(e, 1);
   for (int k = 0; k < 2; k++) OK(mps_elastic_solve(e));
   mps_elastic_destroy(&e);
   mps_particles_destroy(&set);
@@ -46,8 +38,7 @@ static int warnings(journal *j, double bending, int boxes, const int cells[][3])
   return j->count;
 }
 
-static void slender_parts_are_reported_once(void **state) {
-  (void)state;
+TEST(slender_parts_are_reported_once) {
   journal j;
   assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{4, 40, 0}}), 1);
   assert_non_null(strstr(j.last, "160 of 160 particles"));
@@ -59,8 +50,7 @@ static void slender_parts_are_reported_once(void **state) {
   assert_non_null(strstr(j.last, "of 198 particles"));
 }
 
-static void other_bodies_are_not(void **state) {
-  (void)state;
+TEST(other_bodies_are_not) {
   journal j;
   assert_int_equal(warnings(&j, 0.0, 1, (const int[][3]){{4, 40, 0}}), 0);
   assert_int_equal(warnings(&j, 1.0, 1, (const int[][3]){{4, 40, 0}}), 0);
@@ -71,16 +61,14 @@ static void other_bodies_are_not(void **state) {
 }
 
 /* The rim of a disc has short rows of cells without being slender. */
-static void a_disc_is_not_slender(void **state) {
-  (void)state;
+TEST(a_disc_is_not_slender) {
   journal j = {0};
-  mps_context *own = journal_context(&j, NULL);
-  mps_particles_def def = mps_particles_defaults();
-  mps_particles *set = NULL;
-  mps_elastic *e = NULL;
+  scoped_context *own = journal_context(&j, NULL);
+  DEF(particles, def, .spacing = 0.1);
+  scoped_particles *set = NULL;
+  scoped_elastic *e = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
   int64_t out[1600], count = 0;
-  def.spacing = 0.1;
   OK(mps_particles_create(own, &def, &set));
   OK(mps_particles_fill_box(set, lo, hi, NULL));
   OK(mps_particles_set(set, "young", 0, 1e6));
@@ -92,19 +80,9 @@ static void a_disc_is_not_slender(void **state) {
       out[count++] = mps_particles_nearest(set, at);
     }
   }
-  OK(mps_particles_remove(set, count, out));
+  OK(mps_particles_remove(set, out, count));
   OK(mps_elastic_create(own, set, NULL, &e));
-  hold_lowest(own, e, 1);
+  hold_lowest(e, 1);
   OK(mps_elastic_solve(e));
   assert_int_equal(j.count, 0);
-  mps_elastic_destroy(&e);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(slender_parts_are_reported_once),
-                                     cmocka_unit_test(other_bodies_are_not),
-                                     cmocka_unit_test(a_disc_is_not_slender)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

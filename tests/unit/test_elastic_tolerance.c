@@ -3,14 +3,6 @@
  * `scheme`, which the tolerance bounds. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/elastic_solver.h>
-#include <mps/mps.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#define OK(call) mps_assert_ok(context, call)
 #define SPACING 0.1
 #define YOUNG 1e6
 #define DENSITY 1000.0
@@ -23,13 +15,12 @@ typedef struct budget {
 static mps_elastic *make(mps_particles **set, int32_t solver, double tolerance, double dt,
                          double stiffness_damping) {
   static const double lo[2] = {0.0, 0.0}, hi[2] = {1.2, 0.4}, end[2] = {0.1, 0.4};
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = SPACING);
   mps_elastic_def how = mps_elastic_defaults();
   mps_elastic_boundary_def left = mps_elastic_boundary_defaults();
   mps_elastic_load_def load = mps_elastic_load_defaults();
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   mps_elastic *e = NULL;
-  def.spacing = SPACING;
   OK(mps_particles_create(context, &def, set));
   OK(mps_particles_fill_box(*set, lo, hi, NULL));
   OK(mps_particles_set(*set, "young", 0, YOUNG));
@@ -40,6 +31,7 @@ static mps_elastic *make(mps_particles **set, int32_t solver, double tolerance, 
   for (int c = 0; c < 2; c++) left.lower[c] = lo[c], left.upper[c] = end[c];
   left.lower[2] = -INFINITY, left.upper[2] = INFINITY;
   OK(mps_elastic_add_boundary(e, &left, NULL));
+  load.kind = MPS_ELASTIC_LOAD_VOLUME, load.all = 1;
   load.force[0] = 3e3, load.force[1] = -2e3;
   OK(mps_elastic_add_load(e, &load, NULL));
   motion.dt = dt, motion.stiffness_damping = stiffness_damping;
@@ -66,8 +58,8 @@ static void read_motion(mps_particles *set, double *out) {
 static budget swing(int32_t solver, double tolerance, double dt, double stiffness_damping) {
   enum { MOST = 4 * 64 };
   static double now[MOST], then[MOST];
-  mps_particles *set = NULL;
-  mps_elastic *e = make(&set, solver, tolerance, dt, stiffness_damping);
+  scoped_particles *set = NULL;
+  scoped_elastic *e = make(&set, solver, tolerance, dt, stiffness_damping);
   const double m = DENSITY * SPACING * SPACING,
                k = 8.0 * YOUNG * (1.0 + 2.0 * stiffness_damping / dt);
   budget b = {0.0, 0.0, 0.0, 0.0};
@@ -95,13 +87,10 @@ static budget swing(int32_t solver, double tolerance, double dt, double stiffnes
     b.largest = fmax(b.largest, fabs(t.dissipated));
     b.scheme = fmax(b.scheme, fabs(t.scheme));
   }
-  mps_elastic_destroy(&e);
-  mps_particles_destroy(&set);
   return b;
 }
 
-static void what_a_tolerance_leaves_is_counted(void **state) {
-  (void)state;
+TEST(what_a_tolerance_leaves_is_counted) {
   static const double tolerances[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
   double coarse = 0.0;
   for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
@@ -116,8 +105,7 @@ static void what_a_tolerance_leaves_is_counted(void **state) {
 }
 
 /* Damping by stiffness so large that rounding of the direct solution is a part of the forces. */
-static void what_rounding_leaves_is_counted(void **state) {
-  (void)state;
+TEST(what_rounding_leaves_is_counted) {
   static const double damping[] = {0.0, 1.0, 1e12, 4e18};
   for (size_t k = 0; k < sizeof damping / sizeof *damping; k++) {
     const budget b = swing(MPS_ELASTIC_SOLVER_LDLT, 1e-10, 6e-4, damping[k]);
@@ -126,12 +114,4 @@ static void what_rounding_leaves_is_counted(void **state) {
     assert_true(b.missing <= 1e-12 * fmax(b.largest, b.scheme));
     if (damping[k] == 0.0) assert_true(b.scheme <= 1e-12 * b.largest);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_a_tolerance_leaves_is_counted),
-      cmocka_unit_test(what_rounding_leaves_is_counted),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

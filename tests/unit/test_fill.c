@@ -3,79 +3,68 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/particles.h>
-
 static mps_particles *make_set(int32_t dim, double spacing, double x0, double y0) {
   const mps_particles_def def = {
       .struct_size = sizeof def, .dim = dim, .spacing = spacing, .origin = {x0, y0, 0.0}};
   mps_particles *set = NULL;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  OK(mps_particles_create(context, &def, &set));
   return set;
 }
 
 static mps_view positions(mps_particles *set) {
   mps_view view;
-  mps_assert_ok(context, mps_particles_view(set, "position", &view));
+  OK(mps_particles_view(set, "position", &view));
   return view;
 }
 
 static int64_t box(mps_particles *set, double x0, double y0, double x1, double y1) {
   const double lo[2] = {x0, y0}, hi[2] = {x1, y1};
   int64_t added = -1;
-  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added));
+  OK(mps_particles_fill_box(set, lo, hi, &added));
   return added;
 }
 
-static void a_box_of_whole_spacings_has_exactly_its_columns(void **state) {
-  (void)state;
+TEST(a_box_of_whole_spacings_has_exactly_its_columns) {
   const double spacings[] = {1.0, 0.1, 0.25, 3.2, 1.0 / 3.0, 1e-5, 7e4};
   const double shifts[] = {0.0, 0.3, -123.456, 1e6, -4e7};
   for (int s = 0; s < 7; s++)
     for (int o = 0; o < 5; o++) {
       const double d = spacings[s], x = shifts[o] * d;
-      mps_particles *set = make_set(2, d, x, -x);
+      scoped_particles *set = make_set(2, d, x, -x);
       assert_int_equal(box(set, x, -x, x + 10 * d, -x + 7 * d), 70);
       /* bounds through centres: the lower ones are in, the upper ones out */
       assert_int_equal(box(set, x + 20.5 * d, -x + 0.5 * d, x + 30.5 * d, -x + 2.5 * d), 20);
       assert_int_equal(box(set, x - 10 * d, -x - 7 * d, x, -x), 70);
-      mps_particles_destroy(&set);
     }
   /* the plain cases, from the origin, bounds as a caller writes them */
-  mps_particles *tenth = make_set(2, 0.1, 0, 0), *quarter = make_set(2, 0.25, 0, 0);
-  mps_particles *odd = make_set(2, 3.2, 0, 0), *one = make_set(2, 1.0, 0, 0);
+  scoped_particles *tenth = make_set(2, 0.1, 0, 0), *quarter = make_set(2, 0.25, 0, 0);
+  scoped_particles *odd = make_set(2, 3.2, 0, 0), *one = make_set(2, 1.0, 0, 0);
   assert_int_equal(box(one, 0, 0, 10, 1), 10);
   assert_int_equal(box(tenth, 0, 0, 10, 0.3), 300);
   assert_int_equal(box(quarter, 0, 0, 10, 0.25), 40);
   assert_int_equal(box(odd, 0, 0, 320, 3.2), 100);
   assert_int_equal(box(one, 0.2, 100.2, 0.4, 100.9), 0); /* no centre inside */
-  mps_particles_destroy(&tenth);
-  mps_particles_destroy(&quarter);
-  mps_particles_destroy(&odd);
-  mps_particles_destroy(&one);
 }
 
-static void a_centre_within_a_billionth_of_a_bound_lies_on_it(void **state) {
-  (void)state;
+TEST(a_centre_within_a_billionth_of_a_bound_lies_on_it) {
   for (int o = 0; o < 3; o++) {
     const double d = (const double[]){1.0, 1e-3, 640.0}[o], on = 0.5e-9 * d, off = 2e-9 * d;
-    mps_particles *set = make_set(2, d, 0, 0);
+    scoped_particles *set = make_set(2, d, 0, 0);
     assert_int_equal(box(set, 0.5 * d + off, 0, d, d), 0);
     assert_int_equal(box(set, 0.5 * d + on, 0, d, d), 1); /* in at lo */
     assert_int_equal(box(set, d, 0, 1.5 * d + on, d), 0); /* out at hi */
     assert_int_equal(box(set, d, 0, 1.5 * d + off, d), 1);
-    mps_particles_destroy(&set);
   }
 }
 
-static void sites_come_x_first_at_exact_positions(void **state) {
-  (void)state;
+TEST(sites_come_x_first_at_exact_positions) {
   const mps_particles_def def = {
       .struct_size = sizeof def, .dim = 3, .spacing = 0.1, .origin = {0.7, -0.2, 5.0}};
   const double lo[3] = {0.7, -0.4, 5.0}, hi[3] = {1.1, 0.1, 5.2};
-  mps_particles *set = NULL;
+  scoped_particles *set = NULL;
   int64_t added;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added));
+  OK(mps_particles_create(context, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, &added));
   assert_int_equal(added, 4 * 5 * 2);
   const mps_view x = positions(set);
   for (int64_t n = 0; n < added; n++) {
@@ -84,12 +73,10 @@ static void sites_come_x_first_at_exact_positions(void **state) {
     assert_true(*mps_view_f64(&x, n, 1) == -0.2 + (j + 0.5) * 0.1);
     assert_true(*mps_view_f64(&x, n, 2) == 5.0 + (k + 0.5) * 0.1);
   }
-  mps_particles_destroy(&set);
 }
 
-static void a_site_is_filled_once_even_when_its_particle_has_moved(void **state) {
-  (void)state;
-  mps_particles *set = make_set(2, 1.0, 0, 0);
+TEST(a_site_is_filled_once_even_when_its_particle_has_moved) {
+  scoped_particles *set = make_set(2, 1.0, 0, 0);
   const double diamond[] = {0, -8, 8, 0, 0, 8, -8, 0}, centre[2] = {0, 0};
   int64_t added;
   assert_int_equal(box(set, 0, 0, 10, 10), 100);
@@ -97,17 +84,17 @@ static void a_site_is_filled_once_even_when_its_particle_has_moved(void **state)
   assert_int_equal(box(set, 5, 5, 15, 15), 75);
   assert_int_equal(box(set, -5, -5, 20, 20), 25 * 25 - 175);
   mps_edit moved;
-  mps_assert_ok(context, mps_particles_edit(set, "position", &moved));
+  OK(mps_particles_edit(set, "position", &moved));
   *mps_edit_f64(&moved, 0, 0) = 1e3;
-  mps_assert_ok(context, mps_particles_commit(set, &moved));
+  OK(mps_particles_commit(set, &moved));
   assert_int_equal(box(set, -5, -5, 20, 20), 0);
-  mps_assert_ok(context, mps_particles_append(set, 1, centre)); /* off the lattice: takes no site */
+  OK(mps_particles_append(set, 1, centre)); /* off the lattice: takes no site */
   assert_int_equal(box(set, 20, 0, 21, 1), 1);
   /* What the box left: the left tip of the diamond, rows of 1, 2, 3, 3, 2, 1 sites, and the lower
    * one, rows of 1, 3, 5: a centre on a left edge is in, on a right edge out. */
-  mps_assert_ok(context, mps_particles_fill_polygon(set, 4, diamond, &added));
+  OK(mps_particles_fill_polygon(set, 4, diamond, &added));
   const int64_t polygon = added;
-  mps_assert_ok(context, mps_particles_fill_polygon(set, 4, diamond, &added));
+  OK(mps_particles_fill_polygon(set, 4, diamond, &added));
   assert_int_equal(added, 0);
   assert_int_equal(polygon, 12 + 9);
   for (int64_t a = 0; a < mps_particles_count(set); a++) {
@@ -116,11 +103,9 @@ static void a_site_is_filled_once_even_when_its_particle_has_moved(void **state)
       assert_true(*mps_view_f64(&x, a, 0) != *mps_view_f64(&x, b, 0) ||
                   *mps_view_f64(&x, a, 1) != *mps_view_f64(&x, b, 1));
   }
-  mps_particles_destroy(&set);
 }
 
-static void concave_polygons_have_exact_counts_in_either_sense(void **state) {
-  (void)state;
+TEST(concave_polygons_have_exact_counts_in_either_sense) {
   const double l_shape[] = {0, 0, 10, 0, 10, 4, 3, 4, 3, 10, 0, 10};
   /* a comb of three teeth: rows above 2 are cut into three runs */
   const double comb[] = {0, 0, 10, 0, 10, 7, 8, 7, 8, 2, 6, 2, 6, 7, 4, 7, 4, 2, 2, 2, 2, 7, 0, 7};
@@ -138,17 +123,15 @@ static void concave_polygons_have_exact_counts_in_either_sense(void **state) {
           xy[2 * k] = x0 + d * shapes[s][2 * from];
           xy[2 * k + 1] = d * shapes[s][2 * from + 1];
         }
-        mps_particles *set = make_set(2, d, x0, 0);
-        mps_assert_ok(context, mps_particles_fill_polygon(set, n, xy, &added));
+        scoped_particles *set = make_set(2, d, x0, 0);
+        OK(mps_particles_fill_polygon(set, n, xy, &added));
         assert_int_equal(added, sites[s]);
-        mps_particles_destroy(&set);
       }
 }
 
 /* Centres lie on the slanted edges: in on the left and lower ones, out on the others, so that the
  * two triangles of a square share no site and leave none out. */
-static void polygons_that_share_an_edge_share_no_site(void **state) {
-  (void)state;
+TEST(polygons_that_share_an_edge_share_no_site) {
   for (int o = 0; o < 3; o++) {
     const double d = (const double[]){1.0, 0.1, 1.0 / 3.0}[o];
     const double rising[2][6] = {{0, 0, 10 * d, 0, 10 * d, 10 * d},
@@ -156,101 +139,72 @@ static void polygons_that_share_an_edge_share_no_site(void **state) {
     const double falling[2][6] = {{0, 0, 10 * d, 0, 0, 10 * d},
                                   {10 * d, 0, 10 * d, 10 * d, 0, 10 * d}};
     for (int slope = 0; slope < 2; slope++) {
-      mps_particles *set = make_set(2, d, 0, 0);
+      scoped_particles *set = make_set(2, d, 0, 0);
       int64_t below, above;
-      mps_assert_ok(context,
-                    mps_particles_fill_polygon(set, 3, slope ? rising[0] : falling[0], &below));
-      mps_assert_ok(context,
-                    mps_particles_fill_polygon(set, 3, slope ? rising[1] : falling[1], &above));
+      OK(mps_particles_fill_polygon(set, 3, slope ? rising[0] : falling[0], &below));
+      OK(mps_particles_fill_polygon(set, 3, slope ? rising[1] : falling[1], &above));
       assert_int_equal(below, slope ? 55 : 45);
       assert_int_equal(below + above, 100);
       assert_int_equal(box(set, 0, 0, 10 * d, 10 * d), 0);
-      mps_particles_destroy(&set);
     }
   }
 }
 
-static void bad_polygons_are_refused_with_the_edges_named(void **state) {
-  (void)state;
-  mps_particles *set = make_set(2, 1.0, 0, 0), *solid = make_set(3, 1.0, 0, 0);
+TEST(bad_polygons_are_refused_with_the_edges_named) {
+  scoped_particles *set = make_set(2, 1.0, 0, 0), *solid = make_set(3, 1.0, 0, 0);
   const double bow_tie[] = {0, 0, 4, 4, 4, 0, 0, 4}, flat[] = {0, 0, 4, 0, 2, 0};
   const double closed[] = {0, 0, 4, 0, 0, 4, 0, 0}, spike[] = {0, 0, 4, 0, 4, 4, 4, 1, 0, 4};
   const double touching[] = {0, 0, 4, 0, 4, 4, 2, 0, 0, 4}, bad[] = {0, 0, 4, 0, INFINITY, 4};
   const double crossed_again[] = {0, 0, 6, 0, 6, 6, 5, -1, 0, 6};
   const double far[] = {0, 0, 4, 0, 0, 1e300}, huge[] = {-1e5, -1e5, 1e5, -1e5, 0, 1e5};
   const double tall[] = {0, -2e9, 1, -2e9, 0, 2e9};
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 4, bow_tie, NULL), MPS_ERROR_ARGUMENT,
-                   "edges 0 and 2 of the polygon intersect");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 5, crossed_again, NULL),
-                   MPS_ERROR_ARGUMENT, "edges 0 and 2 of");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 5, touching, NULL), MPS_ERROR_ARGUMENT,
-                   "edges 0 and 2 of");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, flat, NULL), MPS_ERROR_ARGUMENT,
-                   "edges 0 and 1 of the polygon lie on each other");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 5, spike, NULL), MPS_ERROR_ARGUMENT,
-                   "edges 1 and 2 of the polygon lie on each other");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 4, closed, NULL), MPS_ERROR_ARGUMENT,
-                   "corners 3 and 0 of the polygon coincide");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 2, closed, NULL), MPS_ERROR_ARGUMENT,
-                   "vertices is 2");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, INT64_MAX, closed, NULL),
-                   MPS_ERROR_ARGUMENT, "vertices is 9223372036854775807"); /* 2 n overflowed */
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, NULL, NULL), MPS_ERROR_ARGUMENT,
-                   "xy is NULL");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, bad, NULL), MPS_ERROR_ARGUMENT,
-                   "x = inf");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, far, NULL), MPS_ERROR_ARGUMENT,
-                   "y = 1e+300 m, more than 2^40 spacings");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, huge, NULL), MPS_ERROR_ARGUMENT,
-                   "more than 2^31 sites");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, tall, NULL), MPS_ERROR_ARGUMENT,
-                   "more than 2^31 sites");
-  mps_assert_fails(context, mps_particles_fill_polygon(solid, 3, closed, NULL), MPS_ERROR_ARGUMENT,
-                   "3 dimensions");
+  REFUSES(mps_particles_fill_polygon(set, 4, bow_tie, NULL),
+          "edges 0 and 2 of the polygon intersect");
+  REFUSES(mps_particles_fill_polygon(set, 5, crossed_again, NULL), "edges 0 and 2 of");
+  REFUSES(mps_particles_fill_polygon(set, 5, touching, NULL), "edges 0 and 2 of");
+  REFUSES(mps_particles_fill_polygon(set, 3, flat, NULL),
+          "edges 0 and 1 of the polygon lie on each other");
+  REFUSES(mps_particles_fill_polygon(set, 5, spike, NULL),
+          "edges 1 and 2 of the polygon lie on each other");
+  REFUSES(mps_particles_fill_polygon(set, 4, closed, NULL),
+          "corners 3 and 0 of the polygon coincide");
+  REFUSES(mps_particles_fill_polygon(set, 2, closed, NULL), "vertices is 2");
+  REFUSES(mps_particles_fill_polygon(set, INT64_MAX, closed, NULL),
+          "vertices is 9223372036854775807"); /* 2 n overflowed */
+  REFUSES(mps_particles_fill_polygon(set, 3, NULL, NULL), "xy is NULL");
+  REFUSES(mps_particles_fill_polygon(set, 3, bad, NULL), "x = inf");
+  REFUSES(mps_particles_fill_polygon(set, 3, far, NULL), "y = 1e+300 m, more than 2^40 spacings");
+  REFUSES(mps_particles_fill_polygon(set, 3, huge, NULL), "more than 2^31 sites");
+  REFUSES(mps_particles_fill_polygon(set, 3, tall, NULL), "more than 2^31 sites");
+  REFUSES(mps_particles_fill_polygon(solid, 3, closed, NULL), "3 dimensions");
   assert_int_equal(mps_particles_fill_polygon(NULL, 3, closed, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_count(set), 0);
-  mps_particles_destroy(&set);
-  mps_particles_destroy(&solid);
 }
 
-static void bad_boxes_are_refused(void **state) {
-  (void)state;
-  mps_particles *set = make_set(2, 1.0, 0, 0);
+TEST(bad_boxes_are_refused) {
+  scoped_particles *set = make_set(2, 1.0, 0, 0);
   const double zero[2] = {0, 0}, one[2] = {1, 1}, flat[2] = {1, 0}, nan[2] = {0, NAN};
   const double endless[2] = {INFINITY, 1}, far[2] = {1e300, 1}, huge[2] = {1e5, 1e5};
   const uint64_t epoch = mps_particles_epoch(set);
-  mps_assert_fails(context, mps_particles_fill_box(set, NULL, one, NULL), MPS_ERROR_ARGUMENT, "lo");
-  mps_assert_fails(context, mps_particles_fill_box(set, zero, NULL, NULL), MPS_ERROR_ARGUMENT,
-                   "hi");
-  mps_assert_fails(context, mps_particles_fill_box(set, zero, flat, NULL), MPS_ERROR_ARGUMENT,
-                   "the box in y is [0, 0)");
-  mps_assert_fails(context, mps_particles_fill_box(set, nan, one, NULL), MPS_ERROR_ARGUMENT,
-                   "lo has y = nan");
-  mps_assert_fails(context, mps_particles_fill_box(set, zero, endless, NULL), MPS_ERROR_ARGUMENT,
-                   "hi has x = inf");
-  mps_assert_fails(context, mps_particles_fill_box(set, zero, far, NULL), MPS_ERROR_ARGUMENT,
-                   "2^40 spacings");
-  mps_assert_fails(context, mps_particles_fill_box(set, zero, huge, NULL), MPS_ERROR_ARGUMENT,
-                   "1e+10 sites");
-  mps_assert_fails(context, mps_particles_fill_where(set, zero, one, NULL, NULL, NULL),
-                   MPS_ERROR_ARGUMENT, "inside is NULL");
-  mps_assert_fails(context, mps_particles_fill_ball(set, NULL, 1.0, NULL), MPS_ERROR_ARGUMENT,
-                   "centre is NULL");
-  mps_assert_fails(context, mps_particles_fill_ball(set, nan, 1.0, NULL), MPS_ERROR_ARGUMENT,
-                   "centre has y = nan");
-  mps_assert_fails(context, mps_particles_fill_ball(set, zero, 0.0, NULL), MPS_ERROR_ARGUMENT,
-                   "radius is 0");
-  mps_assert_fails(context, mps_particles_fill_ball(set, zero, NAN, NULL), MPS_ERROR_ARGUMENT,
-                   "radius is nan");
-  mps_assert_fails(context, mps_particles_fill_ball(set, zero, 1e9, NULL), MPS_ERROR_ARGUMENT,
-                   "sites");
+  REFUSES(mps_particles_fill_box(set, NULL, one, NULL), "lo");
+  REFUSES(mps_particles_fill_box(set, zero, NULL, NULL), "hi");
+  REFUSES(mps_particles_fill_box(set, zero, flat, NULL), "the box in y is [0, 0)");
+  REFUSES(mps_particles_fill_box(set, nan, one, NULL), "lo has y = nan");
+  REFUSES(mps_particles_fill_box(set, zero, endless, NULL), "hi has x = inf");
+  REFUSES(mps_particles_fill_box(set, zero, far, NULL), "2^40 spacings");
+  REFUSES(mps_particles_fill_box(set, zero, huge, NULL), "1e+10 sites");
+  REFUSES(mps_particles_fill_where(set, zero, one, NULL, NULL, NULL), "inside is NULL");
+  REFUSES(mps_particles_fill_ball(set, NULL, 1.0, NULL), "centre is NULL");
+  REFUSES(mps_particles_fill_ball(set, nan, 1.0, NULL), "centre has y = nan");
+  REFUSES(mps_particles_fill_ball(set, zero, 0.0, NULL), "radius is 0");
+  REFUSES(mps_particles_fill_ball(set, zero, NAN, NULL), "radius is nan");
+  REFUSES(mps_particles_fill_ball(set, zero, 1e9, NULL), "sites");
   assert_string_equal(mps_context_error(context)->function, "mps_particles_fill_ball");
   assert_int_equal(mps_particles_fill_box(NULL, zero, one, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_fill_where(NULL, zero, one, NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_fill_ball(NULL, zero, 1.0, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_count(set), 0);
   assert_int_equal(mps_particles_epoch(set), epoch);
-  mps_particles_destroy(&set);
 }
 
 /* A chequerboard; counts its calls. */
@@ -260,17 +214,15 @@ static mps_status dark_field(void *user, const double *x, int32_t *inside) {
   return MPS_OK;
 }
 
-static void a_predicate_is_asked_once_for_each_site(void **state) {
-  (void)state;
-  mps_particles *set = make_set(2, 1.0, 0, 0);
+TEST(a_predicate_is_asked_once_for_each_site) {
+  scoped_particles *set = make_set(2, 1.0, 0, 0);
   const double lo[2] = {0, 0}, hi[2] = {8, 8};
   int asked = 0;
   int64_t added;
-  mps_assert_ok(context, mps_particles_fill_where(set, lo, hi, dark_field, &asked, &added));
+  OK(mps_particles_fill_where(set, lo, hi, dark_field, &asked, &added));
   assert_int_equal(asked, 64);
   assert_int_equal(added, 32);
   assert_int_equal(box(set, 0, 0, 8, 8), 32); /* the light fields */
-  mps_particles_destroy(&set);
 }
 
 /* Refuses the eleventh site. */
@@ -280,25 +232,22 @@ static mps_status eleven(void *user, const double *x, int32_t *inside) {
   return ++*(int *)user > 10 ? MPS_ERROR_UNSUPPORTED : MPS_OK;
 }
 
-static void a_predicate_that_refuses_adds_nothing(void **state) {
-  (void)state;
-  mps_particles *set = make_set(2, 1.0, 0, 0);
+TEST(a_predicate_that_refuses_adds_nothing) {
+  scoped_particles *set = make_set(2, 1.0, 0, 0);
   const double lo[2] = {0, 0}, hi[2] = {8, 8};
   int asked = 0;
   const uint64_t epoch = mps_particles_epoch(set);
-  mps_assert_fails(context, mps_particles_fill_where(set, lo, hi, eleven, &asked, NULL),
-                   MPS_ERROR_UNSUPPORTED, "the predicate of the fill returned status");
+  FAILS(mps_particles_fill_where(set, lo, hi, eleven, &asked, NULL), MPS_ERROR_UNSUPPORTED,
+        "the predicate of the fill returned status");
   assert_int_equal(asked, 11);
   assert_int_equal(mps_particles_count(set), 0);
   assert_int_equal(mps_particles_epoch(set), epoch);
   assert_int_equal(box(set, 0, 0, 8, 8), 64);
-  mps_particles_destroy(&set);
 }
 
-static void balls_are_symmetric_and_open(void **state) {
-  (void)state;
+TEST(balls_are_symmetric_and_open) {
   for (int32_t dim = 2; dim <= 3; dim++) {
-    mps_particles *set = make_set(dim, 0.1, 0, 0);
+    scoped_particles *set = make_set(dim, 0.1, 0, 0);
     /* About a centre of the lattice: sites at the radius itself (5 D; also 3-4-5) are out. Gauss'
      * circle and sphere counts for i^2 + j^2 (+ k^2) < 25. */
     const double centre[3] = {0.05, 0.05, 0.05};
@@ -307,26 +256,8 @@ static void balls_are_symmetric_and_open(void **state) {
       for (int j = -5; j <= 5; j++)
         for (int k = dim == 3 ? -5 : 0; k <= (dim == 3 ? 5 : 0); k++)
           expected += i * i + j * j + k * k < 25;
-    mps_assert_ok(context, mps_particles_fill_ball(set, centre, 0.5, &added));
+    OK(mps_particles_fill_ball(set, centre, 0.5, &added));
     assert_int_equal(added, expected);
     assert_int_equal(expected, dim == 2 ? 69 : 485);
-    mps_particles_destroy(&set);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_box_of_whole_spacings_has_exactly_its_columns),
-      cmocka_unit_test(a_centre_within_a_billionth_of_a_bound_lies_on_it),
-      cmocka_unit_test(sites_come_x_first_at_exact_positions),
-      cmocka_unit_test(a_site_is_filled_once_even_when_its_particle_has_moved),
-      cmocka_unit_test(concave_polygons_have_exact_counts_in_either_sense),
-      cmocka_unit_test(polygons_that_share_an_edge_share_no_site),
-      cmocka_unit_test(bad_polygons_are_refused_with_the_edges_named),
-      cmocka_unit_test(bad_boxes_are_refused),
-      cmocka_unit_test(a_predicate_is_asked_once_for_each_site),
-      cmocka_unit_test(a_predicate_that_refuses_adds_nothing),
-      cmocka_unit_test(balls_are_symmetric_and_open),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

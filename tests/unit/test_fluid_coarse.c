@@ -3,11 +3,9 @@
  * equation itself. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include "conjugate.h"
 #include "core/base/envelope.h"
 #include "fluid_tank.h"
-
-#include <mps/fluid_solver.h>
+#include "linear_plug.h"
 
 static double noise(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;
@@ -55,8 +53,7 @@ static double residual(double (*full)[ROWS], const double *x, const double *b) {
 
 /* Rows that sum to 0 have a solution only for a right side that does, up to a constant: one value
  * is then 0. */
-static void the_coarse_equation_is_solved(void **state) {
-  (void)state;
+TEST(the_coarse_equation_is_solved) {
   double full[ROWS][ROWS], b[ROWS], x[ROWS];
   for (int singular = 0; singular < 2; singular++) {
     mpsi_envelope e = {0};
@@ -71,7 +68,7 @@ static void the_coarse_equation_is_solved(void **state) {
     mpsi_envelope_solve(&e, x);
     for (int i = 0; i < ROWS; i++) zeros += x[i] == 0.0;
     assert_int_equal(zeros, singular);
-    mps_assert_near(residual(full, x, b), 0.0, 1e-12);
+    NEAR(residual(full, x, b), 0.0, 1e-12);
     mpsi_envelope_drop(context, &e);
   }
 }
@@ -84,20 +81,19 @@ static double iterations(int rows, double *bytes) {
   const double l0 = 0.3 / rows, length = l0 * round(16.0 / 3.0 * rows);
   mps_signal *piston = NULL;
   mps_fluid_report before, after;
-  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
   tank t = tank_make(context, length, 0.3, l0, piston, 0.04 * sqrt(l0 / TANK_G));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 10));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &before));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &after));
+  OK(mps_fluid_step(t.fluid, 10));
+  OK(mps_fluid_get_report(t.fluid, &before));
+  OK(mps_fluid_step(t.fluid, 20));
+  OK(mps_fluid_get_report(t.fluid, &after));
   *bytes = (double)after.bytes / (double)mps_particles_count(t.water);
   mps_signal_destroy(&piston);
   tank_free(&t);
   return (double)(after.all_iterations - before.all_iterations) / 20.0;
 }
 
-static void iterations_hardly_grow_with_the_particles(void **state) {
-  (void)state;
+TEST(iterations_hardly_grow_with_the_particles) {
   double bytes[2];
   const double few = iterations(19, &bytes[0]), many = iterations(75, &bytes[1]);
   print_message("iterations a step: %.1f with 1919 particles, %.1f with 30 000; %.0f and %.0f B\n",
@@ -108,36 +104,6 @@ static void iterations_hardly_grow_with_the_particles(void **state) {
 
 /* ---- without a surface, and in parts --------------------------------------------------------- */
 
-/* The matrix, kept, and plain conjugate gradients in place of the library's solver. */
-typedef struct rows {
-  int64_t count;
-  const int64_t *start;
-  const int32_t *column;
-  const double *value;
-} rows;
-
-static mps_status take(void *user, int64_t count, const int64_t *start, const int32_t *column,
-                       const double *value) {
-  *(rows *)user = (rows){count, start, column, value};
-  return MPS_OK;
-}
-
-static mps_status multiply(const void *matrix, const double *x, double *y) {
-  const rows *a = matrix;
-  for (int64_t i = 0; i < a->count; i++) {
-    y[i] = 0.0;
-    for (int64_t k = a->start[i]; k < a->start[i + 1]; k++) y[i] += a->value[k] * x[a->column[k]];
-  }
-  return MPS_OK;
-}
-
-static mps_status solve(void *user, const double *b, double tolerance, double *x,
-                        int64_t *iterations) {
-  const rows *a = user;
-  memset(x, 0, (size_t)a->count * sizeof *x);
-  return test_conjugate(a->count, multiply, a, b, tolerance, x, iterations);
-}
-
 /* A box filled with 6400 particles that a load presses to one side: the matrix is singular. The
  * force on a wall and the iterations, with the library's solver or plain conjugate gradients. */
 static double press(bool plain, double tolerance, int64_t *iterations) {
@@ -145,41 +111,41 @@ static double press(bool plain, double tolerance, int64_t *iterations) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_load_def load = mps_fluid_load_defaults();
-  mps_fluid_solver_def solver = mps_fluid_solver_defaults();
+  SCOPED(linear_plug_drop) linear_plug p = {.fault = LINEAR_FINE};
+  const mps_linear_solver_def solver = linear_plug_def(&p);
   tank t = {NULL, NULL};
-  rows kept = {0};
   set.spacing = 0.01, def.dt = 2e-3, def.tolerance = tolerance;
-  load.acceleration[0] = 3.0;
-  solver.user = &kept, solver.matrix = take, solver.solve = solve;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  tank_fill(context, t.water, side, side, NULL, NULL);
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  tank_wall(context, t.fluid, side, 0.0, -1.0, 0.0, NULL);
-  tank_wall(context, t.fluid, 0.0, side, 0.0, -1.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_load(t.fluid, &load, NULL));
-  if (plain) mps_assert_ok(context, mps_fluid_set_solver(t.fluid, &solver));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
+  load.all = 1, load.acceleration[0] = 3.0;
+  OK(mps_particles_create(context, &set, &t.water));
+  tank_fill(t.water, side, side, NULL, NULL);
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, side, 0.0, -1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.0, side, 0.0, -1.0, NULL);
+  OK(mps_fluid_add_load(t.fluid, &load, NULL));
+  if (plain)
+    OK(mps_solver_set_linear_solver(mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE,
+                                    &solver));
+  OK(mps_fluid_step(t.fluid, 3));
   mps_reaction right;
   mps_fluid_report report;
-  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
+  OK(mps_fluid_get_report(t.fluid, &report));
   assert_int_equal(report.surface, 0);
   *iterations = report.iterations;
   tank_free(&t);
   return right.force[0];
 }
 
-static void a_box_without_surface_is_solved_for(void **state) {
-  (void)state;
+TEST(a_box_without_surface_is_solved_for) {
   int64_t own = 0, plain = 0;
   const double expected = press(true, 1e-9, &plain);
   const double force = press(false, 1e-9, &own), coarse = press(false, 1e-6, &own);
   print_message("force on a wall %.9f N by %d iterations, %.9f N by %d plain ones\n", force,
                 (int)own, expected, (int)plain);
-  mps_assert_near(force, expected, 1e-8 * fabs(expected));
-  mps_assert_near(coarse, expected, 1e-5 * fabs(expected));
+  NEAR(force, expected, 1e-8 * fabs(expected));
+  NEAR(coarse, expected, 1e-5 * fabs(expected));
 }
 
 /* Two blocks of water far apart, as after a splash, with a few particles alone between them: each
@@ -191,36 +157,25 @@ static double fall(bool both) {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.8, 0.8};
   const double lower2[2] = {3.0, 2.0}, upper2[2] = {3.4, 2.4}, alone[] = {1.5, 1.5, 2.0, 0.3};
   set.spacing = 0.01, def.dt = 1e-3, def.tolerance = 1e-10, def.level = 0.8;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  mps_assert_ok(context, mps_particles_fill_box(t.water, lower, upper, NULL));
-  if (both) mps_assert_ok(context, mps_particles_fill_box(t.water, lower2, upper2, NULL));
-  if (both) mps_assert_ok(context, mps_particles_append(t.water, 2, alone));
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 10));
+  OK(mps_particles_create(context, &set, &t.water));
+  OK(mps_particles_fill_box(t.water, lower, upper, NULL));
+  if (both) OK(mps_particles_fill_box(t.water, lower2, upper2, NULL));
+  if (both) OK(mps_particles_append(t.water, 2, alone));
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  OK(mps_fluid_step(t.fluid, 10));
   mps_reaction left;
   mps_fluid_report report;
-  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
+  OK(mps_fluid_get_report(t.fluid, &report));
   if (both) assert_true(report.apart >= 2);
   tank_free(&t);
   return left.force[0];
 }
 
-static void water_in_parts_is_solved_for(void **state) {
-  (void)state;
+TEST(water_in_parts_is_solved_for) {
   const double one = fall(false), both = fall(true);
   print_message("force on the wall %.9f N, with other water far away %.9f N\n", one, both);
-  mps_assert_near(both, one, 1e-7 * fabs(one));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_coarse_equation_is_solved),
-      cmocka_unit_test(iterations_hardly_grow_with_the_particles),
-      cmocka_unit_test(a_box_without_surface_is_solved_for),
-      cmocka_unit_test(water_in_parts_is_solved_for),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(both, one, 1e-7 * fabs(one));
 }

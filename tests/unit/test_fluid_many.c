@@ -3,12 +3,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/body.h>
-#include <mps/fluid.h>
-
-#include <math.h>
-#include <stdio.h>
-
 #define PI 3.141592653589793
 
 typedef struct tank {
@@ -20,13 +14,12 @@ static void begin(tank *t, double spacing) {
   mps_particles_def set = mps_particles_defaults();
   *t = (tank){0};
   set.spacing = spacing;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t->water));
+  OK(mps_particles_create(context, &set, &t->water));
 }
 
 static void fill(tank *t, double level) {
-  mps_fluid_def def = mps_fluid_defaults();
-  def.level = level;
-  mps_assert_ok(context, mps_fluid_create(context, t->water, &def, &t->fluid));
+  DEF(fluid, def, .level = level);
+  OK(mps_fluid_create(context, t->water, &def, &t->fluid));
 }
 
 static void drop(tank *t) {
@@ -35,22 +28,19 @@ static void drop(tank *t) {
 }
 
 static void add_plane(tank *t, double x, double y, double nx, double ny, int32_t *number) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER;
-  def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
-  mps_assert_ok(context, mps_fluid_add_boundary(t->fluid, &def, number));
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .point[0] = x, .point[1] = y,
+      .normal[0] = nx, .normal[1] = ny);
+  OK(mps_fluid_add_boundary(t->fluid, &def, number));
 }
 
 static void add_line(tank *t, int64_t corners, const double *xy) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER;
-  def.corners = xy, def.corner_count = corners;
-  mps_assert_ok(context, mps_fluid_add_boundary(t->fluid, &def, NULL));
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .corners = xy, .corner_count = corners);
+  OK(mps_fluid_add_boundary(t->fluid, &def, NULL));
 }
 
 static double place(const tank *t, int64_t i, int32_t c) {
   mps_view x;
-  mps_assert_ok(context, mps_particles_view(t->water, "position", &x));
+  OK(mps_particles_view(t->water, "position", &x));
   return *mps_view_f64(&x, i, c);
 }
 
@@ -72,30 +62,28 @@ static int facet_of(int32_t number) {
 }
 
 /* Water in a bowl of 101 planes: pressures are those below its level. */
-static void water_rests_in_a_bowl_of_planes(void **state) {
-  (void)state;
+TEST(water_rests_in_a_bowl_of_planes) {
   tank t;
   begin(&t, SIZE);
   for (int n = 0; n < 40 * 10; n++) {
     const double at[2] = {(n % 40 - 19.5) * SIZE, (n / 40 + 0.5) * SIZE};
     if (hypot(at[0], RADIUS - at[1]) < RADIUS - 0.45 * SIZE)
-      mps_assert_ok(context, mps_particles_append(t.water, 1, at));
+      OK(mps_particles_append(t.water, 1, at));
   }
   fill(&t, LEVEL);
   for (int32_t b = 0; b < FACETS; b++) add_facet(&t, facet_of(b)); /* from the middle outwards */
-  mps_fluid_load_def damping = mps_fluid_load_defaults();
-  damping.kind = MPS_FLUID_LOAD_DAMPING, damping.rate = 5.0;
-  mps_assert_ok(context, mps_fluid_add_load(t.fluid, &damping, NULL));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 300));
+  DEF(fluid_load, damping, .all = 1, .kind = MPS_FLUID_LOAD_DAMPING, .rate = 5.0);
+  OK(mps_fluid_add_load(t.fluid, &damping, NULL));
+  OK(mps_fluid_step(t.fluid, 300));
   double level, worst = 0.0;
   const double middle = 0.0;
   int wet = 0;
-  mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 1, &middle, &level));
+  OK(mps_fluid_get_levels(t.fluid, 1, &middle, &level));
   for (int32_t b = 0; b < FACETS; b++) { /* numbers in the order in which they were added */
     const double angle = PI * facet_of(b) / (FACETS - 1);
     const double at[3] = {-RADIUS * cos(angle), RADIUS - RADIUS * sin(angle), 0.0};
     double p;
-    mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, b, 1, at, &p));
+    OK(mps_fluid_get_pressure(t.fluid, b, 1, at, &p));
     if (at[1] > level - SIZE) continue;
     worst = fmax(worst, fabs(p / 9810.0 - (level - at[1])));
     wet++;
@@ -106,40 +94,38 @@ static void water_rests_in_a_bowl_of_planes(void **state) {
   assert_true(worst < 0.03 * level);
   for (int64_t i = 0; i < mps_particles_count(t.water); i++)
     assert_true(hypot(place(&t, i, 0), RADIUS - place(&t, i, 1)) < RADIUS);
-  mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &snapshot));
+  scoped_snapshot *snapshot = NULL;
+  OK(mps_fluid_snapshot(t.fluid, &snapshot));
   const double before = place(&t, 0, 0);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
+  OK(mps_fluid_step(t.fluid, 3));
   const double after = place(&t, 0, 0);
-  mps_assert_ok(context, mps_fluid_rollback(t.fluid, snapshot));
+  OK(mps_fluid_rollback(t.fluid, snapshot));
   assert_true(place(&t, 0, 0) == before);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
+  OK(mps_fluid_step(t.fluid, 3));
   assert_true(place(&t, 0, 0) == after);
-  mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, FACETS - 1));
+  OK(mps_fluid_remove_boundary(t.fluid, FACETS - 1));
   assert_int_equal(mps_fluid_rollback(t.fluid, snapshot), MPS_ERROR_STATE);
-  mps_snapshot_destroy(&snapshot);
   drop(&t);
 }
 
 /* Numbers are the lowest free ones; one too many is refused and changes nothing. */
-static void boundaries_have_a_documented_maximum(void **state) {
-  (void)state;
+TEST(boundaries_have_a_documented_maximum) {
   tank t;
   mps_fluid_boundary_def side = mps_fluid_boundary_defaults();
   int32_t number = -1;
   const double at[2] = {0.5, 0.5};
   begin(&t, 0.1);
-  mps_assert_ok(context, mps_particles_append(t.water, 1, at));
+  OK(mps_particles_append(t.water, 1, at));
   fill(&t, 1.0);
   side.kind = MPS_BOUNDARY_OPEN, side.normal[1] = 1.0, side.point[1] = -1.0;
   for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++)
-    mps_assert_ok(context, mps_fluid_add_boundary(t.fluid, &side, &number));
+    OK(mps_fluid_add_boundary(t.fluid, &side, &number));
   assert_int_equal(number, MPS_FLUID_MAX_BOUNDARIES - 1);
   assert_int_equal(mps_fluid_add_boundary(t.fluid, &side, &number), MPS_ERROR_ARGUMENT);
-  assert_non_null(strstr(mps_context_error(context)->message, "has 10000 boundaries"));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 2));
-  mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, 77));
-  mps_assert_ok(context, mps_fluid_add_boundary(t.fluid, &side, &number));
+  assert_non_null(strstr(mps_context_error(context)->message, "number 10000 is the next"));
+  OK(mps_fluid_step(t.fluid, 2));
+  OK(mps_fluid_remove_boundary(t.fluid, 77));
+  OK(mps_fluid_add_boundary(t.fluid, &side, &number));
   assert_int_equal(number, 77);
   drop(&t);
 }
@@ -164,12 +150,11 @@ static bool in_a_body(const double *x) {
 
 static void add_box(tank *t, int b, mps_body **box, mps_contact **contact) {
   mps_body_def def = mps_body_defaults();
-  mps_fluid_contact_def with = mps_fluid_contact_defaults();
+  DEF(fluid_contact, with, .kind = MPS_BOUNDARY_ROLLER);
   const double xy[8] = {-SIZE, -SIZE, SIZE, -SIZE, SIZE, SIZE, -SIZE, SIZE};
-  with.kind = MPS_BOUNDARY_ROLLER;
   middle_of(b, def.position);
-  mps_assert_ok(context, mps_body_create_polygon(context, &def, 4, xy, box));
-  mps_assert_ok(context, mps_fluid_add_contact(t->fluid, *box, &with, contact));
+  OK(mps_body_create_polygon(context, &def, 4, xy, box));
+  OK(mps_fluid_add_contact(t->fluid, *box, &with, contact));
 }
 
 static void add_sides(tank *t, double width) {
@@ -180,8 +165,7 @@ static void add_sides(tank *t, double width) {
 
 /* Twenty boxes at rest in still water each have the buoyancy of their area, also after one of them
  * has left, and boundaries have come. */
-static void twenty_bodies_have_their_buoyancy(void **state) {
-  (void)state;
+TEST(twenty_bodies_have_their_buoyancy) {
   tank t;
   mps_body *box[BODIES];
   mps_contact *contact[BODIES];
@@ -189,21 +173,20 @@ static void twenty_bodies_have_their_buoyancy(void **state) {
   begin(&t, SIZE);
   for (int n = 0; n < 6 * ACROSS * 16; n++) {
     const double at[2] = {(n % (6 * ACROSS) + 0.5) * SIZE, (n / (6 * ACROSS) + 0.5) * SIZE};
-    if (!in_a_body(at)) mps_assert_ok(context, mps_particles_append(t.water, 1, at));
+    if (!in_a_body(at)) OK(mps_particles_append(t.water, 1, at));
   }
   fill(&t, 16.0 * SIZE);
   for (int b = 0; b < BODIES; b++) add_box(&t, b, &box[b], &contact[b]);
   add_sides(&t, width);
-  mps_fluid_load_def damping = mps_fluid_load_defaults();
-  damping.kind = MPS_FLUID_LOAD_DAMPING, damping.rate = 5.0;
-  mps_assert_ok(context, mps_fluid_add_load(t.fluid, &damping, NULL));
+  DEF(fluid_load, damping, .all = 1, .kind = MPS_FLUID_LOAD_DAMPING, .rate = 5.0);
+  OK(mps_fluid_add_load(t.fluid, &damping, NULL));
   double worst = 0.0;
   for (int part = 0; part < 2; part++) {
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 100));
+    OK(mps_fluid_step(t.fluid, 100));
     for (int b = 0; b < BODIES; b++) {
       mps_reaction r;
       if (part == 1 && b == 7) continue;
-      mps_assert_ok(context, mps_contact_get_reaction(contact[b], 0, &r));
+      OK(mps_contact_get_reaction(contact[b], 0, &r));
       const double buoyancy = 9810.0 * 4.0 * SIZE * SIZE;
       worst = fmax(worst, hypot(r.force[0], r.force[1] - buoyancy) / buoyancy);
     }
@@ -216,7 +199,7 @@ static void twenty_bodies_have_their_buoyancy(void **state) {
     mps_contact_destroy(&contact[b]);
     mps_body_destroy(&box[b]);
   }
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 2));
+  OK(mps_fluid_step(t.fluid, 2));
   drop(&t);
 }
 
@@ -226,7 +209,7 @@ static void settle_in(tank *t, int lines, int64_t corners, const double *xy) {
   begin(t, SIZE);
   for (int n = 0; n < 128; n++) {
     const double at[2] = {(n % 16 + 0.5) * SIZE, (n / 16 + 0.5) * SIZE};
-    mps_assert_ok(context, mps_particles_append(t->water, 1, at));
+    OK(mps_particles_append(t->water, 1, at));
   }
   fill(t, 0.45); /* q is not 0: water at another level than that of rest */
   add_plane(t, 0.0, 0.0, 1.0, 0.0, NULL);
@@ -235,7 +218,7 @@ static void settle_in(tank *t, int lines, int64_t corners, const double *xy) {
     add_line(t, 2, flat);
   }
   if (corners > 0) add_line(t, corners, xy);
-  mps_assert_ok(context, mps_fluid_step(t->fluid, 100)); /* the right side is open: it falls */
+  OK(mps_fluid_step(t->fluid, 100)); /* the right side is open: it falls */
 }
 
 static double difference(const tank *a, const tank *b) {
@@ -247,17 +230,16 @@ static double difference(const tank *a, const tank *b) {
 
 /* A bed below seventy others is not seen, nor are those below it: more segments within re of a
  * particle than it keeps in a list. */
-static void segments_behind_others_change_nothing(void **state) {
-  (void)state;
+TEST(segments_behind_others_change_nothing) {
   tank one, many;
   mps_reaction r;
   settle_in(&one, 1, 0, NULL);
   settle_in(&many, 71, 0, NULL);
   printf("a bed above 70 others: %.1e m\n", difference(&one, &many));
   assert_true(difference(&one, &many) < 1e-9);
-  mps_assert_ok(context, mps_fluid_get_reaction(many.fluid, 71, &r));
+  OK(mps_fluid_get_reaction(many.fluid, 71, &r));
   assert_true(r.force[1] == 0.0);
-  mps_assert_ok(context, mps_fluid_get_reaction(many.fluid, 1, &r));
+  OK(mps_fluid_get_reaction(many.fluid, 1, &r));
   assert_true(r.force[1] > 100.0);
   drop(&one), drop(&many);
 }
@@ -265,8 +247,7 @@ static void segments_behind_others_change_nothing(void **state) {
 enum { PIECES = 40, COAST = 4000 };
 
 /* A bed of many pieces with a coast of 4000 segments far away is one bed. */
-static void a_bed_in_pieces_is_one(void **state) {
-  (void)state;
+TEST(a_bed_in_pieces_is_one) {
   tank one, many;
   static double xy[3 * (PIECES + COAST + 1)];
   for (int k = 0; k <= PIECES; k++) xy[3 * k] = 2.0 * SIZE * (k - 4);
@@ -288,44 +269,33 @@ static void add_drop(tank *t, int more) {
   const double lower[2] = {0.0, 0.0}, upper[2] = {1.0, 0.5}, at[2] = {0.5, 0.9};
   mps_edit edit;
   begin(t, SIZE);
-  mps_assert_ok(context, mps_particles_fill_box(t->water, lower, upper, NULL));
-  mps_assert_ok(context, mps_particles_append(t->water, 1, at));
-  mps_assert_ok(context, mps_particles_add_field(t->water, "velocity", 0));
-  mps_assert_ok(context, mps_particles_edit(t->water, "velocity", &edit));
+  OK(mps_particles_fill_box(t->water, lower, upper, NULL));
+  OK(mps_particles_append(t->water, 1, at));
+  OK(mps_particles_add_field(t->water, "velocity", 0));
+  OK(mps_particles_edit(t->water, "velocity", &edit));
   *mps_edit_f64(&edit, mps_particles_count(t->water) - 1, 0) = 2000.0;
-  mps_assert_ok(context, mps_particles_commit(t->water, &edit));
+  OK(mps_particles_commit(t->water, &edit));
   fill(t, 0.5);
   add_sides(t, 2.0);
   for (int k = 0; k < more; k++) add_plane(t, -1.0 - k, 0.0, 1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_set_dt(t->fluid, 1e-3));
+  OK(mps_fluid_set_dt(t->fluid, 1e-3));
 }
 
 /* With many planes a particle looks at those near it; one that goes farther in a step than these
  * reach is put back too. */
-static void planes_far_away_change_nothing(void **state) {
-  (void)state;
+TEST(planes_far_away_change_nothing) {
   tank few, many;
   mps_fluid_report report;
   add_drop(&few, 0), add_drop(&many, 40);
   for (int n = 0; n < 20; n++) {
-    mps_assert_ok(context, mps_fluid_step(few.fluid, 1));
-    mps_assert_ok(context, mps_fluid_step(many.fluid, 1));
+    OK(mps_fluid_step(few.fluid, 1));
+    OK(mps_fluid_step(many.fluid, 1));
     for (int64_t i = 0; i < mps_particles_count(many.water); i++) {
       assert_true(place(&many, i, 0) > 0.0 && place(&many, i, 0) < 2.0);
       for (int32_t c = 0; c < 2; c++) assert_true(place(&many, i, c) == place(&few, i, c));
     }
   }
-  mps_assert_ok(context, mps_fluid_get_report(many.fluid, &report));
+  OK(mps_fluid_get_report(many.fluid, &report));
   assert_true(report.pushed > 0);
   drop(&few), drop(&many);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(water_rests_in_a_bowl_of_planes),
-                                     cmocka_unit_test(boundaries_have_a_documented_maximum),
-                                     cmocka_unit_test(twenty_bodies_have_their_buoyancy),
-                                     cmocka_unit_test(segments_behind_others_change_nothing),
-                                     cmocka_unit_test(a_bed_in_pieces_is_one),
-                                     cmocka_unit_test(planes_far_away_change_nothing)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -20,27 +20,27 @@ typedef struct scene {
 
 static void push_some(mps_particles *water) {
   mps_edit force;
-  mps_assert_ok(context, mps_particles_add_field(water, "external_force", 0));
-  mps_assert_ok(context, mps_particles_edit(water, "external_force", &force));
+  OK(mps_particles_add_field(water, "external_force", 0));
+  OK(mps_particles_edit(water, "external_force", &force));
   for (int64_t i = 0; i < mps_particles_count(water); i += 7) *mps_edit_f64(&force, i, 0) = 0.3;
-  mps_assert_ok(context, mps_particles_commit(water, &force));
+  OK(mps_particles_commit(water, &force));
 }
 
 static void add_box(scene *s) {
   mps_body_def def = mps_body_defaults();
   int64_t ids[200], count = 0;
   mps_view id, x;
-  mps_assert_ok(context, mps_particles_view(s->t.water, "id", &id));
-  mps_assert_ok(context, mps_particles_view(s->t.water, "position", &x));
+  OK(mps_particles_view(s->t.water, "id", &id));
+  OK(mps_particles_view(s->t.water, "position", &x));
   for (int64_t i = 0; i < id.shape[0]; i++)
     if (fabs(*mps_view_f64(&x, i, 0) - 0.3) < 0.05 && *mps_view_f64(&x, i, 1) > 0.3)
       ids[count++] = *mps_view_i64(&id, i, 0);
-  mps_assert_ok(context, mps_particles_remove(s->t.water, count, ids));
+  OK(mps_particles_remove(s->t.water, ids, count));
   def.motion = MPS_BODY_MOTION_FREE, def.gravity[1] = -TANK_G;
   def.position[0] = 0.3, def.position[1] = 0.4;
   def.mass = 12.0, def.inertia[2] = 0.04;
-  mps_assert_ok(context, mps_body_create_box(context, &def, 0.1, 0.2, &s->body));
-  s->contact = tank_body(context, s->t.fluid, s->body, 1);
+  OK(mps_body_create_box(context, &def, 0.1, 0.2, &s->body));
+  s->contact = tank_body(s->t.fluid, s->body, MPS_CONTACT_MOVER_SOLVER);
 }
 
 static scene make(int kind) {
@@ -50,19 +50,19 @@ static scene make(int kind) {
   mps_fluid_boundary_def end = mps_fluid_boundary_defaults();
   end.kind = MPS_BOUNDARY_ROLLER; /* slip */
   set.spacing = SPACING;
-  mps_assert_ok(context, mps_particles_create(context, &set, &s.t.water));
-  tank_fill(context, s.t.water, 0.6, 0.4, NULL, NULL);
+  OK(mps_particles_create(context, &set, &s.t.water));
+  tank_fill(s.t.water, 0.6, 0.4, NULL, NULL);
   push_some(s.t.water);
-  mps_assert_ok(context, mps_fluid_create(context, s.t.water, NULL, &s.t.fluid));
-  tank_wall(context, s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  OK(mps_fluid_create(context, s.t.water, NULL, &s.t.fluid));
+  tank_wall(s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   end.point[0] = kind == SPILLS ? 0.65 : s.right, end.normal[0] = -1.0;
   if (kind == SPILLS) end.kind = MPS_BOUNDARY_OPEN;
-  mps_assert_ok(context, mps_fluid_add_boundary(s.t.fluid, &end, NULL));
+  OK(mps_fluid_add_boundary(s.t.fluid, &end, NULL));
   load.lower[0] = 0.5, load.acceleration[0] = 1.0;
-  mps_assert_ok(context, mps_fluid_add_load(s.t.fluid, &load, NULL));
+  OK(mps_fluid_add_load(s.t.fluid, &load, NULL));
   load.kind = MPS_FLUID_LOAD_PRESSURE, load.pressure = 30.0;
-  mps_assert_ok(context, mps_fluid_add_load(s.t.fluid, &load, NULL));
+  OK(mps_fluid_add_load(s.t.fluid, &load, NULL));
   if (kind == AFLOAT) add_box(&s);
   return s;
 }
@@ -73,94 +73,71 @@ static void drop_scene(scene *s) {
   mps_body_destroy(&s->body);
 }
 
-static void read_scene(scene *s, readings *r) {
-  read_all(context, s->t.fluid, s->right, s->contact, r);
-}
+static void read_scene(scene *s, readings *r) { read_all(s->t.fluid, s->right, s->contact, r); }
 
 /* At every step, those after which the set is sorted too. */
 static void readings_survive(int kind, int64_t every) {
   static readings before, after;
   mps_snapshot *kept = NULL;
-  scene s = make(kind);
+  SCOPED(drop_scene) scene s = make(kind);
   for (int64_t k = 0; k < 70; k += every) {
     read_scene(&s, &before);
-    mps_assert_ok(context, mps_fluid_snapshot(s.t.fluid, &kept));
-    mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, NAN));
-    mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
-    mps_assert_ok(context, mps_fluid_abandon_step(s.t.fluid));
+    OK(mps_fluid_snapshot(s.t.fluid, &kept));
+    OK(mps_fluid_begin_step(s.t.fluid, NAN));
+    OK(mps_fluid_solve_pressure(s.t.fluid));
+    OK(mps_fluid_abandon_step(s.t.fluid));
     read_scene(&s, &after);
     same_readings(&before, &after);
-    mps_assert_ok(context, mps_fluid_step(s.t.fluid, 3));
-    mps_assert_ok(context, mps_fluid_rollback(s.t.fluid, kept));
+    OK(mps_fluid_step(s.t.fluid, 3));
+    OK(mps_fluid_rollback(s.t.fluid, kept));
     read_scene(&s, &after);
     same_readings(&before, &after);
-    mps_assert_ok(context, mps_fluid_step(s.t.fluid, every));
+    OK(mps_fluid_step(s.t.fluid, every));
     mps_snapshot_destroy(&kept);
   }
-  drop_scene(&s);
 }
 
-static void of_a_column_that_falls(void **state) {
-  (void)state, readings_survive(CLOSED, test_quick() ? 15 : 5);
-}
-static void of_water_that_leaves(void **state) {
-  (void)state, readings_survive(SPILLS, test_quick() ? 15 : 5);
-}
-static void of_a_body_afloat(void **state) {
-  (void)state, readings_survive(AFLOAT, test_quick() ? 30 : 10);
-}
+TEST(of_a_column_that_falls) { readings_survive(CLOSED, test_quick() ? 15 : 5); }
+TEST(of_water_that_leaves) { readings_survive(SPILLS, test_quick() ? 15 : 5); }
+TEST(of_a_body_afloat) { readings_survive(AFLOAT, test_quick() ? 30 : 10); }
 
 /* Particles moved by the caller, and new walls: the surface is found before it is read, and a
  * snapshot between both changes nothing. */
-static void of_what_the_caller_changes(void **state) {
-  (void)state;
+TEST(of_what_the_caller_changes) {
   static readings before, after;
-  mps_snapshot *kept = NULL;
+  scoped_snapshot *kept = NULL;
   mps_edit x;
-  scene s = make(CLOSED);
-  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 10));
-  mps_assert_ok(context, mps_particles_edit(s.t.water, "position", &x));
+  SCOPED(drop_scene) scene s = make(CLOSED);
+  OK(mps_fluid_step(s.t.fluid, 10));
+  OK(mps_particles_edit(s.t.water, "position", &x));
   for (int64_t i = 0; i < mps_particles_count(s.t.water); i++) *mps_edit_f64(&x, i, 1) += 0.003;
-  mps_assert_ok(context, mps_particles_commit(s.t.water, &x));
-  mps_assert_ok(context, mps_fluid_snapshot(s.t.fluid, &kept));
+  OK(mps_particles_commit(s.t.water, &x));
+  OK(mps_fluid_snapshot(s.t.fluid, &kept));
   read_scene(&s, &before);
-  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 2));
-  mps_assert_ok(context, mps_fluid_rollback(s.t.fluid, kept));
+  OK(mps_fluid_step(s.t.fluid, 2));
+  OK(mps_fluid_rollback(s.t.fluid, kept));
   read_scene(&s, &after);
   same_readings(&before, &after);
   mps_snapshot_destroy(&kept);
-  mps_assert_ok(context, mps_fluid_snapshot(s.t.fluid, &kept));
-  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 2));
-  mps_assert_ok(context, mps_fluid_rollback(s.t.fluid, kept));
+  OK(mps_fluid_snapshot(s.t.fluid, &kept));
+  OK(mps_fluid_step(s.t.fluid, 2));
+  OK(mps_fluid_rollback(s.t.fluid, kept));
   read_scene(&s, &after);
   same_readings(&before, &after);
-  mps_snapshot_destroy(&kept);
-  drop_scene(&s);
 }
 
 /* In an open step levels are those of its beginning. */
-static void in_an_open_step(void **state) {
-  (void)state;
+TEST(in_an_open_step) {
   const double station[2] = {0.3, 0.55};
   double before[2], after[2];
-  scene s = make(CLOSED);
+  SCOPED(drop_scene) scene s = make(CLOSED);
   for (int k = 0; k < 2; k++) {
-    if (k == 1) mps_assert_ok(context, mps_fluid_get_levels(s.t.fluid, 2, station, before));
-    mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, NAN));
-    mps_assert_ok(context, mps_fluid_get_levels(s.t.fluid, 2, station, after));
-    if (k == 0) mps_assert_near(after[0], 0.4, 0.1 * SPACING);
+    if (k == 1) OK(mps_fluid_get_levels(s.t.fluid, 2, station, before));
+    OK(mps_fluid_begin_step(s.t.fluid, NAN));
+    OK(mps_fluid_get_levels(s.t.fluid, 2, station, after));
+    if (k == 0) NEAR(after[0], 0.4, 0.1 * SPACING);
     if (k == 1) assert_memory_equal(before, after, sizeof before);
-    mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
-    mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
+    OK(mps_fluid_solve_pressure(s.t.fluid));
+    OK(mps_fluid_end_step(s.t.fluid));
   }
-  drop_scene(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(of_a_column_that_falls), cmocka_unit_test(of_water_that_leaves),
-      cmocka_unit_test(of_a_body_afloat),       cmocka_unit_test(of_what_the_caller_changes),
-      cmocka_unit_test(in_an_open_step),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

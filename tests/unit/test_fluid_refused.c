@@ -6,10 +6,6 @@
 
 #include "fluid_tank.h"
 
-#include <mps/fluid_solver.h>
-
-#include <string.h>
-
 #define L0 0.02
 #define MOST 4096
 
@@ -27,13 +23,12 @@ static reading *read_all(mps_fluid *fluid) {
   mps_view x, rise, surface;
   const int64_t n = mps_particles_count(set);
   assert_true(n <= MOST);
-  for (int32_t b = 0; b < 3; b++)
-    mps_assert_ok(context, mps_fluid_get_reaction(fluid, b, &out->wall[b]));
-  mps_assert_ok(context, mps_fluid_get_report(fluid, &out->report));
+  for (int32_t b = 0; b < 3; b++) OK(mps_fluid_get_reaction(fluid, b, &out->wall[b]));
+  OK(mps_fluid_get_report(fluid, &out->report));
   out->report.bytes = 0; /* a refused step may have grown its lists of neighbours */
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(set, "surface_rise", &rise));
-  mps_assert_ok(context, mps_particles_view(set, "free_surface", &surface));
+  OK(mps_particles_view(set, "position", &x));
+  OK(mps_particles_view(set, "surface_rise", &rise));
+  OK(mps_particles_view(set, "free_surface", &surface));
   for (int64_t i = 0; i < n; i++) {
     for (int32_t c = 0; c < 2; c++) out->position[i][c] = *mps_view_f64(&x, i, c);
     out->rise[i] = *mps_view_f64(&rise, i, 0);
@@ -56,94 +51,87 @@ static void kick(void *user, double *x, double *u) {
 
 static tank moving_tank(void) {
   tank t = tank_of(context, 0.4, 0.2, L0, 2e-3, NULL, kick, NULL);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  OK(mps_fluid_step(t.fluid, 5));
   return t;
 }
 
 /* Fields are being edited: the step, in one or in parts, is refused before it begins. */
-static void a_step_that_does_not_begin_leaves_reactions(void **state) {
-  (void)state;
-  tank t = moving_tank();
+TEST(a_step_that_does_not_begin_leaves_reactions) {
+  scoped_tank t = moving_tank();
   reading *before = read_all(t.fluid);
   mps_edit u;
-  mps_assert_ok(context, mps_particles_edit(t.water, "velocity", &u));
+  OK(mps_particles_edit(t.water, "velocity", &u));
   assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_STATE);
   assert_int_equal(mps_fluid_begin_step(t.fluid, NAN), MPS_ERROR_STATE);
-  mps_assert_ok(context, mps_particles_abandon(t.water, &u));
+  OK(mps_particles_abandon(t.water, &u));
   assert_true(before->wall[TANK_BED].force[1] > 700.0);
   assert_as_before(t.fluid, before);
-  tank_free(&t);
 }
 
-static mps_status take(void *user, int64_t rows, const int64_t *start, const int32_t *column,
-                       const double *value) {
-  (void)user, (void)rows, (void)start, (void)column, (void)value;
+static mps_status take(void *user, const mps_linear_matrix *matrix) {
+  (void)user, (void)matrix;
   return MPS_OK;
 }
 
 static mps_status refuse(void *user, const double *b, double tolerance, double *x,
-                         int64_t *iterations) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)iterations;
+                         mps_linear_result *result) {
+  (void)user, (void)b, (void)tolerance, (void)x, (void)result;
   return MPS_ERROR_NUMERIC;
 }
 
 /* The step fails where it solves for the pressure, when loads have been read and walls driven. */
-static void a_step_that_fails_leaves_reactions_and_loads(void **state) {
-  (void)state;
+TEST(a_step_that_fails_leaves_reactions_and_loads) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_load_def load = mps_fluid_load_defaults();
-  mps_fluid_solver_def solver = mps_fluid_solver_defaults();
-  mps_signal *sine;
+  mps_linear_solver_def solver = mps_linear_solver_defaults();
+  scoped_signal *sine = NULL;
   tank t;
   double x[3] = {0.2, 0.0, 0.0}, before, after;
   set.spacing = L0, def.dt = 2e-3;
-  mps_assert_ok(context, mps_signal_create_sine(context, 5.0, 1.0, 0.0, &sine));
-  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  tank_fill(context, t.water, 0.4, 0.2, NULL, NULL);
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  tank_wall(context, t.fluid, 0.4, 0.0, -1.0, 0.0, NULL);
-  load.acceleration[1] = 5.0, load.signal[1] = sine;
-  mps_assert_ok(context, mps_fluid_add_load(t.fluid, &load, NULL));
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 5.0, 1.0, 0.0, &sine));
+  OK(mps_particles_create(context, &set, &t.water));
+  tank_fill(t.water, 0.4, 0.2, NULL, NULL);
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.4, 0.0, -1.0, 0.0, NULL);
+  load.all = 1, load.acceleration[1] = 5.0, load.signal[1] = sine;
+  OK(mps_fluid_add_load(t.fluid, &load, NULL));
+  OK(mps_fluid_step(t.fluid, 5));
   solver.matrix = take, solver.solve = refuse;
-  mps_assert_ok(context, mps_fluid_set_solver(t.fluid, &solver));
-  mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, TANK_BED, 1, x, &before));
+  OK(mps_solver_set_linear_solver(mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE,
+                                  &solver));
+  OK(mps_fluid_get_pressure(t.fluid, TANK_BED, 1, x, &before));
   reading *all = read_all(t.fluid);
   assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_NUMERIC);
-  mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, TANK_BED, 1, x, &after));
+  OK(mps_fluid_get_pressure(t.fluid, TANK_BED, 1, x, &after));
   assert_true(before == after);
   assert_as_before(t.fluid, all);
-  mps_signal_destroy(&sine);
   tank_free(&t);
 }
 
 /* After an insertion the surface's fields are not known: a refused reading does not write them. */
-static void a_refused_pressure_writes_no_field(void **state) {
-  (void)state;
-  tank t = moving_tank();
+TEST(a_refused_pressure_writes_no_field) {
+  scoped_tank t = moving_tank();
   const double added[2] = {0.2, 0.3}, off[6] = {0.2, 0.0, 0.0, 0.2, 0.1, 0.0};
   double p[2] = {-1.0, -1.0};
-  mps_assert_ok(context, mps_particles_append(t.water, 1, added));
+  OK(mps_particles_append(t.water, 1, added));
   reading *before = read_all(t.fluid);
   assert_int_equal(mps_fluid_get_pressure(t.fluid, TANK_BED, 2, off, p), MPS_ERROR_ARGUMENT);
   assert_true(p[0] == -1.0 && p[1] == -1.0);
   assert_as_before(t.fluid, before);
-  tank_free(&t);
 }
 
 /* Levels after a fill that memory has refused are those of before, bit for bit. */
-static void a_refused_insertion_leaves_the_surface(void **state) {
-  (void)state;
+TEST(a_refused_insertion_leaves_the_surface) {
   mps_context *const usual = context;
   test_allocator allocator = {0};
   context = test_allocator_context(&allocator);
   tank t = moving_tank();
   const double lower[2] = {0.0, 0.3}, upper[2] = {0.4, 1.3}, station[3] = {0.05, 0.2, 0.33};
   double before[3], after[3];
-  mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 3, station, before));
+  OK(mps_fluid_get_levels(t.fluid, 3, station, before));
   int refused = 0;
   for (mps_status status = MPS_ERROR_MEMORY; status != MPS_OK;) {
     reading *all = read_all(t.fluid);
@@ -155,7 +143,7 @@ static void a_refused_insertion_leaves_the_surface(void **state) {
       break;
     }
     assert_int_equal(status, MPS_ERROR_MEMORY);
-    mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 3, station, after));
+    OK(mps_fluid_get_levels(t.fluid, 3, station, after));
     assert_memory_equal(before, after, sizeof before);
     assert_as_before(t.fluid, all);
   }
@@ -164,14 +152,4 @@ static void a_refused_insertion_leaves_the_surface(void **state) {
   mps_context_destroy(&context);
   assert_int_equal(allocator.live, 0);
   context = usual;
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_step_that_does_not_begin_leaves_reactions),
-      cmocka_unit_test(a_step_that_fails_leaves_reactions_and_loads),
-      cmocka_unit_test(a_refused_pressure_writes_no_field),
-      cmocka_unit_test(a_refused_insertion_leaves_the_surface),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

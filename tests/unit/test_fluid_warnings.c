@@ -5,30 +5,22 @@
 
 #include "fluid_tank.h"
 
-#include <mps/kernel.h>
-
-#include <string.h>
-
 #define L0 0.02
-
-static int32_t stop_at_the_third(void *user) { return ++((journal *)user)->asked >= 3; }
 
 /* The left wall goes `part` of l0 in a step of 2 ms. */
 static mps_status go(mps_context *own, double part) {
   const double dt = 2e-3, s = -part * L0, u = s / dt;
-  tank t = tank_make(own, 0.4, 0.2, L0, NULL, dt);
-  mps_assert_ok(own, mps_fluid_step(t.fluid, 3));
-  mps_assert_ok(own, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, &s, &u));
+  scoped_tank t = tank_make(own, 0.4, 0.2, L0, NULL, dt);
+  OK(mps_fluid_step(t.fluid, 3));
+  OK(mps_fluid_set_boundary_motion(t.fluid, TANK_LEFT, &s, &u));
   const mps_status status = mps_fluid_step(t.fluid, 1);
   assert_int_equal(mps_fluid_steps(t.fluid), status == MPS_OK ? 4 : 3);
-  tank_free(&t);
   return status;
 }
 
-static void a_wall_that_goes_far_in_a_step(void **state) {
-  (void)state;
+TEST(a_wall_that_goes_far_in_a_step) {
   journal j = {0};
-  mps_context *own = journal_context(&j, NULL);
+  scoped_context *own = journal_context(&j, NULL);
   assert_int_equal(go(own, 0.4), MPS_OK);
   assert_int_equal(j.count, 0);
   assert_int_equal(go(own, 0.8), MPS_OK);
@@ -36,41 +28,38 @@ static void a_wall_that_goes_far_in_a_step(void **state) {
   assert_non_null(strstr(j.last, "boundary 1 moves 0.016 m"));
   assert_int_equal(go(own, 2.0), MPS_ERROR_DIVERGED);
   assert_non_null(strstr(mps_context_error(own)->message, "boundary 1 moves 0.04 m"));
-  mps_context_destroy(&own);
 }
 
 /* A wall with two nodes .4 m apart whose upper one is at `s`, slowly. */
 static mps_status bend(mps_context *own, double slope) {
   const double dt = 2e-3, nodes[6] = {0.4, 0.0, 0.0, 0.4, 0.4, 0.0};
-  tank t = {NULL, NULL};
+  scoped_tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
   wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   int32_t number;
   set.spacing = L0, def.dt = dt, def.level = 0.2;
-  mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
-  tank_fill(own, t.water, 0.4, 0.2, NULL, NULL);
-  mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
-  tank_wall(own, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(own, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  OK(mps_particles_create(own, &set, &t.water));
+  tank_fill(t.water, 0.4, 0.2, NULL, NULL);
+  OK(mps_fluid_create(own, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   wall.point[0] = 0.4, wall.normal[0] = -1.0, wall.nodes = nodes, wall.node_count = 2;
-  mps_assert_ok(own, mps_fluid_add_boundary(t.fluid, &wall, &number));
+  OK(mps_fluid_add_boundary(t.fluid, &wall, &number));
   mps_status status = MPS_OK;
   const int steps = (int)ceil(slope * 0.4 / (0.3 * L0));
   for (int k = 1; k <= steps && status == MPS_OK; k++) {
     const double s[2] = {0.0, -slope * 0.4 * k / steps}, u[2] = {0.0, -slope * 0.4 / steps / dt};
-    mps_assert_ok(own, mps_fluid_set_wall_motion(t.fluid, number, s, u));
+    OK(mps_fluid_set_boundary_motion(t.fluid, number, s, u));
     status = mps_fluid_step(t.fluid, 1);
   }
-  tank_free(&t);
   return status;
 }
 
-static void a_wall_that_bends_far(void **state) {
-  (void)state;
+TEST(a_wall_that_bends_far) {
   journal j = {0};
-  mps_context *own = journal_context(&j, NULL);
+  scoped_context *own = journal_context(&j, NULL);
   assert_int_equal(bend(own, 0.08), MPS_OK);
   assert_int_equal(j.count, 0);
   assert_int_equal(bend(own, 0.2), MPS_OK);
@@ -78,7 +67,6 @@ static void a_wall_that_bends_far(void **state) {
   assert_non_null(strstr(j.last, "bends to a slope of"));
   assert_int_equal(bend(own, 1.2), MPS_ERROR_DIVERGED);
   assert_non_null(strstr(mps_context_error(own)->message, "bends to a slope of"));
-  mps_context_destroy(&own);
 }
 
 #define PIVOT 0.2 /* m, of the corner that the box stands on */
@@ -100,96 +88,63 @@ static void lower_box(mps_context *own, double to, int steps) {
   mps_fluid_def def = mps_fluid_defaults();
   mps_body_def at = mps_body_defaults();
   mps_body_motion motion = mps_body_motion_defaults();
-  tank t = {NULL, NULL};
-  mps_body *box;
+  scoped_tank t = {NULL, NULL};
+  scoped_body *box = NULL;
   tilt(17.0, at.position, &at.rotation[2]);
-  mps_assert_ok(own, mps_body_create_box(own, &at, WIDE, HIGH, &box));
+  OK(mps_body_create_box(own, &at, WIDE, HIGH, &box));
   set.spacing = L0, def.dt = 2e-3, def.level = hi[1];
-  mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
+  OK(mps_particles_create(own, &set, &t.water));
   for (double y = lo[1] + 0.5 * L0; y < hi[1]; y += L0)
     for (double x = lo[0] + 0.5 * L0; x < hi[0]; x += L0) {
       const double p[2] = {x, y};
       double d;
-      mps_assert_ok(own, mps_body_distance(box, 1, p, &d, NULL, NULL, NULL));
-      if (d > 0.45 * L0) mps_assert_ok(own, mps_particles_append(t.water, 1, p));
+      OK(mps_body_distance(box, 1, p, &d, NULL, NULL, NULL));
+      if (d > 0.45 * L0) OK(mps_particles_append(t.water, 1, p));
     }
-  mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
-  tank_wall(own, t.fluid, lo[0], 0.0, 1.0, 0.0, NULL);
-  tank_wall(own, t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
-  tank_wall(own, t.fluid, 0.0, lo[1], 0.0, 1.0, NULL);
-  mps_contact *contact = tank_body(own, t.fluid, box, 0);
+  OK(mps_fluid_create(own, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, lo[0], 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.0, lo[1], 0.0, 1.0, NULL);
+  scoped_contact *contact = tank_body(t.fluid, box, MPS_CONTACT_MOVER_OTHER);
   for (int k = 1; k <= steps; k++) {
     tilt(17.0 + (to - 17.0) * k / steps, motion.position, &motion.rotation[2]);
     motion.spin[2] = (to - 17.0) * TANK_PI / 180.0 / (steps * 2e-3);
-    mps_assert_ok(own, mps_body_set_motion(box, &motion));
-    mps_assert_ok(own, mps_fluid_step(t.fluid, 1));
+    OK(mps_body_set_motion(box, &motion));
+    OK(mps_fluid_step(t.fluid, 1));
   }
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&box);
-  tank_free(&t);
 }
 
-static void a_body_that_rolls_onto_the_bed(void **state) {
-  (void)state;
+TEST(a_body_that_rolls_onto_the_bed) {
   journal j = {0};
-  mps_context *own = journal_context(&j, NULL);
+  scoped_context *own = journal_context(&j, NULL);
   lower_box(own, 15.2, 10);
   assert_int_equal(j.count, 0);
   lower_box(own, 14.0, 20); /* below 15 degrees for the last six steps: once */
   assert_int_equal(j.count, 1);
   assert_non_null(strstr(j.last, "of body 0 and boundary 2 enclose 14.9 degrees"));
   assert_non_null(strstr(j.last, "below the 15 degrees"));
-  mps_context_destroy(&own);
 }
 
 /* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
-static void a_run_does_not_choose_endless_steps(void **state) {
-  (void)state;
+TEST(a_run_does_not_choose_endless_steps) {
   for (int weightless = 0; weightless < 2; weightless++) {
     journal j = {0};
-    mps_context *own = journal_context(&j, NULL);
-    mps_particles_def set = mps_particles_defaults();
+    scoped_context *own = journal_context(&j, NULL);
+    DEF(particles, set, .spacing = L0);
     mps_fluid_def def = mps_fluid_defaults();
     tank t;
     mps_edit u;
-    set.spacing = L0;
     if (weightless) def.gravity[1] = 0.0;
-    mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
-    tank_fill(own, t.water, 0.2, 0.1, NULL, NULL);
-    mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
-    mps_assert_ok(own, mps_particles_edit(t.water, "velocity", &u));
+    OK(mps_particles_create(own, &set, &t.water));
+    tank_fill(t.water, 0.2, 0.1, NULL, NULL);
+    OK(mps_fluid_create(own, t.water, &def, &t.fluid));
+    OK(mps_particles_edit(t.water, "velocity", &u));
     *mps_edit_f64(&u, 0, 1) = weightless ? 1e8 : 1e6;
-    mps_assert_ok(own, mps_particles_commit(t.water, &u));
+    OK(mps_particles_commit(t.water, &u));
     assert_int_equal(mps_fluid_run(t.fluid, 0.02, 1, NULL, NULL), MPS_ERROR_DIVERGED);
     assert_non_null(strstr(mps_context_error(own)->message, "give dt"));
     assert_int_equal(mps_fluid_steps(t.fluid), 0);
     if (!weightless) assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_DIVERGED);
     tank_free(&t);
-    mps_context_destroy(&own);
   }
-}
-
-static void the_density_of_a_wide_kernel_can_be_cancelled(void **state) {
-  (void)state;
-  journal j = {0};
-  mps_context *own = journal_context(&j, stop_at_the_third);
-  mps_kernel *kernel;
-  double n0 = -1.0;
-  mps_assert_ok(own, mps_kernel_create(own, MPS_KERNEL_SMOOTH, 1.0, &kernel));
-  assert_int_equal(mps_kernel_density(own, kernel, 3, 1e-3, &n0), MPS_ERROR_CANCELLED);
-  assert_int_equal(j.asked, 3);
-  assert_true(n0 == -1.0);
-  mps_kernel_destroy(&kernel);
-  mps_context_destroy(&own);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_wall_that_goes_far_in_a_step),
-      cmocka_unit_test(a_wall_that_bends_far),
-      cmocka_unit_test(a_body_that_rolls_onto_the_bed),
-      cmocka_unit_test(a_run_does_not_choose_endless_steps),
-      cmocka_unit_test(the_density_of_a_wide_kernel_can_be_cancelled),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

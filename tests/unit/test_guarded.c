@@ -3,41 +3,32 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include "test_allocator.h"
-
 #include "core/particles/particles_internal.h"
 
-#include <mps/dynamics.h>
-#include <mps/mpm.h>
-#include <mps/particles.h>
-
 static mps_particles *make_set(mps_context *own, double width) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.5;
+  DEF(particles, def, .spacing = 0.5);
   mps_particles *set = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {width, 2.0};
-  mps_assert_ok(own, mps_particles_create(own, &def, &set));
-  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(own, mps_particles_set(set, "density", 0, 2000.0));
+  OK(mps_particles_create(own, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "density", 0, 2000.0));
   return set;
 }
 
 static mps_mpm *make_mpm(mps_particles *set) {
-  mps_material *material = NULL;
+  scoped_material *material = NULL;
   mps_mpm *mpm = NULL;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
+  DEF(mpm, def, .cell = 1.0);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 8.0;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
-  mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
-  mps_material_destroy(&material);
+  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
+  OK(mps_mpm_create(context, set, material, &def, &mpm));
   return mpm;
 }
 
 /* Writes one value and commits; what was there before is written back after a refusal. */
 static mps_status write_one(mps_particles *set, const char *field, int64_t id, double value) {
   mps_edit v;
-  mps_assert_ok(context, mps_particles_edit(set, field, &v));
+  OK(mps_particles_edit(set, field, &v));
   double *at = mps_edit_f64(&v, mps_particles_index(set, id), 0);
   const double former = *at;
   *at = value;
@@ -46,7 +37,7 @@ static mps_status write_one(mps_particles *set, const char *field, int64_t id, d
   *at = former;
   mps_edit again = v; /* the field has stayed open */
   const mps_error keep = *mps_context_error(context);
-  mps_assert_ok(context, mps_particles_commit(set, &again));
+  OK(mps_particles_commit(set, &again));
   (void)mpsi_fail(context, keep.function, keep.status, "%s", keep.message);
   mpsi_fail_where(context, -1, keep.particle);
   mpsi_fail_object(context, "%s", keep.object);
@@ -61,43 +52,38 @@ _Static_assert(_Generic(mps_view_f64(NULL, 0, 0), const double * : 1, default : 
 
 /* ---- editing --------------------------------------------------------------------------------- */
 
-static void views_are_for_reading_and_edits_for_writing(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
+TEST(views_are_for_reading_and_edits_for_writing) {
+  scoped_particles *set = make_set(context, 2.0);
   mps_view v;
   mps_edit e, other;
-  mps_assert_ok(context, mps_particles_view(set, "density", &v));
+  OK(mps_particles_view(set, "density", &v));
   assert_true(v.flags & MPS_VIEW_READONLY);
   assert_int_equal(v.device_type, 0);
-  mps_assert_ok(context, mps_particles_edit(set, "density", &e));
+  OK(mps_particles_edit(set, "density", &e));
   assert_false(e.view.flags & MPS_VIEW_READONLY);
   assert_ptr_equal(e.data, v.data);
-  mps_assert_fails(context, mps_particles_edit(set, "density", &other), MPS_ERROR_STATE,
-                   "is being edited already");
+  FAILS(mps_particles_edit(set, "density", &other), MPS_ERROR_STATE, "is being edited already");
   assert_null(other.data);
-  mps_assert_fails(context, mps_particles_set(set, "density", 0, 1.0), MPS_ERROR_STATE,
-                   "'density' is being edited");
+  FAILS(mps_particles_set(set, "density", 0, 1.0), MPS_ERROR_STATE, "'density' is being edited");
   const double x[2] = {9.0, 9.0};
   const int64_t ids[1] = {0};
-  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "'density'");
-  mps_assert_fails(context, mps_particles_remove(set, 1, ids), MPS_ERROR_STATE, "'density'");
+  FAILS(mps_particles_append(set, 1, x), MPS_ERROR_STATE, "'density'");
+  FAILS(mps_particles_remove(set, ids, 1), MPS_ERROR_STATE, "'density'");
   assert_string_equal(mps_context_error(context)->object, "field 'density'");
-  mps_assert_fails(context, mps_particles_commit(set, NULL), MPS_ERROR_ARGUMENT, "NULL");
-  mps_assert_ok(context, mps_particles_commit(set, &e));
+  REFUSES(mps_particles_commit(set, NULL), "NULL");
+  OK(mps_particles_commit(set, &e));
   assert_null(e.data);
   assert_ptr_equal(e.view.data, v.data);
   assert_true(e.view.flags & MPS_VIEW_READONLY);
-  mps_assert_fails(context, mps_particles_commit(set, &e), MPS_ERROR_STATE, "not of a field");
-  mps_assert_fails(context, mps_particles_edit(set, "id", &e), MPS_ERROR_FIELD, "library only");
-  mps_assert_fails(context, mps_particles_edit(set, "nothing", &e), MPS_ERROR_FIELD, "no field");
-  mps_particles_destroy(&set);
+  FAILS(mps_particles_commit(set, &e), MPS_ERROR_STATE, "not of a field");
+  FAILS(mps_particles_edit(set, "id", &e), MPS_ERROR_FIELD, "library only");
+  FAILS(mps_particles_edit(set, "nothing", &e), MPS_ERROR_FIELD, "no field");
 }
 
-static void commit_checks_values_and_names_the_particle(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_assert_ok(context, mps_particles_add_field(set, "poisson", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "mine", 1));
+TEST(commit_checks_values_and_names_the_particle) {
+  scoped_particles *set = make_set(context, 2.0);
+  OK(mps_particles_add_field(set, "poisson", 0));
+  OK(mps_particles_add_field(set, "mine", 1));
   const struct {
     const char *field;
     double bad[3];
@@ -116,247 +102,211 @@ static void commit_checks_values_and_names_the_particle(void **state) {
     }
     assert_int_equal(write_one(set, rows[k].field, 5, rows[k].good), MPS_OK);
   }
-  mps_assert_fails(context, mps_particles_set(set, "density", 0, -3.0), MPS_ERROR_ARGUMENT,
-                   "'density' is -3 kg/m3, allowed are 0 to 1e+12");
-  mps_particles_destroy(&set);
+  REFUSES(mps_particles_set(set, "density", 0, -3.0),
+          "'density' is -3 kg/m3, allowed are 0 to 1e+12");
 }
 
 /* ---- solvers --------------------------------------------------------------------------------- */
 
-static void a_step_waits_for_the_commit(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_mpm *mpm = make_mpm(set);
+TEST(a_step_waits_for_the_commit) {
+  scoped_particles *set = make_set(context, 2.0);
+  scoped_mpm *mpm = make_mpm(set);
   mps_edit v;
-  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
-  mps_assert_fails(context, mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
-  mps_assert_fails(context, mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
-  mps_assert_ok(context, mps_particles_commit(set, &v));
-  mps_assert_ok(context, mps_mpm_step(mpm, 1));
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
+  OK(mps_particles_edit(set, "velocity", &v));
+  FAILS(mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
+  FAILS(mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
+  OK(mps_particles_commit(set, &v));
+  OK(mps_mpm_step(mpm, 1));
 }
 
 /* Each of these was a heap overflow, a crash or silently wrong before. */
 /* What is half written is neither kept nor begun with: it may be put back, or refused. */
-static void states_wait_for_the_commit(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 4.0);
+TEST(states_wait_for_the_commit) {
+  scoped_particles *set = make_set(context, 4.0);
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
-  mps_snapshot *snapshot = NULL;
+  scoped_dynamics *dynamics = NULL;
+  scoped_snapshot *snapshot = NULL;
   mps_edit v;
-  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
-  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  mps_assert_ok(context, mps_dynamics_create(context, set, &def, &dynamics));
-  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
+  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  OK(mps_dynamics_create(context, set, &def, &dynamics));
+  OK(mps_particles_edit(set, "velocity", &v));
   *mps_edit_f64(&v, 0, 0) = NAN;
   const char *text = "field 'velocity' is being edited";
-  mps_assert_fails(context, mps_dynamics_snapshot(dynamics, &snapshot), MPS_ERROR_STATE, text);
+  FAILS(mps_dynamics_snapshot(dynamics, &snapshot), MPS_ERROR_STATE, text);
   assert_null(snapshot);
-  mps_assert_fails(context, mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_STATE, text);
+  FAILS(mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_STATE, text);
   const mps_status saved = mps_dynamics_save(dynamics, TEST_TMP "/half_written.h5", NULL);
   assert_true(saved == MPS_ERROR_STATE || saved == MPS_ERROR_UNSUPPORTED);
-  mps_assert_ok(context, mps_particles_abandon(set, &v));
-  mps_assert_ok(context, mps_dynamics_snapshot(dynamics, &snapshot));
-  mps_assert_ok(context, mps_dynamics_step(dynamics, 1));
-  mps_assert_ok(context, mps_dynamics_rollback(dynamics, snapshot));
-  mps_snapshot_destroy(&snapshot);
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
+  OK(mps_particles_abandon(set, &v));
+  OK(mps_dynamics_snapshot(dynamics, &snapshot));
+  OK(mps_dynamics_step(dynamics, 1));
+  OK(mps_dynamics_rollback(dynamics, snapshot));
 }
 
-static void a_solver_never_meets_a_position_outside_its_domain(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_mpm *mpm = make_mpm(set);
+TEST(a_solver_never_meets_a_position_outside_its_domain) {
+  scoped_particles *set = make_set(context, 2.0);
+  scoped_mpm *mpm = make_mpm(set);
   const double bad[] = {1e3, NAN, 1e9, -5.0, INFINITY};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
     assert_int_equal(write_one(set, "position", 3, bad[k]), MPS_ERROR_ARGUMENT);
-    mps_assert_ok(context, mps_mpm_step(mpm, 2));
+    OK(mps_mpm_step(mpm, 2));
   }
-  mps_assert_fails(context, write_one(set, "position", 3, 1e3), MPS_ERROR_ARGUMENT,
-                   "outside the domain");
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
+  REFUSES(write_one(set, "position", 3, 1e3), "outside the domain");
 }
 
 /* Two blocks without contact: one carried over by 5 m moves there as it would have here, since the
  * nodes lie at whole metres. */
-static void a_move_between_steps_is_a_translation(void **state) {
-  (void)state;
+TEST(a_move_between_steps_is_a_translation) {
   double moved[2][2];
   for (int far = 0; far < 2; far++) {
-    mps_particles *set = make_set(context, 2.0);
-    mps_mpm *mpm = make_mpm(set);
+    scoped_particles *set = make_set(context, 2.0);
+    scoped_mpm *mpm = make_mpm(set);
     mps_edit x, v;
-    mps_assert_ok(context, mps_particles_edit(set, "position", &x));
-    mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+    OK(mps_particles_edit(set, "position", &x));
+    OK(mps_particles_edit(set, "velocity", &v));
     for (int64_t k = 0; k < x.view.shape[0]; k++) {
       *mps_edit_f64(&x, k, 0) += far ? 4.0 : 2.0;
       *mps_edit_f64(&x, k, 1) += far ? 4.0 : 3.0;
       *mps_edit_f64(&v, k, 0) = *mps_view_f64(&x.view, k, 1) - (far ? 4.0 : 3.0);
     }
-    mps_assert_ok(context, mps_particles_commit(set, &x));
-    mps_assert_ok(context, mps_particles_commit(set, &v));
-    mps_assert_ok(context, mps_mpm_run(mpm, 0.05, 1, NULL, NULL));
-    mps_assert_ok(context, mps_particles_view(set, "position", &x.view));
+    OK(mps_particles_commit(set, &x));
+    OK(mps_particles_commit(set, &v));
+    OK(mps_mpm_run(mpm, 0.05, 1, NULL, NULL));
+    OK(mps_particles_view(set, "position", &x.view));
     for (int c = 0; c < 2; c++) {
       const double start = c == 0 ? (far ? 4.25 : 2.25) : (far ? 4.25 : 3.25);
       moved[far][c] = *mps_view_f64(&x.view, mps_particles_index(set, 0), c) - start;
     }
-    mps_mpm_destroy(&mpm);
-    mps_particles_destroy(&set);
   }
   assert_true(fabs(moved[0][0]) > 1e-3);
-  for (int c = 0; c < 2; c++) mps_assert_near(moved[1][c], moved[0][c], 1e-12);
+  for (int c = 0; c < 2; c++) NEAR(moved[1][c], moved[0][c], 1e-12);
 }
 
 /* The Courant limit h/(c + |v|) follows a velocity that the caller writes. */
-static void the_limit_follows_the_callers_velocity(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_mpm *mpm = make_mpm(set);
+TEST(the_limit_follows_the_callers_velocity) {
+  scoped_particles *set = make_set(context, 2.0);
+  scoped_mpm *mpm = make_mpm(set);
   const double c = sqrt(1e6 * 0.7 / (1.3 * 0.4) / 2000.0);
-  mps_assert_near(mps_mpm_limit(mpm), 1.0 / c, 1e-9);
+  NEAR(mps_mpm_limit(mpm), 1.0 / c, 1e-9);
   assert_int_equal(write_one(set, "velocity", 7, 100.0), MPS_OK);
-  mps_assert_ok(context, mps_mpm_step(mpm, 0)); /* reads what was written */
-  mps_assert_near(mps_mpm_limit(mpm), 1.0 / (c + 100.0), 1e-9);
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
+  OK(mps_mpm_step(mpm, 0)); /* reads what was written */
+  NEAR(mps_mpm_limit(mpm), 1.0 / (c + 100.0), 1e-9);
 }
 
 /* Two metres of soil far from the walls, in flight: particles enter other cells, but stay near
  * enough to the blocks that they were sorted to. */
 static mps_particles *free_set(void) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = 0.25);
   mps_particles *set = NULL;
   const double lo[2] = {2.1, 3.1}, hi[2] = {4.1, 5.1};
-  def.spacing = 0.25;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(context, mps_particles_set(set, "density", 0, 2000.0));
-  mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 2.0));
-  mps_assert_ok(context, mps_particles_add_field(set, "external_force", 0));
+  OK(mps_particles_create(context, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "density", 0, 2000.0));
+  OK(mps_particles_set(set, "velocity", 0, 2.0));
+  OK(mps_particles_add_field(set, "external_force", 0));
   return set;
 }
 
 /* What each step reads anew moves no particle in memory, and no other field but positions does. */
-static void only_positions_make_a_solver_sort(void **state) {
-  (void)state;
+TEST(only_positions_make_a_solver_sort) {
   static const char *const fields[] = {"external_force", "velocity", "stress", "density",
                                        "position"};
-  mps_particles *set = free_set();
-  mps_mpm *mpm = make_mpm(set);
+  scoped_particles *set = free_set();
+  scoped_mpm *mpm = make_mpm(set);
   const uint64_t first = mps_particles_epoch(set);
-  mps_assert_ok(context, mps_mpm_run(mpm, 0.3, 1, NULL, NULL)); /* 0.6 m */
+  OK(mps_mpm_run(mpm, 0.3, 1, NULL, NULL)); /* 0.6 m */
   assert_int_equal(mps_particles_epoch(set), first);
   for (int f = 0; f < 5; f++) {
     mps_edit view;
-    mps_assert_ok(context, mps_particles_edit(set, fields[f], &view));
-    mps_assert_ok(context, mps_particles_commit(set, &view));
-    mps_assert_ok(context, mps_mpm_step(mpm, 1));
+    OK(mps_particles_edit(set, fields[f], &view));
+    OK(mps_particles_commit(set, &view));
+    OK(mps_mpm_step(mpm, 1));
     assert_int_equal(mps_particles_epoch(set) != first, f == 4);
   }
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
 }
 
 /* A force that is edited is that of the next step: a body in flight has its acceleration. */
-static void an_edited_force_acts_at_once(void **state) {
-  (void)state;
-  mps_particles *set = free_set();
+TEST(an_edited_force_acts_at_once) {
+  scoped_particles *set = free_set();
   mps_view v;
   mps_edit f;
-  mps_mpm *mpm = make_mpm(set);
+  scoped_mpm *mpm = make_mpm(set);
   double speed = 2.0;
   for (int step = 1; step <= 3; step++) {
     mps_view m;
-    mps_assert_ok(context, mps_particles_view(set, "mass", &m));
-    mps_assert_ok(context, mps_particles_edit(set, "external_force", &f));
+    OK(mps_particles_view(set, "mass", &m));
+    OK(mps_particles_edit(set, "external_force", &f));
     for (int64_t k = 0; k < f.view.shape[0]; k++)
       *mps_edit_f64(&f, k, 0) = 3.0 * step * *mps_view_f64(&m, k, 0);
-    mps_assert_ok(context, mps_particles_commit(set, &f));
+    OK(mps_particles_commit(set, &f));
     const double before = mps_mpm_time(mpm);
-    mps_assert_ok(context, mps_mpm_step(mpm, 1));
+    OK(mps_mpm_step(mpm, 1));
     speed += 3.0 * step * (mps_mpm_time(mpm) - before);
-    mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
-    for (int64_t k = 0; k < v.shape[0]; k++) mps_assert_near(*mps_view_f64(&v, k, 0), speed, 1e-12);
+    OK(mps_particles_view(set, "velocity", &v));
+    for (int64_t k = 0; k < v.shape[0]; k++) NEAR(*mps_view_f64(&v, k, 0), speed, 1e-12);
   }
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
 }
 
 /* The values are those from before, also where the solver had refused them, and no holder reads
  * again. */
-static void an_abandoned_edit_was_none(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_mpm *mpm = make_mpm(set);
+TEST(an_abandoned_edit_was_none) {
+  scoped_particles *set = make_set(context, 2.0);
+  scoped_mpm *mpm = make_mpm(set);
   mps_view other;
   mps_edit x;
-  mps_assert_ok(context, mps_mpm_step(mpm, 1));
+  OK(mps_mpm_step(mpm, 1));
   const double limit = mps_mpm_limit(mpm);
   for (int f = 0; f < 2; f++) {
     const char *name = f == 0 ? "position" : "velocity";
-    mps_assert_ok(context, mps_particles_edit(set, name, &x));
+    OK(mps_particles_edit(set, name, &x));
     const double kept[2] = {*mps_view_f64(&x.view, 3, 0), *mps_view_f64(&x.view, 3, 1)};
     for (int c = 0; c < 2; c++) *mps_edit_f64(&x, 3, c) = f == 0 ? 1e9 : 1e3;
-    if (f == 0)
-      mps_assert_fails(context, mps_particles_commit(set, &x), MPS_ERROR_ARGUMENT, "outside");
-    mps_assert_ok(context, mps_particles_abandon(set, &x));
+    if (f == 0) REFUSES(mps_particles_commit(set, &x), "outside");
+    OK(mps_particles_abandon(set, &x));
     assert_true(x.view.flags & MPS_VIEW_READONLY);
     for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&x.view, 3, c) == kept[c]);
-    mps_assert_fails(context, mps_particles_abandon(set, &x), MPS_ERROR_STATE, "being edited");
-    mps_assert_ok(context, mps_mpm_step(mpm, 0));
+    FAILS(mps_particles_abandon(set, &x), MPS_ERROR_STATE, "being edited");
+    OK(mps_mpm_step(mpm, 0));
     assert_true(mps_mpm_limit(mpm) == limit);
   }
-  mps_assert_fails(context, mps_particles_abandon(set, NULL), MPS_ERROR_ARGUMENT, "edit is NULL");
+  REFUSES(mps_particles_abandon(set, NULL), "edit is NULL");
   assert_int_equal(mps_particles_abandon(NULL, &x), MPS_ERROR_ARGUMENT);
-  mps_assert_ok(context, mps_particles_view(set, "position", &other));
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
+  OK(mps_particles_view(set, "position", &other));
 }
 
 /* One material for all solvers, given to a set that a solver holds: its masses follow. */
-static void a_sets_material_renews_its_masses(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_mpm *mpm = make_mpm(set);
-  mps_material *rock = NULL;
+TEST(a_sets_material_renews_its_masses) {
+  scoped_particles *set = make_set(context, 2.0);
+  scoped_mpm *mpm = make_mpm(set);
+  scoped_material *rock = NULL;
   mps_totals before, after;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.2, &rock));
-  mps_assert_ok(context, mps_mpm_get_totals(mpm, &before));
-  mps_assert_ok(context, mps_particles_set_material(set, rock, 3000.0, 0, NULL));
-  mps_assert_ok(context, mps_mpm_get_totals(mpm, &after));
-  mps_assert_near(after.mass, 1.5 * before.mass, 1e-9 * before.mass);
-  mps_material_destroy(&rock);
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&set);
+  OK(mps_material_create_linear_elastic(context, 1e7, 0.2, &rock));
+  OK(mps_mpm_get_totals(mpm, &before));
+  OK(mps_particles_set_material(set, rock, 3000.0, NULL, 0));
+  OK(mps_mpm_get_totals(mpm, &after));
+  NEAR(after.mass, 1.5 * before.mass, 1e-9 * before.mass);
 }
 
-static void one_solver_moves_a_set(void **state) {
-  (void)state;
+TEST(one_solver_moves_a_set) {
   mps_particles *set = make_set(context, 2.0);
   mps_mpm *mpm = make_mpm(set), *second = NULL;
   mps_material *material = NULL;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
+  DEF(mpm, def, .cell = 1.0);
+  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
   const uint64_t epoch = mps_particles_epoch(set);
   const int32_t fields = mps_particles_field_count(set);
-  mps_assert_fails(context, mps_mpm_create(context, set, material, &def, &second), MPS_ERROR_STATE,
-                   "held by a WLS-MPM solver");
+  FAILS(mps_mpm_create(context, set, material, &def, &second), MPS_ERROR_STATE,
+        "held by a WLS-MPM solver");
   assert_null(second);
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
-  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_STATE,
-                   "held by");
+  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
+  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  FAILS(mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_STATE, "held by");
   assert_int_equal(mps_particles_epoch(set), epoch);
   assert_int_equal(mps_particles_field_count(set), fields + 2);
   mps_mpm_destroy(&mpm);
-  mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
+  OK(mps_mpm_create(context, set, material, &def, &mpm));
   mps_material_destroy(&material);
   mps_particles *kept = set;
   mps_particles_destroy(&set);
@@ -366,60 +316,55 @@ static void one_solver_moves_a_set(void **state) {
 
 /* ---- coming and going ------------------------------------------------------------------------ */
 
-static void particles_are_removed_and_keep_their_ids(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
-  mps_assert_ok(context, mps_particles_add_field(set, "mine", 2));
+TEST(particles_are_removed_and_keep_their_ids) {
+  scoped_particles *set = make_set(context, 2.0);
+  OK(mps_particles_add_field(set, "mine", 2));
   mps_view x;
   mps_edit mine;
-  mps_assert_ok(context, mps_particles_edit(set, "mine", &mine));
+  OK(mps_particles_edit(set, "mine", &mine));
   for (int64_t k = 0; k < 16; k++)
     for (int c = 0; c < 2; c++) *mps_edit_f64(&mine, k, c) = 10.0 * (double)k + c;
-  mps_assert_ok(context, mps_particles_commit(set, &mine));
+  OK(mps_particles_commit(set, &mine));
   const int64_t ids[] = {15, 0, 7}, twice[] = {3, 3}, unknown[] = {3, 16};
   const uint64_t epoch = mps_particles_epoch(set);
-  mps_assert_fails(context, mps_particles_remove(set, 2, twice), MPS_ERROR_ARGUMENT,
-                   "ids[1] is 3, which stands in the list before");
-  mps_assert_fails(context, mps_particles_remove(set, 2, unknown), MPS_ERROR_ARGUMENT,
-                   "ids[1] is 16: the set has no such particle");
-  mps_assert_fails(context, mps_particles_remove(set, 17, ids), MPS_ERROR_ARGUMENT, "count is 17");
-  mps_assert_fails(context, mps_particles_remove(set, 1, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  REFUSES(mps_particles_remove(set, twice, 2), "ids[1] is 3, which stands in the list before");
+  REFUSES(mps_particles_remove(set, unknown, 2), "ids[1] is 16: the set has no such particle");
+  REFUSES(mps_particles_remove(set, ids, 17), "count is 17");
+  REFUSES(mps_particles_remove(set, NULL, 1), "NULL");
   assert_int_equal(mps_particles_count(set), 16);
   assert_int_equal(mps_particles_epoch(set), epoch);
-  mps_assert_ok(context, mps_particles_remove(set, 3, ids));
+  OK(mps_particles_remove(set, ids, 3));
   assert_int_equal(mps_particles_count(set), 13);
   assert_true(mps_particles_epoch(set) != epoch);
   for (int k = 0; k < 3; k++) assert_int_equal(mps_particles_index(set, ids[k]), -1);
-  mps_assert_ok(context, mps_particles_view(set, "mine", &mine.view));
+  OK(mps_particles_view(set, "mine", &mine.view));
   for (int64_t id = 0; id < 16; id++) {
     const int64_t at = mps_particles_index(set, id);
     if (at < 0) continue;
-    for (int c = 0; c < 2; c++)
-      mps_assert_near(*mps_view_f64(&mine.view, at, c), 10.0 * (double)id + c, 0.0);
+    for (int c = 0; c < 2; c++) NEAR(*mps_view_f64(&mine.view, at, c), 10.0 * (double)id + c, 0.0);
   }
   /* Vector loops read zeros behind the last particle. */
   const double *column = mpsi_particles_column(set, "mine", 1);
-  for (int k = 0; k < MPSI_PARTICLES_PADDING; k++) mps_assert_near(column[13 + k], 0.0, 0.0);
-  mps_assert_fails(context, mps_particles_remove(set, 1, ids), MPS_ERROR_ARGUMENT, "no such");
+  for (int k = 0; k < MPSI_PARTICLES_PADDING; k++) NEAR(column[13 + k], 0.0, 0.0);
+  REFUSES(mps_particles_remove(set, ids, 1), "no such");
 
   /* A new particle gets an id that none had; it is found by its place. */
   const double there[2] = {5.0, 5.0};
-  mps_assert_ok(context, mps_particles_append(set, 1, there));
+  OK(mps_particles_append(set, 1, there));
   assert_int_equal(mps_particles_nearest(set, there), 16);
   assert_int_equal(mps_particles_index(set, 16), 13);
   int64_t found[16], count;
   const double lo[2] = {0.0, 0.0}, hi[2] = {9.0, 9.0};
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 16, &count, found));
+  OK(mps_particles_select_box(set, lo, hi, 16, &count, found));
   assert_int_equal(count, 14);
   assert_int_equal(found[0], 1);
   assert_int_equal(found[13], 16);
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  OK(mps_particles_view(set, "position", &x));
   int64_t all[14];
   memcpy(all, found, sizeof all);
-  mps_assert_ok(context, mps_particles_remove(set, 14, all));
+  OK(mps_particles_remove(set, all, 14));
   assert_int_equal(mps_particles_count(set), 0);
   assert_int_equal(mps_particles_nearest(set, there), -1);
-  mps_particles_destroy(&set);
 }
 
 /* What a solver that lets particles come and go would note. */
@@ -468,8 +413,7 @@ static void visit_renew(void *self) {
   v->seen = mps_particles_count(v->set);
 }
 
-static void holders_decide_who_comes_and_goes(void **state) {
-  (void)state;
+TEST(holders_decide_who_comes_and_goes) {
   mps_particles *set = make_set(context, 2.0);
   visitor v = {.set = set};
   mpsi_holder recorder = {.name = "a recorder", .kind = MPSI_USE_LOOK};
@@ -485,36 +429,34 @@ static void holders_decide_who_comes_and_goes(void **state) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 3.0}, x[4] = {5.0, 5.0, 6.0, 6.0};
   const int64_t ids[2] = {4, 2};
   int64_t added = -1;
-  mps_assert_ok(context, mpsi_particles_hold(set, "test", &recorder));
-  mps_assert_ok(context, mpsi_particles_hold(set, "test", &solver));
-  mps_assert_fails(context, mpsi_particles_hold(set, "test", &deaf), MPS_ERROR_STATE,
-                   "held by a solver of the test");
-  mps_assert_ok(context, mps_particles_append(set, 2, x));
+  OK(mpsi_particles_hold(set, "test", &recorder));
+  OK(mpsi_particles_hold(set, "test", &solver));
+  FAILS(mpsi_particles_hold(set, "test", &deaf), MPS_ERROR_STATE, "held by a solver of the test");
+  OK(mps_particles_append(set, 2, x));
   assert_int_equal(v.first, 16);
   assert_int_equal(v.count, 2);
   assert_int_equal(v.seen, 18);
-  mps_assert_ok(context, mps_particles_remove(set, 2, ids));
+  OK(mps_particles_remove(set, ids, 2));
   assert_int_equal(v.seen, 16);
   v.answer = MPS_ERROR_ARGUMENT;
-  mps_assert_fails(context, mps_particles_append(set, 2, x), MPS_ERROR_ARGUMENT, "the domain");
-  mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, &added), MPS_ERROR_ARGUMENT,
-                   "the domain");
-  mps_assert_fails(context, mps_particles_remove(set, 1, ids + 1), MPS_ERROR_ARGUMENT, "no such");
+  REFUSES(mps_particles_append(set, 2, x), "the domain");
+  REFUSES(mps_particles_fill_box(set, lo, hi, &added), "the domain");
+  REFUSES(mps_particles_remove(set, ids + 1, 1), "no such");
   const int64_t there[1] = {5};
-  mps_assert_fails(context, mps_particles_remove(set, 1, there), MPS_ERROR_ARGUMENT, "not now");
+  REFUSES(mps_particles_remove(set, there, 1), "not now");
   assert_int_equal(mps_particles_count(set), 16);
   assert_int_equal(v.seen, 16);
   assert_int_equal(mps_particles_index(set, 18), -1);
-  mps_assert_fails(context, mps_particles_set(set, "density", 0, 1.0), MPS_ERROR_ARGUMENT, "");
-  mps_assert_near(*mpsi_particles_column(set, "density", 0), 2000.0, 0.0);
+  REFUSES(mps_particles_set(set, "density", 0, 1.0), "");
+  NEAR(*mpsi_particles_column(set, "density", 0), 2000.0, 0.0);
   v.answer = MPS_OK;
-  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added)); /* the sites are free yet */
+  OK(mps_particles_fill_box(set, lo, hi, &added)); /* the sites are free yet */
   assert_int_equal(added, 8);
   assert_int_equal(mps_particles_index(set, 18), 16);
   mpsi_particles_release(set, &solver);
-  mps_assert_ok(context, mpsi_particles_hold(set, "test", &deaf));
-  mps_assert_fails(context, mps_particles_append(set, 2, x), MPS_ERROR_STATE, "a deaf solver");
-  mps_assert_fails(context, mps_particles_remove(set, 1, there), MPS_ERROR_STATE, "a deaf solver");
+  OK(mpsi_particles_hold(set, "test", &deaf));
+  FAILS(mps_particles_append(set, 2, x), MPS_ERROR_STATE, "a deaf solver");
+  FAILS(mps_particles_remove(set, there, 1), MPS_ERROR_STATE, "a deaf solver");
   mpsi_particles_release(set, &deaf);
   mpsi_particles_release(set, &deaf); /* does nothing */
   mps_particles *kept = set;
@@ -525,18 +467,17 @@ static void holders_decide_who_comes_and_goes(void **state) {
 
 /* ---- going back, and memory ------------------------------------------------------------------ */
 
-static void a_set_goes_back_to_what_it_was(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2.0);
+TEST(a_set_goes_back_to_what_it_was) {
+  scoped_particles *set = make_set(context, 2.0);
   const uint64_t epoch = mps_particles_epoch(set);
   const int32_t fields = mps_particles_field_count(set);
   mpsi_backup backup;
-  mps_assert_ok(context, mpsi_particles_back_up(set, "test", &backup));
+  OK(mpsi_particles_back_up(set, "test", &backup));
   int64_t order[16];
   for (int64_t k = 0; k < 16; k++) order[k] = 15 - k;
-  mps_assert_ok(context, mps_particles_set(set, "volume", 0, 3.0));
-  mps_assert_ok(context, mps_particles_set(set, "density", 0, 7.0));
-  mps_assert_ok(context, mpsi_particles_permute(set, "test", order));
+  OK(mps_particles_set(set, "volume", 0, 3.0));
+  OK(mps_particles_set(set, "density", 0, 7.0));
+  OK(mpsi_particles_permute(set, "test", order));
   mpsi_particles_go_back(set, &backup);
   assert_int_equal(mps_particles_epoch(set), epoch);
   assert_int_equal(mps_particles_field_count(set), fields);
@@ -544,56 +485,7 @@ static void a_set_goes_back_to_what_it_was(void **state) {
   for (int64_t k = 0; k < 16; k++) {
     assert_int_equal(mps_particles_index(set, k), k);
     assert_int_equal(mpsi_particles_integers(set, "id")[k], k);
-    mps_assert_near(density[k], 2000.0, 0.0);
+    NEAR(density[k], 2000.0, 0.0);
   }
   mpsi_backup_drop(set, &backup);
-  mps_particles_destroy(&set);
-}
-
-static void a_refused_allocation_changes_nothing(void **state) {
-  (void)state;
-  const int64_t ids[2] = {1, 9};
-  const double x[2] = {4.0, 4.0};
-  mps_status status = MPS_ERROR_MEMORY;
-  for (int64_t refuse = 1; status != MPS_OK; refuse++) {
-    test_allocator memory = {0};
-    mps_context *own = test_allocator_context(&memory);
-    mps_particles *set = make_set(own, 2.0);
-    memory.refuse_at = memory.calls + refuse;
-    status = mps_particles_remove(set, 2, ids);
-    if (status == MPS_OK) status = mps_particles_append(set, 1, x);
-    if (status != MPS_OK) {
-      assert_int_equal(status, MPS_ERROR_MEMORY);
-      const int64_t n = mps_particles_count(set);
-      assert_true(n == 16 || n == 14);
-      assert_int_equal(mps_particles_index(set, 9), n == 16 ? 9 : -1);
-      assert_int_equal(mps_particles_index(set, 15), n - 1);
-    }
-    mps_particles_destroy(&set);
-    mps_context_destroy(&own);
-    assert_int_equal(memory.live, 0);
-    assert_true(refuse < 50);
-  }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(views_are_for_reading_and_edits_for_writing),
-      cmocka_unit_test(commit_checks_values_and_names_the_particle),
-      cmocka_unit_test(a_step_waits_for_the_commit),
-      cmocka_unit_test(states_wait_for_the_commit),
-      cmocka_unit_test(a_solver_never_meets_a_position_outside_its_domain),
-      cmocka_unit_test(a_move_between_steps_is_a_translation),
-      cmocka_unit_test(the_limit_follows_the_callers_velocity),
-      cmocka_unit_test(only_positions_make_a_solver_sort),
-      cmocka_unit_test(an_edited_force_acts_at_once),
-      cmocka_unit_test(an_abandoned_edit_was_none),
-      cmocka_unit_test(a_sets_material_renews_its_masses),
-      cmocka_unit_test(one_solver_moves_a_set),
-      cmocka_unit_test(particles_are_removed_and_keep_their_ids),
-      cmocka_unit_test(holders_decide_who_comes_and_goes),
-      cmocka_unit_test(a_set_goes_back_to_what_it_was),
-      cmocka_unit_test(a_refused_allocation_changes_nothing),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -1,11 +1,10 @@
 /* test_hdf5_checkpoint.c - checkpoints: every bit comes back; every damage, mismatch, full disk and
  * refused allocation is an error that changes nothing. The restart of a solver:
  * test_hdf5_restart.c. SPDX-License-Identifier: BSD-3-Clause */
+#include "io/checkpoint.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 #include "test_hdf5.h"
-
-#include <mps/io.h>
 
 #include <core/particles/particles_internal.h>
 #include <io/replace.h>
@@ -21,11 +20,9 @@ static const char bent[] = TEST_TMP "/checkpoint-bent.h5";
 /* ---- sets of known bits ---------------------------------------------------------------------- */
 
 static mps_particles *make_set(mps_context *ctx, int32_t dim, double spacing, int64_t count) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .dim = dim, .spacing = spacing);
   mps_particles *set = NULL;
   const double at[3] = {0.25, 0.5, 0.0};
-  def.dim = dim;
-  def.spacing = spacing;
   if (mps_particles_create(ctx, &def, &set) != MPS_OK) return NULL;
   for (int64_t k = 0; k < count; k++)
     if (mps_particles_append(set, 1, at) != MPS_OK) mps_particles_destroy(&set);
@@ -33,10 +30,10 @@ static mps_particles *make_set(mps_context *ctx, int32_t dim, double spacing, in
 }
 
 static void add_fields(mps_particles *set) {
-  mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "group", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "restoring_old", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "my_strain", 4));
+  OK(mps_particles_add_field(set, "velocity", 0));
+  OK(mps_particles_add_field(set, "group", 0));
+  OK(mps_particles_add_field(set, "restoring_old", 0));
+  OK(mps_particles_add_field(set, "my_strain", 4));
 }
 
 /* 64 bits from where they belong: every kind of double comes up, NaNs with a payload too. */
@@ -54,8 +51,8 @@ static uint64_t bits(const char *name, int64_t component, int64_t id) {
 /* Writes or compares a field. */
 static void field_bits(mps_particles *set, const char *name, bool write) {
   mps_view id, view;
-  mps_assert_ok(context, mps_particles_view(set, "id", &id));
-  mps_assert_ok(context, mps_particles_view(set, name, &view));
+  OK(mps_particles_view(set, "id", &id));
+  OK(mps_particles_view(set, name, &view));
   for (int64_t i = 0; i < view.shape[0]; i++)
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const uint64_t want = bits(name, c, *mps_view_i64(&id, i, 0));
@@ -72,7 +69,7 @@ static void field_bits(mps_particles *set, const char *name, bool write) {
 static void each_bit(mps_particles *set, bool write) {
   mps_particles_field_info info;
   for (int32_t f = 1; f < mps_particles_field_count(set); f++) {
-    mps_assert_ok(context, mps_particles_get_field_info(set, f, &info));
+    OK(mps_particles_get_field_info(set, f, &info));
     field_bits(set, info.name, write);
   }
 }
@@ -81,26 +78,22 @@ static void reverse(mps_particles *set) {
   const int64_t n = mps_particles_count(set);
   int64_t *order = malloc((size_t)n * sizeof *order);
   for (int64_t k = 0; k < n; k++) order[k] = n - 1 - k;
-  mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
+  OK(mpsi_particles_permute(set, __func__, order));
   free(order);
 }
 
 static mps_checkpoint some_info(void) {
-  mps_checkpoint info = mps_checkpoint_defaults();
-  info.time = 0.1;
-  info.step = 123456789012;
-  info.dt = 1.0 / 3.0;
+  WITH_DEFAULTS(mps_checkpoint, info, .time = 0.1, .step = 123456789012, .dt = 1.0 / 3.0);
   snprintf(info.user_key, sizeof info.user_key, "wave --layers 3");
   return info;
 }
 
 static void write_checkpoint(void) {
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   const mps_checkpoint info = some_info();
   add_fields(set);
   each_bit(set, true);
-  mps_assert_ok(context, mps_checkpoint_write(set, path, &info));
-  mps_particles_destroy(&set);
+  OK(mpsi_checkpoint_write(set, path, &info));
 }
 
 /* A copy of the set's fields, to see that nothing changes. */
@@ -110,8 +103,8 @@ static unsigned char *copy_of(mps_particles *set, size_t *size) {
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
     mps_view view;
-    mps_assert_ok(context, mps_particles_get_field_info(set, f, &info));
-    mps_assert_ok(context, mps_particles_view(set, info.name, &view));
+    OK(mps_particles_get_field_info(set, f, &info));
+    OK(mps_particles_view(set, info.name, &view));
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const size_t bytes = (size_t)view.shape[0] * 8;
       copy = realloc(copy, *size + bytes + 1);
@@ -129,7 +122,7 @@ static void refused(const char *file, mps_particles *set, mps_status status, con
   info.time = -7.0;
   untouched = info;
   unsigned char *before = copy_of(set, &before_size);
-  mps_assert_fails(context, mps_checkpoint_read(set, file, &info), status, text);
+  FAILS(mps_checkpoint_read(set, file, &info), status, text);
   unsigned char *after = copy_of(set, &after_size);
   assert_int_equal(before_size, after_size);
   assert_memory_equal(before, after, before_size);
@@ -141,83 +134,69 @@ static void refused(const char *file, mps_particles *set, mps_status status, con
 
 /* ---- round trip ------------------------------------------------------------------------------ */
 
-static void every_bit_comes_back_into_any_order(void **state) {
-  (void)state;
+TEST(every_bit_comes_back_into_any_order) {
   const int64_t handles = test_hdf5_handles();
   write_checkpoint();
   for (int k = 0; k < 4; k++) {
-    mps_particles *set = make_set(context, 2, 0.5, COUNT);
+    scoped_particles *set = make_set(context, 2, 0.5, COUNT);
     mps_checkpoint info = mps_checkpoint_defaults();
     if (k & 1) reverse(set);
     if (k & 2) add_fields(set); /* else they are added */
-    mps_assert_ok(context, mps_particles_add_field(set, "own", 1));
+    OK(mps_particles_add_field(set, "own", 1));
     field_bits(set, "own", true); /* not in the file: stays */
     const uint64_t epoch = mps_particles_epoch(set);
-    mps_assert_ok(context, mps_checkpoint_read(set, path, &info));
+    OK(mps_checkpoint_read(set, path, &info));
     assert_int_equal(mps_particles_epoch(set), epoch);
     assert_int_equal(mps_particles_index(set, 0), k & 1 ? COUNT - 1 : 0);
     each_bit(set, false);
     assert_true(info.time == 0.1 && info.dt == 1.0 / 3.0);
     assert_int_equal(info.step, 123456789012);
     assert_string_equal(info.user_key, "wave --layers 3");
-    mps_particles_destroy(&set);
   }
   assert_int_equal(test_hdf5_handles(), handles);
   assert_int_equal(access(part, F_OK), -1);
 }
 
-static void three_dimensions_and_no_particles(void **state) {
-  (void)state;
+TEST(three_dimensions_and_no_particles) {
   for (int64_t count = 0; count < 6; count += 5) {
-    mps_particles *set = make_set(context, 3, 0.5, count),
-                  *other = make_set(context, 3, 0.5, count);
+    scoped_particles *set = make_set(context, 3, 0.5, count),
+                     *other = make_set(context, 3, 0.5, count);
     mps_checkpoint info = mps_checkpoint_defaults();
     add_fields(set);
     each_bit(set, true);
-    mps_assert_ok(context, mps_checkpoint_write(set, path, &info));
-    mps_assert_ok(context, mps_checkpoint_read(other, path, &info));
+    OK(mpsi_checkpoint_write(set, path, &info));
+    OK(mps_checkpoint_read(other, path, &info));
     each_bit(other, false);
     assert_int_equal(mps_particles_field_count(other), mps_particles_field_count(set));
     assert_string_equal(info.user_key, "");
-    mps_particles_destroy(&set);
-    mps_particles_destroy(&other);
   }
 }
 
-static void the_header_can_be_read_alone(void **state) {
-  (void)state;
+TEST(the_header_can_be_read_alone) {
   mps_checkpoint info = mps_checkpoint_defaults();
   write_checkpoint();
-  mps_assert_ok(context, mps_checkpoint_info(context, path, &info));
+  OK(mps_checkpoint_info(context, path, &info));
   assert_true(info.time == 0.1 && info.dt == 1.0 / 3.0 && info.step == 123456789012);
-  mps_assert_ok(context, mps_checkpoint_info(context, path, &info)); /* the key is equal now */
+  OK(mps_checkpoint_info(context, path, &info)); /* the key is equal now */
   info.user_key[0] = 'W';
-  mps_assert_fails(context, mps_checkpoint_info(context, path, &info), MPS_ERROR_ARGUMENT,
-                   "has user_key 'wave --layers 3', wanted is 'Wave --layers 3'");
+  REFUSES(mps_checkpoint_info(context, path, &info),
+          "has user_key 'wave --layers 3', wanted is 'Wave --layers 3'");
   assert_int_equal(mps_checkpoint_info(NULL, path, &info), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_checkpoint_info(context, NULL, &info), MPS_ERROR_ARGUMENT, "path");
-  mps_assert_fails(context, mps_checkpoint_info(context, path, NULL), MPS_ERROR_ARGUMENT, "info");
+  REFUSES(mps_checkpoint_info(context, NULL, &info), "path");
+  REFUSES(mps_checkpoint_info(context, path, NULL), "info");
 }
 
 /* ---- arguments ------------------------------------------------------------------------------- */
 
-static void bad_arguments_of_writing(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2, 0.5, 2);
+TEST(bad_arguments_of_writing) {
+  scoped_particles *set = make_set(context, 2, 0.5, 2);
   mps_checkpoint info = some_info();
   unlink(path);
-#define BAD(text)                                                                                  \
-  mps_assert_fails(context, mps_checkpoint_write(set, path, &info), MPS_ERROR_ARGUMENT, text)
-  assert_int_equal(mps_checkpoint_write(NULL, path, &info), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_checkpoint_write(set, NULL, &info), MPS_ERROR_ARGUMENT,
-                   "path is NULL");
-  mps_assert_fails(context, mps_checkpoint_write(set, "", &info), MPS_ERROR_ARGUMENT,
-                   "path is empty");
-  mps_assert_fails(context, mps_checkpoint_write(set, path, NULL), MPS_ERROR_ARGUMENT,
-                   "info is NULL");
-  info.struct_size = 12;
-  BAD("struct_size is 12");
-  info = some_info();
+#define BAD(text) REFUSES(mpsi_checkpoint_write(set, path, &info), text)
+  assert_int_equal(mpsi_checkpoint_write(NULL, path, &info), MPS_ERROR_ARGUMENT);
+  REFUSES(mpsi_checkpoint_write(set, NULL, &info), "path is NULL");
+  REFUSES(mpsi_checkpoint_write(set, "", &info), "path is empty");
+  REFUSES(mpsi_checkpoint_write(set, path, NULL), "info is NULL");
   info.time = NAN;
   BAD("time is nan");
   info = some_info();
@@ -234,25 +213,48 @@ static void bad_arguments_of_writing(void **state) {
 #undef BAD
   assert_int_equal(access(path, F_OK), -1);
   info = some_info();
-  mps_assert_fails(context, mps_checkpoint_write(set, TEST_TMP "/none/x.h5", &info), MPS_ERROR_IO,
-                   "No such file or directory");
+  FAILS(mpsi_checkpoint_write(set, TEST_TMP "/none/x.h5", &info), MPS_ERROR_IO,
+        "No such file or directory");
   mkdir(TEST_TMP "/checkpoint-dir", 0777);
-  mps_assert_fails(context, mps_checkpoint_write(set, TEST_TMP "/checkpoint-dir", &info),
-                   MPS_ERROR_IO, "directory");
+  FAILS(mpsi_checkpoint_write(set, TEST_TMP "/checkpoint-dir", &info), MPS_ERROR_IO, "directory");
   assert_int_equal(access(TEST_TMP "/checkpoint-dir.part", F_OK), -1);
-  mps_particles_destroy(&set);
+}
+
+/* The temporary name: a file that a killed program has left is replaced; a link is not followed; a
+ * file that is being written is left to its writer. */
+TEST(the_temporary_name_is_exclusive) {
+  static const char mine[] = TEST_TMP "/checkpoint-mine";
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
+  const mps_checkpoint info = some_info();
+  unlink(path), unlink(part), unlink(mine);
+  FILE *file = fopen(part, "w");
+  assert_non_null(file);
+  fputs("left", file);
+  fclose(file);
+  OK(mpsi_checkpoint_write(set, path, &info));
+  assert_int_equal(access(part, F_OK), -1);
+  assert_int_equal(symlink(mine, part), 0);
+  FAILS(mpsi_checkpoint_write(set, path, &info), MPS_ERROR_IO, "not a file");
+  assert_int_equal(access(mine, F_OK), -1);
+  assert_int_equal(unlink(part), 0);
+  mpsi_replacement other;
+  OK(mpsi_replace_begin(context, "test", path, true, &other));
+  FAILS(mpsi_checkpoint_write(set, path, &info), MPS_ERROR_IO, "being written by another program");
+  assert_int_equal(access(part, F_OK), 0);
+  mpsi_replace_abandon(context, &other);
+  OK(mpsi_checkpoint_write(set, path, &info));
+  unlink(path);
 }
 
 /* What is no checkpoint stays what it is: devices, pipes, links to them, other files. An empty file
  * is replaced. */
-static void other_files_are_not_replaced(void **state) {
-  (void)state;
+TEST(other_files_are_not_replaced) {
   static const char *const kinds[] = {"device or pipe", "device or pipe", "no checkpoint"};
   char names[3][80];
   snprintf(names[0], sizeof names[0], "%s/checkpoint-pipe", TEST_TMP);
   snprintf(names[1], sizeof names[1], "%s/checkpoint-link", TEST_TMP);
   snprintf(names[2], sizeof names[2], "%s/checkpoint-text", TEST_TMP);
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   mps_checkpoint info = some_info();
   for (int k = 0; k < 3; k++) remove(names[k]);
   assert_int_equal(mkfifo(names[0], 0600), 0);
@@ -264,7 +266,7 @@ static void other_files_are_not_replaced(void **state) {
   for (int k = 0; k < 3; k++) {
     struct stat before, after;
     assert_int_equal(lstat(names[k], &before), 0);
-    mps_assert_fails(context, mps_checkpoint_write(set, names[k], &info), MPS_ERROR_IO, kinds[k]);
+    FAILS(mpsi_checkpoint_write(set, names[k], &info), MPS_ERROR_IO, kinds[k]);
     assert_int_equal(lstat(names[k], &after), 0);
     assert_int_equal(before.st_ino, after.st_ino);
     assert_int_equal(before.st_mode, after.st_mode);
@@ -274,35 +276,27 @@ static void other_files_are_not_replaced(void **state) {
   text = fopen(names[2], "w");
   assert_non_null(text);
   fclose(text);
-  mps_assert_ok(context, mps_checkpoint_write(set, names[2], &info));
-  mps_assert_ok(context, mps_checkpoint_write(set, names[2], &info)); /* one of ours */
+  OK(mpsi_checkpoint_write(set, names[2], &info));
+  OK(mpsi_checkpoint_write(set, names[2], &info)); /* one of ours */
   for (int k = 0; k < 3; k++) remove(names[k]);
-  mps_particles_destroy(&set);
 }
 
-static void another_set_is_refused(void **state) {
-  (void)state;
+TEST(another_set_is_refused) {
   write_checkpoint();
-  mps_particles *fewer = make_set(context, 2, 0.5, COUNT - 1),
-                *space = make_set(context, 3, 0.5, COUNT);
-  mps_particles *finer = make_set(context, 2, 0.25, COUNT),
-                *same = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *fewer = make_set(context, 2, 0.5, COUNT - 1),
+                   *space = make_set(context, 3, 0.5, COUNT);
+  scoped_particles *finer = make_set(context, 2, 0.25, COUNT),
+                   *same = make_set(context, 2, 0.5, COUNT);
   refused(path, fewer, MPS_ERROR_ARGUMENT, "has 37 particles in 2D, the set has 36 in 2D");
   refused(path, space, MPS_ERROR_ARGUMENT, "has 37 particles in 2D, the set has 37 in 3D");
   refused(path, finer, MPS_ERROR_ARGUMENT, "has spacing 0.5 m, the set has 0.25 m");
-  mps_assert_ok(context, mps_particles_add_field(same, "my_strain", 3));
+  OK(mps_particles_add_field(same, "my_strain", 3));
   refused(path, same, MPS_ERROR_FIELD, "field 'my_strain' with 4 components of float64");
-  mps_checkpoint info = mps_checkpoint_defaults();
-  info.user_key[0] = 'x';
-  mps_assert_fails(context, mps_checkpoint_read(same, path, &info), MPS_ERROR_ARGUMENT,
-                   "has user_key 'wave --layers 3', wanted is 'x'");
+  WITH_DEFAULTS(mps_checkpoint, info, .user_key[0] = 'x');
+  REFUSES(mps_checkpoint_read(same, path, &info), "has user_key 'wave --layers 3', wanted is 'x'");
   assert_int_equal(mps_checkpoint_read(NULL, path, &info), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_checkpoint_read(same, NULL, &info), MPS_ERROR_ARGUMENT, "path");
-  mps_assert_fails(context, mps_checkpoint_read(same, path, NULL), MPS_ERROR_ARGUMENT, "info");
-  mps_particles_destroy(&fewer);
-  mps_particles_destroy(&space);
-  mps_particles_destroy(&finer);
-  mps_particles_destroy(&same);
+  REFUSES(mps_checkpoint_read(same, NULL, &info), "path");
+  REFUSES(mps_checkpoint_read(same, path, NULL), "info");
 }
 
 /* ---- files that are not one ------------------------------------------------------------------ */
@@ -326,11 +320,10 @@ static void store(const char *file, const void *data, size_t size) {
   fclose(out);
 }
 
-static void what_is_no_checkpoint_is_refused(void **state) {
-  (void)state;
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+TEST(what_is_no_checkpoint_is_refused) {
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   mps_recorder_def def = mps_recorder_defaults();
-  mps_recorder *recorder = NULL;
+  scoped_recorder *recorder = NULL;
   refused(TEST_TMP "/no such file", set, MPS_ERROR_IO, "No such file or directory");
   refused(TEST_TMP, set, MPS_ERROR_IO, "not a file");
   unlink(bent);
@@ -343,17 +336,14 @@ static void what_is_no_checkpoint_is_refused(void **state) {
   refused(bent, set, MPS_ERROR_FORMAT, "does not begin as an HDF5 file");
   unlink(bent);
   def.path = bent;
-  mps_assert_ok(context, mps_recorder_create(context, set, &def, &recorder));
+  OK(mps_recorder_create(context, set, &def, &recorder));
   refused(bent, set, MPS_ERROR_FORMAT, "does not end with a seal");
-  mps_recorder_destroy(&recorder);
-  mps_particles_destroy(&set);
 }
 
-static void a_file_cut_short_anywhere_is_refused(void **state) {
-  (void)state;
+TEST(a_file_cut_short_anywhere_is_refused) {
   size_t size;
   write_checkpoint();
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   int lengths = 0;
   for (size_t length = 0; length < size; length += length < 600 || length + 600 > size ? 1 : 61) {
@@ -364,14 +354,12 @@ static void a_file_cut_short_anywhere_is_refused(void **state) {
   assert_true(lengths > 1200);
   assert_int_equal(test_hdf5_open(), 0);
   free(data);
-  mps_particles_destroy(&set);
 }
 
-static void a_changed_byte_is_noticed(void **state) {
-  (void)state;
+TEST(a_changed_byte_is_noticed) {
   size_t size;
   write_checkpoint();
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   for (size_t at = 0; at<size; at += at + 40> size ? 1 : 31) {
     data[at] ^= (unsigned char)(1u << at % 8);
@@ -381,26 +369,24 @@ static void a_changed_byte_is_noticed(void **state) {
   }
   store(bent, data, size);
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_assert_ok(context, mps_checkpoint_read(set, bent, &info));
+  OK(mps_checkpoint_read(set, bent, &info));
   free(data);
-  mps_particles_destroy(&set);
 }
 
-/* Seals `size` bytes of `data` as mps_checkpoint_write does. */
+/* Seals `size` bytes of `data` as mpsi_checkpoint_write does. */
 static void store_sealed(const char *file, const void *data, size_t size) {
   mpsi_replacement replacement;
   remove(file); /* bent, it would not be replaced */
-  mps_assert_ok(context, mpsi_replace_begin(context, __func__, file, &replacement));
+  OK(mpsi_replace_begin(context, __func__, file, true, &replacement));
   assert_int_equal(write(replacement.fd, data, size), (ssize_t)size);
-  mps_assert_ok(context, mpsi_replace_commit(context, __func__, &replacement));
+  OK(mpsi_replace_commit(context, __func__, &replacement));
 }
 
 /* Even a sealed file is not believed: HDF5's own checks come to the caller as errors. */
-static void a_sealed_file_cut_short_is_refused(void **state) {
-  (void)state;
+TEST(a_sealed_file_cut_short_is_refused) {
   size_t size;
   write_checkpoint();
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   for (size_t length = 8; length < size - 32; length += 997) {
     store_sealed(bent, data, length);
@@ -408,7 +394,6 @@ static void a_sealed_file_cut_short_is_refused(void **state) {
   }
   assert_int_equal(test_hdf5_open(), 0);
   free(data);
-  mps_particles_destroy(&set);
 }
 
 static int printed;
@@ -423,14 +408,13 @@ static herr_t host_print_old(void *data) {
 }
 
 /* A host of HDF5 may have either of its two ways of printing errors. */
-static void the_hosts_error_printing_is_left_alone(void **state) {
-  (void)state;
+TEST(the_hosts_error_printing_is_left_alone) {
   int weight = 3;
   size_t size;
   H5E_auto2_t before, now;
   void *before_data, *now_data;
   write_checkpoint();
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   store_sealed(bent, data, size / 2);
   H5Eget_auto2(H5E_DEFAULT, &before, &before_data);
@@ -451,7 +435,6 @@ static void the_hosts_error_printing_is_left_alone(void **state) {
   }
   H5Eset_auto2(H5E_DEFAULT, before, before_data);
   free(data);
-  mps_particles_destroy(&set);
 }
 
 /* ---- checkpoints whose content is wrong ------------------------------------------------------ */
@@ -543,8 +526,7 @@ static bool bend_file(hid_t f, int way, bend *out) {
     *out = (bend){"'wide' with 17 components", MPS_ERROR_FIELD}; return true;
   case 29: put_dataset(f, "fields/whole", H5T_NATIVE_INT64, 2, 1, COUNT);
     *out = (bend){"'whole' with 1 components of int64", MPS_ERROR_FIELD}; return true;
-  case 30: put_dataset(f, "fields/a_name_of_more_than_95_characters_is_too_long_for_a_field_even_for_one_of_the_history_of_a_material",
-                       H5T_NATIVE_DOUBLE, 2, 2, COUNT); out->text = "the name of a field"; return true;
+  case 30: put_dataset(f, "fields/a_name_of_more_than_95_characters_is_too_long_for_a_field_even_for_one_of_the_history_of_a_material", H5T_NATIVE_DOUBLE, 2, 2, COUNT); out->text = "the name of a field"; return true;
   case 31: H5Gclose(H5Gcreate2(f, "fields/nested", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     out->text = "nested"; return true;
   case 32: H5Lcreate_external("/etc/passwd", "x", f, "fields/abroad", H5P_DEFAULT, H5P_DEFAULT);
@@ -557,11 +539,10 @@ static bool bend_file(hid_t f, int way, bend *out) {
 }
 /* clang-format on */
 
-static void wrong_content_is_refused(void **state) {
-  (void)state;
+TEST(wrong_content_is_refused) {
   size_t size;
   write_checkpoint();
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   const int64_t handles = test_hdf5_handles();
   bend bent_way;
@@ -579,32 +560,29 @@ static void wrong_content_is_refused(void **state) {
     if (bent_way.status != MPS_OK)
       refused(bent, set, bent_way.status, bent_way.text);
     else /* another width of a number is no harm */
-      mps_assert_ok(context, mps_checkpoint_info(context, bent, &info));
+      OK(mps_checkpoint_info(context, bent, &info));
     assert_int_equal(test_hdf5_open(), 0);
   }
   assert_int_equal(test_hdf5_handles(), handles);
   free(data);
-  mps_particles_destroy(&set);
 }
 
 /* ---- full disk, refused memory --------------------------------------------------------------- */
 
-static void a_full_disk_leaves_the_former_checkpoint(void **state) {
-  (void)state;
+TEST(a_full_disk_leaves_the_former_checkpoint) {
   size_t size, former_size;
   write_checkpoint();
   unsigned char *former = load(path, &former_size);
-  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
   mps_checkpoint info = mps_checkpoint_defaults();
   add_fields(set);
   remove(bent);
-  mps_assert_ok(context, mps_checkpoint_write(set, bent, &info));
+  OK(mpsi_checkpoint_write(set, bent, &info));
   free(load(bent, &size));
   for (size_t limit = 1; limit<size; limit += limit + 200> size ? 1 : 173) {
     size_t now_size;
     test_disk_limit((int64_t)limit);
-    mps_assert_fails(context, mps_checkpoint_write(set, path, &info), MPS_ERROR_IO,
-                     "File too large");
+    FAILS(mpsi_checkpoint_write(set, path, &info), MPS_ERROR_IO, "File too large");
     test_disk_limit(0);
     unsigned char *now = load(path, &now_size);
     assert_int_equal(now_size, former_size);
@@ -614,49 +592,26 @@ static void a_full_disk_leaves_the_former_checkpoint(void **state) {
     free(now);
   }
   test_disk_limit((int64_t)size);
-  mps_assert_ok(context, mps_checkpoint_write(set, path, &info));
+  OK(mpsi_checkpoint_write(set, path, &info));
   test_disk_limit(0);
   free(former);
-  mps_particles_destroy(&set);
 }
 
 static mps_status write_or_read(mps_context *ctx, int what) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_particles *set = make_set(ctx, 2, 0.5, COUNT);
+  scoped_particles *set = make_set(ctx, 2, 0.5, COUNT);
   if (!set) return MPS_ERROR_MEMORY;
   const mps_status status =
-      what == 0 ? mps_checkpoint_write(set, path, &info) : mps_checkpoint_read(set, path, &info);
+      what == 0 ? mpsi_checkpoint_write(set, path, &info) : mps_checkpoint_read(set, path, &info);
   if (status != MPS_OK) assert_int_equal(mps_particles_field_count(set), 2); /* none added */
-  mps_particles_destroy(&set);
   return status;
 }
 
-static void refused_allocations_leave_nothing_behind(void **state) {
-  (void)state;
+TEST(refused_allocations_leave_nothing_behind) {
   const int64_t handles = test_hdf5_handles();
   write_checkpoint();
   test_allocator_sweep(write_or_read, 1);
   test_allocator_sweep(write_or_read, 0);
   assert_int_equal(test_hdf5_handles(), handles);
   assert_int_equal(access(part, F_OK), -1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_bit_comes_back_into_any_order),
-      cmocka_unit_test(three_dimensions_and_no_particles),
-      cmocka_unit_test(the_header_can_be_read_alone),
-      cmocka_unit_test(bad_arguments_of_writing),
-      cmocka_unit_test(other_files_are_not_replaced),
-      cmocka_unit_test(another_set_is_refused),
-      cmocka_unit_test(what_is_no_checkpoint_is_refused),
-      cmocka_unit_test(a_file_cut_short_anywhere_is_refused),
-      cmocka_unit_test(a_changed_byte_is_noticed),
-      cmocka_unit_test(a_sealed_file_cut_short_is_refused),
-      cmocka_unit_test(the_hosts_error_printing_is_left_alone),
-      cmocka_unit_test(wrong_content_is_refused),
-      cmocka_unit_test(a_full_disk_leaves_the_former_checkpoint),
-      cmocka_unit_test(refused_allocations_leave_nothing_behind),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -1,12 +1,11 @@
 /* test_hdf5_mpm.c - a WLS-MPM run that continues from a checkpoint in a new solver is, bit for bit,
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
+#include "io/checkpoint.h"
 #include "core/particles/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 #include "test_hdf5.h"
-
-#include <mps/io.h>
 
 #include <core/internal.h>
 #include <io/replace.h>
@@ -21,133 +20,110 @@ static const char path[] = TEST_TMP "/mpm.h5", part[] = TEST_TMP "/mpm.h5.part";
 /* One run continues all the while; at each stop it is saved, and another solver, on other threads,
  * takes over and follows it to the next stop. */
 static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scene whole = build(context, geometry, &none);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop) scene whole = build(context, geometry, &none);
   const uint64_t epoch = mps_particles_epoch(whole.s.particles);
   for (int k = 0; k < stops; k++) {
     int32_t threads = 1 + k % 3;
-    mps_context *other = on_threads(&threads);
-    mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
-    scene next = build(other, geometry, &none);
-    if (k % 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 5)); /* where it is does not matter */
+    scoped_context *other = on_threads(&threads);
+    OK(mps_mpm_save(whole.s.mpm, path, NULL));
+    SCOPED(drop) scene next = build(other, geometry, &none);
+    if (k % 2) OK(mps_mpm_step(next.s.mpm, 5)); /* where it is does not matter */
     mps_checkpoint info = mps_checkpoint_defaults();
-    mps_assert_ok(other, mps_mpm_restore(next.s.mpm, path, &info));
+    OK(mps_mpm_restore(next.s.mpm, path, &info));
     assert_int_equal(info.step, mps_mpm_steps(whole.s.mpm));
     assert_true(info.time == mps_mpm_time(whole.s.mpm) && info.dt == mps_mpm_dt(whole.s.mpm));
     same(&whole, &next);
-    mps_assert_ok(context, mps_mpm_step(whole.s.mpm, steps));
-    mps_assert_ok(other, mps_mpm_step(next.s.mpm, steps));
+    OK(mps_mpm_step(whole.s.mpm, steps));
+    OK(mps_mpm_step(next.s.mpm, steps));
     same(&whole, &next);
-    drop(&next);
-    mps_context_destroy(&other);
   }
   for (int b = 0; b < BODIES; b++) { /* all this has been of contact, and of sorting */
     mps_reaction r;
-    mps_assert_ok(context, mps_body_get_reaction(whole.body[b], -1, &r));
+    OK(mps_body_get_reaction(whole.body[b], -1, &r));
     assert_true(r.impulse[1] != 0.0);
   }
   assert_true(mps_particles_epoch(whole.s.particles) > epoch);
-  drop(&whole);
-  mps_context_destroy(&context);
 }
 
-static void goes_on_in_plane_strain(void **state) {
-  (void)state;
-  stop_and_go_on(MPS_MPM_GEOMETRY_PLANE_STRAIN, 61, 8);
-}
+TEST(goes_on_in_plane_strain) { stop_and_go_on(MPS_MPM_GEOMETRY_PLANE_STRAIN, 61, 8); }
 
-static void goes_on_in_axisymmetry(void **state) {
-  (void)state;
-  stop_and_go_on(MPS_MPM_GEOMETRY_AXISYMMETRIC, 83, 4);
-}
+TEST(goes_on_in_axisymmetry) { stop_and_go_on(MPS_MPM_GEOMETRY_AXISYMMETRIC, 83, 4); }
 
-static void goes_on_in_space(void **state) {
-  (void)state;
-  stop_and_go_on(MPS_MPM_GEOMETRY_SPACE, 29, 4);
-}
+TEST(goes_on_in_space) { stop_and_go_on(MPS_MPM_GEOMETRY_SPACE, 29, 4); }
 
 /* Stops at every step, some of which leave the particles to be sorted by the next. */
-static void goes_on_from_every_step(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(goes_on_from_every_step) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
   scene whole = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         next = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 100));
+  OK(mps_mpm_step(whole.s.mpm, 100));
   uint64_t epoch = mps_particles_epoch(whole.s.particles);
   int sorted = 0;
   for (int k = 0; k < (test_quick() ? 40 : 100); k++) {
-    mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
-    mps_assert_ok(context, mps_mpm_restore(next.s.mpm, path, NULL));
-    mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 1));
-    mps_assert_ok(context, mps_mpm_step(next.s.mpm, 1));
+    OK(mps_mpm_save(whole.s.mpm, path, NULL));
+    OK(mps_mpm_restore(next.s.mpm, path, NULL));
+    OK(mps_mpm_step(whole.s.mpm, 1));
+    OK(mps_mpm_step(next.s.mpm, 1));
     same(&whole, &next);
     sorted += mps_particles_epoch(whole.s.particles) != epoch;
     epoch = mps_particles_epoch(whole.s.particles);
   }
   assert_true(sorted > 0);
-  drop(&next);
-  drop(&whole);
-  mps_context_destroy(&context);
 }
 
 /* ---- walls, moving nodes, loads, several materials ------------------------------------------- */
 
-static void with_walls_loads_and_materials(void **state) {
-  (void)state;
+TEST(with_walls_loads_and_materials) {
   for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++) {
-    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-    scene whole = build_held(context, geometry);
+    scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+    SCOPED(drop) scene whole = build_held(context, geometry);
     for (int k = 0; k < (test_quick() ? 3 : 4);
          k++) { /* at first before the walls have found their forces at rest */
       int32_t threads = 3;
       mps_context *other = on_threads(&threads);
-      mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
+      OK(mps_mpm_save(whole.s.mpm, path, NULL));
       scene next = build_held(other, geometry);
-      if (k == 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 30));
-      mps_assert_ok(other, mps_mpm_restore(next.s.mpm, path, NULL));
+      if (k == 2) OK(mps_mpm_step(next.s.mpm, 30));
+      OK(mps_mpm_restore(next.s.mpm, path, NULL));
       same_fields(&whole, &next);
       same_forces(&whole, &next);
-      mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 20));
-      mps_assert_ok(other, mps_mpm_step(next.s.mpm, 20));
+      OK(mps_mpm_step(whole.s.mpm, 20));
+      OK(mps_mpm_step(next.s.mpm, 20));
       same_fields(&whole, &next);
       same_forces(&whole, &next);
       drop(&next);
       mps_context_destroy(&other);
     }
-    drop(&whole);
-    mps_context_destroy(&context);
   }
 }
 
-static void other_walls_loads_and_materials_are_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(other_walls_loads_and_materials_are_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scene saved = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
-  mps_assert_ok(context, mps_mpm_save(saved.s.mpm, path, NULL));
+  OK(mps_mpm_save(saved.s.mpm, path, NULL));
   drop(&saved);
   for (int k = 0; k < 4; k++) {
     int32_t box, loads[2];
-    scene x = {.s = held_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &box, loads)};
-    if (k == 0) mps_assert_ok(context, mps_mpm_set_side(x.s.mpm, 1, MPS_BOUNDARY_HELD, 0.0));
-    if (k == 1) mps_assert_ok(context, mps_mpm_remove_load(x.s.mpm, loads[1]));
-    if (k == 2) mps_assert_ok(context, mps_mpm_remove_boundary(x.s.mpm, box));
+    SCOPED(drop) scene x = {.s = held_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &box, loads)};
+    if (k == 0) OK(mps_mpm_set_side(x.s.mpm, 1, MPS_BOUNDARY_HELD, 0.0));
+    if (k == 1) OK(mps_mpm_remove_load(x.s.mpm, loads[1]));
+    if (k == 2) OK(mps_mpm_remove_boundary(x.s.mpm, box));
     static const char *const text[] = {
         "boundary1/kind is 4, in this solver 0", "loads is 2, in this solver 1",
         "boundary6/kind is 1, in this solver -1", "materials is 2, in this solver 1"};
-    mps_assert_fails(context, mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_ARGUMENT, text[k]);
-    drop(&x);
+    REFUSES(mps_mpm_restore(x.s.mpm, path, NULL), text[k]);
   }
-  mps_context_destroy(&context);
 }
 
 /* ---- errors ---------------------------------------------------------------------------------- */
 
-static void another_solver_is_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(another_solver_is_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
-  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  OK(mps_mpm_step(x.s.mpm, 20));
+  OK(mps_mpm_save(x.s.mpm, path, NULL));
   drop(&x);
   const struct {
     int32_t geometry;
@@ -173,160 +149,138 @@ static void another_solver_is_refused(void **state) {
        "body1/shape is 2, in this solver 1"},
   };
   for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-    scene a = build(context, list[k].geometry, &list[k].c);
-    scene b = build(context, list[k].geometry, &list[k].c);
-    mps_assert_fails(context, mps_mpm_restore(a.s.mpm, path, NULL), MPS_ERROR_ARGUMENT,
-                     list[k].text);
+    SCOPED(drop) scene a = build(context, list[k].geometry, &list[k].c);
+    SCOPED(drop) scene b = build(context, list[k].geometry, &list[k].c);
+    REFUSES(mps_mpm_restore(a.s.mpm, path, NULL), list[k].text);
     same(&a, &b); /* nothing has changed, and it runs */
-    mps_assert_ok(context, mps_mpm_step(a.s.mpm, 3));
-    mps_assert_ok(context, mps_mpm_step(b.s.mpm, 3));
+    OK(mps_mpm_step(a.s.mpm, 3));
+    OK(mps_mpm_step(b.s.mpm, 3));
     same(&a, &b);
-    drop(&a);
-    drop(&b);
   }
-  mps_context_destroy(&context);
 }
 
 /* The set takes the particles of the file: more, fewer, or others than it has. */
-static void another_number_of_particles_is_taken(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(another_number_of_particles_is_taken) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   change more = none;
   more.particles = 1;
+  SCOPED(drop)
   scene few = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         many = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &more);
-  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
-  mps_assert_ok(context, mps_mpm_save(few.s.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_restore(many.s.mpm, path, NULL));
+  OK(mps_mpm_step(few.s.mpm, 60));
+  OK(mps_mpm_save(few.s.mpm, path, NULL));
+  OK(mps_mpm_restore(many.s.mpm, path, NULL));
   assert_int_equal(mps_particles_count(many.s.particles), 800);
   same(&few, &many);
-  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
-  mps_assert_ok(context, mps_mpm_step(many.s.mpm, 60));
+  OK(mps_mpm_step(few.s.mpm, 60));
+  OK(mps_mpm_step(many.s.mpm, 60));
   same(&few, &many);
   const int64_t gone[3] = {0, 401, 799};
-  mps_assert_ok(context, mps_particles_remove(few.s.particles, 3, gone));
-  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 20));
-  mps_assert_ok(context, mps_mpm_restore(few.s.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
+  OK(mps_particles_remove(few.s.particles, gone, 3));
+  OK(mps_mpm_step(few.s.mpm, 20));
+  OK(mps_mpm_restore(few.s.mpm, path, NULL));
+  OK(mps_mpm_step(few.s.mpm, 60));
   same(&few, &many);
-  drop(&few);
-  drop(&many);
-  mps_context_destroy(&context);
 }
 
-static void other_files_and_bad_arguments(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
+TEST(other_files_and_bad_arguments) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
   assert_int_equal(mps_mpm_save(NULL, path, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_mpm_restore(NULL, path, NULL), MPS_ERROR_ARGUMENT);
-#define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
-  FAILS(mps_mpm_save(x.s.mpm, "", NULL), MPS_ERROR_ARGUMENT, "path is empty");
-  FAILS(mps_mpm_restore(x.s.mpm, NULL, NULL), MPS_ERROR_ARGUMENT, "path is NULL");
+  REFUSES(mps_mpm_save(x.s.mpm, "", NULL), "path is empty");
+  REFUSES(mps_mpm_restore(x.s.mpm, NULL, NULL), "path is NULL");
   FAILS(mps_mpm_restore(x.s.mpm, TEST_TMP "/no.h5", NULL), MPS_ERROR_IO, "no.h5");
   info.user_bytes = -1;
-  FAILS(mps_mpm_save(x.s.mpm, path, &info), MPS_ERROR_ARGUMENT, "user_bytes is -1");
+  REFUSES(mps_mpm_save(x.s.mpm, path, &info), "user_bytes is -1");
   info.user_bytes = 3;
-  FAILS(mps_mpm_save(x.s.mpm, path, &info), MPS_ERROR_ARGUMENT, "user_data NULL");
+  REFUSES(mps_mpm_save(x.s.mpm, path, &info), "user_data NULL");
   info.user_bytes = 0;
-  mps_assert_ok(context, mps_checkpoint_write(x.s.particles, path, &info));
+  OK(mpsi_checkpoint_write(x.s.particles, path, &info));
   FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "no solver");
-  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  OK(mps_mpm_save(x.s.mpm, path, NULL));
   assert_int_equal(truncate(path, 5000), 0);
   FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "mpm.h5");
-  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 1));
+  OK(mps_mpm_save(x.s.mpm, path, NULL));
+  OK(mps_mpm_step(x.s.mpm, 1));
   test_disk_limit(20000);
   const mps_status status = mps_mpm_save(x.s.mpm, path, NULL);
   test_disk_limit(0);
   assert_int_equal(status, MPS_ERROR_IO);
   assert_int_equal(access(part, F_OK), -1);
-  mps_assert_ok(context, mps_mpm_restore(x.s.mpm, path, NULL)); /* the former one */
+  OK(mps_mpm_restore(x.s.mpm, path, NULL)); /* the former one */
   assert_int_equal(mps_mpm_steps(x.s.mpm), 0);
-  drop(&x);
-  mps_context_destroy(&context);
 }
 
-/* A run that has diverged cannot be saved, but continues from an earlier checkpoint. */
-static void a_broken_run_goes_back(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+/* A step that diverges is undone, and an earlier checkpoint brings back what was before. */
+TEST(a_broken_run_goes_back) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         y = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  OK(mps_mpm_save(x.s.mpm, path, NULL));
+  OK(mps_mpm_step(x.s.mpm, 3));
   mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
   FAILS(mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
-  FAILS(mps_mpm_save(x.s.mpm, path, NULL), MPS_ERROR_STATE, "has failed");
-  mps_assert_ok(context, mps_mpm_restore(x.s.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 10));
-  mps_assert_ok(context, mps_mpm_step(y.s.mpm, 10));
+  assert_int_equal(mps_mpm_steps(x.s.mpm), 3);
+  OK(mps_mpm_restore(x.s.mpm, path, NULL));
+  OK(mps_mpm_step(x.s.mpm, 10));
+  OK(mps_mpm_step(y.s.mpm, 10));
   same(&x, &y);
-  drop(&x);
-  drop(&y);
-  mps_context_destroy(&context);
 }
 
 /* What the caller gives along comes back, from both kinds of checkpoint. */
-static void the_callers_bytes_come_back(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
+TEST(the_callers_bytes_come_back) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   char text[] = "rows so far", room[64];
   for (int k = 0; k < 2; k++) {
     mps_checkpoint info = mps_checkpoint_defaults(), back = mps_checkpoint_defaults();
     info.user_data = text, info.user_bytes = sizeof text;
     strcpy(info.user_key, "a run");
-    mps_assert_ok(context, k ? mps_mpm_save(x.s.mpm, path, &info)
-                             : mps_checkpoint_write(x.s.particles, path, &info));
-    mps_assert_ok(context, mps_checkpoint_info(context, path, &back));
+    OK(k ? mps_mpm_save(x.s.mpm, path, &info) : mpsi_checkpoint_write(x.s.particles, path, &info));
+    OK(mps_checkpoint_info(context, path, &back));
     assert_int_equal(back.user_bytes, sizeof text);
     assert_string_equal(back.user_key, "a run");
     memset(room, 'x', sizeof room);
     back.user_data = room;
     back.user_bytes = sizeof text - 1;
-    FAILS(mps_checkpoint_info(context, path, &back), MPS_ERROR_ARGUMENT, "user_bytes is 11, '");
+    REFUSES(mps_checkpoint_info(context, path, &back), "user_bytes is 11, '");
     assert_int_equal(room[0], 'x');
     back.user_bytes = sizeof room;
-    mps_assert_ok(context, k ? mps_mpm_restore(x.s.mpm, path, &back)
-                             : mps_checkpoint_info(context, path, &back));
+    OK(k ? mps_mpm_restore(x.s.mpm, path, &back) : mps_checkpoint_info(context, path, &back));
     assert_int_equal(back.user_bytes, sizeof text);
     assert_string_equal(room, text);
     strcpy(back.user_key, "another");
-    if (k) FAILS(mps_mpm_restore(x.s.mpm, path, &back), MPS_ERROR_ARGUMENT, "wanted is 'another'");
+    if (k) REFUSES(mps_mpm_restore(x.s.mpm, path, &back), "wanted is 'another'");
   }
-  drop(&x);
-  mps_context_destroy(&context);
 }
 
 /* Fields that a solver has not read would be a wrong state without a word. */
-static void a_set_that_a_solver_holds_is_not_read_into(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_set_that_a_solver_holds_is_not_read_into) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_assert_ok(context, mps_checkpoint_write(x.s.particles, path, &info));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
-  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 5));
+  OK(mpsi_checkpoint_write(x.s.particles, path, &info));
+  OK(mps_mpm_step(x.s.mpm, 5));
+  OK(mps_mpm_step(twin.s.mpm, 5));
   FAILS(mps_checkpoint_read(x.s.particles, path, &info), MPS_ERROR_STATE, "held by");
   same(&x, &twin);
-  drop(&x);
-  drop(&twin);
-  mps_context_destroy(&context);
 }
 
 /* A sealed file with contents that no run writes: a block elsewhere, or with a tile that its
  * particles' stencils would leave. */
-static void blocks_elsewhere_are_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
+TEST(blocks_elsewhere_are_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   enum { ROW = 10 };
   static const int64_t bad[][2] = {{0, 1},  {1, 1000}, {1, INT64_MAX}, {3, 1},
                                    {4, -1}, {4, 12},   {8, 99},        {9, 2}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-    mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+    OK(mps_mpm_save(x.s.mpm, path, NULL));
     const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     const hid_t dataset = H5Dopen2(file, "solver/blocks", H5P_DEFAULT);
     int64_t block[ROW * 64];
@@ -337,21 +291,18 @@ static void blocks_elsewhere_are_refused(void **state) {
     H5Dclose(dataset);
     H5Fclose(file);
     mpsi_replacement again;
-    mps_assert_ok(context, mpsi_replace_begin(context, "test", path, &again));
+    OK(mpsi_replace_begin(context, "test", path, true, &again));
     char data[1 << 20];
     const int fd = open(path, O_RDONLY);
     const ssize_t size = read(fd, data, sizeof data);
     assert_true(size > 0 && size < (ssize_t)sizeof data);
     assert_int_equal(write(again.fd, data, (size_t)size), size);
     close(fd);
-    mps_assert_ok(context, mpsi_replace_commit(context, "test", &again));
+    OK(mpsi_replace_commit(context, "test", &again));
     FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "blocks do not hold");
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 1));
+    OK(mps_mpm_step(x.s.mpm, 1));
   }
-  drop(&x);
-  mps_context_destroy(&context);
 }
-#undef FAILS
 
 static mps_status restore_once(mps_context *own, int what) {
   (void)what;
@@ -363,30 +314,9 @@ static mps_status restore_once(mps_context *own, int what) {
   return status;
 }
 
-static void refused_allocations_leave_nothing_behind(void **state) {
-  (void)state;
+TEST(refused_allocations_leave_nothing_behind) {
   const int64_t handles = test_hdf5_handles();
   test_allocator_sweep(restore_once, 0);
   assert_int_equal(test_hdf5_handles(), handles);
   assert_int_equal(access(part, F_OK), -1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(goes_on_in_plane_strain),
-      cmocka_unit_test(goes_on_in_axisymmetry),
-      cmocka_unit_test(goes_on_in_space),
-      cmocka_unit_test(goes_on_from_every_step),
-      cmocka_unit_test(with_walls_loads_and_materials),
-      cmocka_unit_test(other_walls_loads_and_materials_are_refused),
-      cmocka_unit_test(another_solver_is_refused),
-      cmocka_unit_test(another_number_of_particles_is_taken),
-      cmocka_unit_test(other_files_and_bad_arguments),
-      cmocka_unit_test(a_broken_run_goes_back),
-      cmocka_unit_test(the_callers_bytes_come_back),
-      cmocka_unit_test(a_set_that_a_solver_holds_is_not_read_into),
-      cmocka_unit_test(blocks_elsewhere_are_refused),
-      cmocka_unit_test(refused_allocations_leave_nothing_behind),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

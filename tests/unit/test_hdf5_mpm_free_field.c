@@ -1,38 +1,30 @@
 /* test_hdf5_mpm_free_field.c - free-field sides of WLS-MPM: what they need and refuse; their
  * columns go back with a snapshot, go on from a file, and stay where a step is undone, bit for bit;
  * refused memory. SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/same.h"
 #include "domain_threads.h"
 #include "mpm_free_field.h"
 #include "pthread_executor.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 
-#include <mps/domain.h>
-#include <mps/experimental.h>
-#include <mps/mpm_settle.h>
-#include <mps/pore_water.h>
-
 #include <core/internal.h>
 #include <io/replace.h>
 
 #include <fcntl.h>
 #include <hdf5.h>
-#include <string.h>
 #include <unistd.h>
 
 static const char path[] = TEST_TMP "/mpm_free_field.h5";
 
 /* Sand over rock on an absorbing base, shaken. */
-static mpm_scene shaken(mps_context *on, int32_t sides) {
-  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-  law.young = field_young(100.0);
-  law.poisson = FIELD_NU;
-  law.friction = 0.5;
-  law.cohesion = 500.0;
-  mps_material *sand = NULL;
-  mps_signal *signal = NULL;
-  mps_assert_ok(on, mps_material_create_mohr_coulomb(on, &law, &sand));
-  mps_assert_ok(on, mps_signal_create_sine(on, 4.0, 1.0, 20.0, &signal));
+static mpm_scene shaken_dry(mps_context *on, int32_t sides) {
+  DEF(material_mohr_coulomb, law, .young = field_young(100.0), .poisson = FIELD_NU, .friction = 0.5,
+      .cohesion = 500.0);
+  scoped_material *sand = NULL;
+  scoped_signal *signal = NULL;
+  OK(mps_material_create_mohr_coulomb(on, &law, &sand));
+  OK(mps_signal_create_sine(on, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
   const field_ground of = {.width = 6.0,
                            .height = 8.0,
                            .spacing = 0.5,
@@ -45,23 +37,23 @@ static mpm_scene shaken(mps_context *on, int32_t sides) {
                            .motion = signal,
                            .law = sand};
   mpm_scene s = field_scene(on, &of);
-  mps_material_destroy(&sand);
-  mps_signal_destroy(&signal);
   return s;
 }
 
+/* The same, saturated where `wet`. */
+static mpm_scene shaken_ground(mps_context *on, int32_t sides, bool wet) {
+  mpm_scene s = shaken_dry(on, sides);
+  if (!wet) return s;
+  DEF(pore_water, water, .porosity = 0.4, .bulk = 2.2e8, .permeability = 1e-4);
+  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  return s;
+}
+
+static mpm_scene shaken(mps_context *on, int32_t sides) { return shaken_ground(on, sides, false); }
+
 /* The particles' fields, and the forces of the sides, bit for bit. */
 static void same(mpm_scene *a, mpm_scene *b) {
-  static const char *const names[] = {"position", "velocity", "stress", "volume", "plastic_strain"};
-  for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
-    const mps_view va = mpm_scene_view(a, names[f]), vb = mpm_scene_view(b, names[f]);
-    const mps_view id = mpm_scene_view(a, "id");
-    for (int64_t k = 0; k < va.shape[0]; k++) {
-      const int64_t m = mps_particles_index(b->particles, *mps_view_i64(&id, k, 0));
-      for (int c = 0; c < va.shape[1]; c++)
-        assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, m, c));
-    }
-  }
+  assert_same_by_id(a->particles, b->particles, "");
   for (int32_t k = 0; k < 3; k++) {
     double fa[3], fb[3];
     mpm_scene_force(a, k, fa);
@@ -70,50 +62,51 @@ static void same(mpm_scene *a, mpm_scene *b) {
   }
 }
 
-static void goes_back_bit_for_bit(void **state) {
-  (void)state;
-  mpm_scene x = shaken(context, MPS_BOUNDARY_FREE_FIELD);
-  mpm_scene twin = shaken(context, MPS_BOUNDARY_FREE_FIELD);
-  mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_mpm_step(x.mpm, 40));
-  mps_assert_ok(context, mps_mpm_step(twin.mpm, 40));
-  mps_assert_ok(context, mps_mpm_snapshot(x.mpm, &snapshot));
-  mps_assert_ok(context, mps_mpm_step(x.mpm, 33));
-  mps_assert_ok(context, mps_mpm_rollback(x.mpm, snapshot));
+static void go_back(bool wet) {
+  scoped_mpm_scene x = shaken_ground(context, MPS_BOUNDARY_FREE_FIELD, wet);
+  scoped_mpm_scene twin = shaken_ground(context, MPS_BOUNDARY_FREE_FIELD, wet);
+  scoped_snapshot *snapshot = NULL;
+  OK(mps_mpm_step(x.mpm, 40));
+  OK(mps_mpm_step(twin.mpm, 40));
+  OK(mps_mpm_snapshot(x.mpm, &snapshot));
+  OK(mps_mpm_step(x.mpm, 33));
+  OK(mps_mpm_rollback(x.mpm, snapshot));
   same(&x, &twin);
-  mps_assert_ok(context, mps_mpm_step(x.mpm, 100));
-  mps_assert_ok(context, mps_mpm_step(twin.mpm, 100));
+  OK(mps_mpm_step(x.mpm, 100));
+  OK(mps_mpm_step(twin.mpm, 100));
   same(&x, &twin);
   double force[3];
-  mpm_scene_force(&x, MPS_MPM_SIDE_X_LOWER, force);
+  mpm_scene_force(&x, MPS_SIDE_X_LOWER, force);
   assert_true(fabs(force[0]) > 1e4 && fabs(force[1]) > 100.0); /* K0 and the shear of the waves */
-  mps_snapshot_destroy(&snapshot);
-  mpm_scene_end(&x);
-  mpm_scene_end(&twin);
 }
 
-static void goes_on_from_a_file(void **state) {
-  (void)state;
-  mpm_scene whole = shaken(context, MPS_BOUNDARY_FREE_FIELD);
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, 60));
-  mps_assert_ok(context, mps_mpm_save(whole.mpm, path, NULL));
+TEST(goes_back_bit_for_bit) {
+  go_back(false);
+  go_back(true);
+}
+
+static void go_on(bool wet) {
+  scoped_mpm_scene whole = shaken_ground(context, MPS_BOUNDARY_FREE_FIELD, wet);
+  OK(mps_mpm_step(whole.mpm, 60));
+  OK(mps_mpm_save(whole.mpm, path, NULL));
   int32_t threads = 3;
   mps_context_def def = pthread_executor_def(&threads);
-  mps_context *other = NULL;
+  scoped_context *other = NULL;
   assert_int_equal(mps_context_create(&def, &other, NULL, 0), MPS_OK);
-  mpm_scene next = shaken(other, MPS_BOUNDARY_FREE_FIELD);
-  mps_assert_ok(other, mps_mpm_step(next.mpm, 7)); /* where it is does not matter */
-  mps_assert_ok(other, mps_mpm_restore(next.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, 100));
-  mps_assert_ok(other, mps_mpm_step(next.mpm, 100));
+  scoped_mpm_scene next = shaken_ground(other, MPS_BOUNDARY_FREE_FIELD, wet);
+  OK(mps_mpm_step(next.mpm, 7)); /* where it is does not matter */
+  OK(mps_mpm_restore(next.mpm, path, NULL));
+  OK(mps_mpm_step(whole.mpm, 100));
+  OK(mps_mpm_step(next.mpm, 100));
   same(&whole, &next);
   mpm_scene_end(&next);
-  next = shaken(other, MPS_BOUNDARY_ROLLER);
-  mps_assert_fails(other, mps_mpm_restore(next.mpm, path, NULL), MPS_ERROR_ARGUMENT,
-                   "boundary0/kind");
-  mpm_scene_end(&next);
-  mps_context_destroy(&other);
-  mpm_scene_end(&whole);
+  next = shaken_ground(other, MPS_BOUNDARY_ROLLER, wet);
+  FAILS_ON(other, mps_mpm_restore(next.mpm, path, NULL), MPS_ERROR_ARGUMENT, "boundary0/kind");
+}
+
+TEST(goes_on_from_a_file) {
+  go_on(false);
+  go_on(true);
 }
 
 static void move_one(mpm_scene *s) {
@@ -122,24 +115,21 @@ static void move_one(mpm_scene *s) {
   while (*mps_view_f64(&x.view, k, 0) > 0.5 || *mps_view_f64(&x.view, k, 1) < 5.0) k++;
   *mps_edit_f64(&x, k, 1) += 0.01;
   mpm_scene_commit(s, &x);
-  mpm_scene_side(s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  mpm_scene_side(s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
 }
 
 /* The column of a file was made of ground with a particle between two rows, as after settling, the
  * solver's of ground before that. */
-static void takes_the_rows_of_a_file(void **state) {
-  (void)state;
-  mpm_scene whole = shaken(context, MPS_BOUNDARY_FREE_FIELD);
-  mpm_scene next = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+TEST(takes_the_rows_of_a_file) {
+  scoped_mpm_scene whole = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  scoped_mpm_scene next = shaken(context, MPS_BOUNDARY_FREE_FIELD);
   move_one(&whole);
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, 60));
-  mps_assert_ok(context, mps_mpm_save(whole.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_restore(next.mpm, path, NULL));
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, 100));
-  mps_assert_ok(context, mps_mpm_step(next.mpm, 100));
+  OK(mps_mpm_step(whole.mpm, 60));
+  OK(mps_mpm_save(whole.mpm, path, NULL));
+  OK(mps_mpm_restore(next.mpm, path, NULL));
+  OK(mps_mpm_step(whole.mpm, 100));
+  OK(mps_mpm_step(next.mpm, 100));
   same(&whole, &next);
-  mpm_scene_end(&next);
-  mpm_scene_end(&whole);
 }
 
 /* Writes the first number of a list of integers of the left column in the file, a dataset or an
@@ -168,19 +158,18 @@ static void write_number(const char *name, int64_t value) {
   H5Gclose(group);
   H5Fclose(file);
   mpsi_replacement again;
-  mps_assert_ok(context, mpsi_replace_begin(context, "test", path, &again));
+  OK(mpsi_replace_begin(context, "test", path, true, &again));
   const int fd = open(path, O_RDONLY);
   const ssize_t size = read(fd, data, sizeof data);
   assert_true(size > 0 && size < (ssize_t)sizeof data);
   assert_int_equal(write(again.fd, data, (size_t)size), size);
   close(fd);
-  mps_assert_ok(context, mpsi_replace_commit(context, "test", &again));
+  OK(mpsi_replace_commit(context, "test", &again));
 }
 
 /* A sealed file with contents that no run writes: laws that the column has no memory for, or that
  * do not exist; rows that do not exist. */
-static void columns_of_other_laws_are_refused(void **state) {
-  (void)state;
+TEST(columns_of_other_laws_are_refused) {
   static const struct {
     const char *list;
     int64_t value;
@@ -189,24 +178,20 @@ static void columns_of_other_laws_are_refused(void **state) {
              {"column_rows", 5},    {"column_rows", INT64_MAX}};
   const field_ground of = {
       .width = 6.0, .height = 8.0, .spacing = 0.5, .vs = 100.0, .sides = MPS_BOUNDARY_FREE_FIELD};
-  mpm_scene s = field_scene(context, &of);
-  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  scoped_mpm_scene s = field_scene(context, &of);
+  DEF(material_mohr_coulomb, law, .young = field_young(100.0), .friction = 0.5);
   mps_material *sand = NULL;
   const double middle[2] = {3.25, 4.25};
-  law.young = field_young(100.0);
-  law.friction = 0.5;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &law, &sand));
+  OK(mps_material_create_mohr_coulomb(context, &law, &sand));
   const int64_t id = mps_particles_nearest(s.particles, middle);
-  mps_assert_ok(context, mps_mpm_set_material(s.mpm, sand, 1, &id));
+  OK(mps_mpm_set_material(s.mpm, sand, &id, 1));
   mps_material_destroy(&sand);
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-    mps_assert_ok(context, mps_mpm_save(s.mpm, path, NULL));
+    OK(mps_mpm_save(s.mpm, path, NULL));
     write_number(bad[k].list, bad[k].value);
-    mps_assert_fails(context, mps_mpm_restore(s.mpm, path, NULL), MPS_ERROR_FORMAT,
-                     "other laws or rows");
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    FAILS(mps_mpm_restore(s.mpm, path, NULL), MPS_ERROR_FORMAT, "column");
+    OK(mps_mpm_step(s.mpm, 1));
   }
-  mpm_scene_end(&s);
 }
 
 /* ---- steps that are undone ------------------------------------------------------------------- */
@@ -238,13 +223,10 @@ static mps_status update(void *user, const mps_material_block *b) {
 }
 
 static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
-  mps_material_user_def law = mps_material_user_defaults();
-  law.update = update;
-  law.user = of;
-  law.bulk_modulus = FIELD_RHO * 1e4 * (1.5 + 2.0 / 3.0);
-  law.shear_modulus = FIELD_RHO * 1e4;
-  mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_create_user(context, &law, &material));
+  DEF(material_user, law, .update = update, .user = of,
+      .bulk_modulus = FIELD_RHO * 1e4 * (1.5 + 2.0 / 3.0), .shear_modulus = FIELD_RHO * 1e4);
+  scoped_material *material = NULL;
+  OK(mps_material_create_user(context, &law, &material));
   const field_ground ground = {.width = 6.0,
                                .height = 6.0,
                                .spacing = 0.5,
@@ -256,20 +238,18 @@ static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
                                .law = material,
                                .heated = signal == NULL};
   mpm_scene s = field_scene(context, &ground);
-  mps_material_destroy(&material);
   return s;
 }
 
 /* A law refuses at any of its calls of a step, of either column or of the particles: the step is
  * undone, and is made afterwards as if nothing had been. */
-static void refused_steps_are_undone(void **state) {
-  (void)state;
-  mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_create_sine(context, 4.0, 1.0, 20.0, &signal));
+TEST(refused_steps_are_undone) {
+  scoped_signal *signal = NULL;
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
   fussy plain = {0}, of = {0};
-  mpm_scene twin = fussy_scene(&plain, signal), s = fussy_scene(&of, signal);
-  mps_assert_ok(context, mps_mpm_step(twin.mpm, 21));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+  scoped_mpm_scene twin = fussy_scene(&plain, signal), s = fussy_scene(&of, signal);
+  OK(mps_mpm_step(twin.mpm, 21));
+  OK(mps_mpm_step(s.mpm, 20));
   const int64_t calls = plain.calls / 21;
   assert_true(calls > 2);
   for (int64_t k = 1; k <= calls; k++) {
@@ -278,18 +258,14 @@ static void refused_steps_are_undone(void **state) {
     assert_int_equal(mps_mpm_steps(s.mpm), 20);
   }
   of = (fussy){0};
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  OK(mps_mpm_step(s.mpm, 1));
   const mps_view va = mpm_scene_view(&twin, "velocity"), vb = mpm_scene_view(&s, "velocity");
   for (int64_t k = 0; k < va.shape[0]; k++)
     for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, k, c));
-  mps_signal_destroy(&signal);
-  mpm_scene_end(&twin);
-  mpm_scene_end(&s);
 }
 
 /* Ground that is heated as a whole moves as between rollers: its columns have its temperatures. */
-static void columns_are_heated_with_the_ground(void **state) {
-  (void)state;
+TEST(columns_are_heated_with_the_ground) {
   fussy of = {0};
   mpm_scene s[2];
   for (int k = 0; k < 2; k++) {
@@ -298,8 +274,8 @@ static void columns_are_heated_with_the_ground(void **state) {
       for (int32_t side = 0; side < 2; side++)
         mpm_scene_side(&s[k], side, MPS_BOUNDARY_ROLLER, 0.0);
     for (int round = 1; round <= 3; round++) {
-      mps_assert_ok(context, mps_particles_set(s[k].particles, "temperature", 0, 100.0 * round));
-      mps_assert_ok(context, mps_mpm_step(s[k].mpm, 20));
+      OK(mps_particles_set(s[k].particles, "temperature", 0, 100.0 * round));
+      OK(mps_mpm_step(s[k].mpm, 20));
     }
   }
   const mps_view va = mpm_scene_view(&s[0], "velocity"), vb = mpm_scene_view(&s[1], "velocity");
@@ -320,45 +296,37 @@ static void columns_are_heated_with_the_ground(void **state) {
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-#define REFUSES(text, call) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
-
 static mps_status set(mpm_scene *s, int32_t side, int32_t kind) {
   return mps_mpm_set_side(s->mpm, side, kind, 0.0);
 }
 
-static void refuses_by_name(void **state) {
-  (void)state;
-  mpm_scene s = shaken(context, MPS_BOUNDARY_ROLLER);
+TEST(refuses_by_name) {
+  scoped_mpm_scene s = shaken(context, MPS_BOUNDARY_ROLLER);
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_create_sine(context, 4.0, 1.0, 20.0, &signal));
-  REFUSES("kind is 5 (FREE_FIELD) of side 2", set(&s, MPS_MPM_SIDE_Y_LOWER, 5));
+  scoped_signal *signal = NULL;
+  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
+  REFUSES(set(&s, MPS_SIDE_Y_LOWER, 5), "kind is 5 (FREE_FIELD) of side 2");
   def.kind = MPS_BOUNDARY_FREE_FIELD, def.signal[0] = signal;
-  REFUSES("signal[0] is given", mps_mpm_set_boundary(s.mpm, 0, &def));
-  REFUSES("kind is 8", set(&s, 0, 8));
-  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
-  REFUSES("beside side 2 of kind 3", set(&s, 0, 5));
-  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD));
-  mps_assert_ok(context, set(&s, 0, 5));
-  REFUSES("beside a free-field side", set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE,
-                   "settle between rollers");
-  REFUSES("boundary 0 is of kind 5", mps_experimental_mpm_standard(s.mpm, 0.9));
-  REFUSES("transfer is 1 (weight)",
-          mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 3)); /* it still works */
-  mps_assert_ok(context, mps_mpm_remove_boundary(s.mpm, 0));
-  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
-  mps_signal_destroy(&signal);
-  mpm_scene_end(&s);
+  REFUSES(mps_mpm_set_boundary(s.mpm, 0, &def), "signal[0] is given");
+  REFUSES(set(&s, 0, 8), "kind is 8");
+  OK(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
+  REFUSES(set(&s, 0, 5), "beside side 2 of kind 3");
+  OK(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD));
+  OK(set(&s, 0, 5));
+  REFUSES(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL), "beside a free-field side");
+  FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE, "settle between rollers");
+  REFUSES(mps_experimental_mpm_standard(s.mpm, 0.9), "boundary 0 is of kind 5");
+  REFUSES(mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
+          "transfer is 1 (weight)");
+  OK(mps_mpm_step(s.mpm, 3)); /* it still works */
+  OK(mps_mpm_remove_boundary(s.mpm, 0));
+  OK(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
 }
 
 static mpm_scene block(int32_t geometry, double width, double from) {
   mpm_scene s = mpm_scene_begin(context, 0.5, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, from, 0.0, width, 4.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
-  def.geometry = geometry;
+  DEF(mpm, def, .cell = 1.0, .geometry = geometry);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width;
   mpm_scene_solve(&s, &def);
   return s;
@@ -370,38 +338,33 @@ static int32_t cancel(void *user) {
 }
 
 /* Velocities of relaxation are no motion of the ground: the column would keep them. */
-static void refuses_ground_that_settles(void **state) {
-  (void)state;
-  mpm_scene s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 0.0);
+TEST(refuses_ground_that_settles) {
+  scoped_mpm_scene s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 0.0);
   const double down[2] = {0.0, -9.81};
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
-  for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, mps_particles_set(s.particles, "body_acceleration", c, down[c]));
-  mps_context_set_cancel(context, cancel, NULL);
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_CANCELLED, "cancel");
-  mps_context_set_cancel(context, NULL, NULL);
-  mps_assert_fails(context, set(&s, 0, 5), MPS_ERROR_STATE, "mps_mpm_settle was cancelled");
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
-  mps_assert_ok(context, set(&s, 0, 5));
-  mpm_scene_end(&s);
+  OK(mps_particles_add_field(s.particles, "body_acceleration", 0));
+  for (int c = 0; c < 2; c++) OK(mps_particles_set(s.particles, "body_acceleration", c, down[c]));
+  mps_context_set_cancel(context, cancel, NULL, NULL);
+  FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_CANCELLED, "cancel");
+  mps_context_set_cancel(context, NULL, NULL, NULL);
+  FAILS(set(&s, 0, 5), MPS_ERROR_STATE, "mps_mpm_settle was cancelled");
+  OK(mps_mpm_step(s.mpm, 1));
+  OK(set(&s, 0, 5));
 }
 
-static void refuses_ground_without_neighbour(void **state) {
-  (void)state;
-  mpm_scene s = block(MPS_MPM_GEOMETRY_AXISYMMETRIC, 6.0, 0.0);
-  REFUSES("with geometry 1", set(&s, 1, 5));
+TEST(refuses_ground_without_neighbour) {
+  scoped_mpm_scene s = block(MPS_MPM_GEOMETRY_AXISYMMETRIC, 6.0, 0.0);
+  REFUSES(set(&s, 1, 5), "with geometry 1");
   mpm_scene_end(&s);
   s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 3.0, 0.0);
-  REFUSES("3 cells wide", set(&s, 1, 5));
+  REFUSES(set(&s, 1, 5), "3 cells wide");
   mpm_scene_end(&s);
   s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 2.0);
-  REFUSES("hold no particles", set(&s, 0, 5));
-  mps_assert_ok(context, set(&s, 1, 5));
+  REFUSES(set(&s, 0, 5), "hold no particles");
+  OK(set(&s, 1, 5));
   mpm_scene_end(&s);
   s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 0.0);
-  mps_assert_ok(context, mps_experimental_mpm_standard(s.mpm, 0.9));
-  REFUSES("standard method", set(&s, 1, 5));
-  mpm_scene_end(&s);
+  OK(mps_experimental_mpm_standard(s.mpm, 0.9));
+  REFUSES(set(&s, 1, 5), "standard method");
 }
 
 /* What a rank has been answered. */
@@ -413,38 +376,29 @@ typedef struct answer {
 /* A body on two ranks: its column would need the particles of both. */
 static void ask_on_rank(void *user, team *t, int32_t rank) {
   answer *out = (answer *)user + rank;
-  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_domain *domain = NULL;
-  mps_particles *particles = NULL;
-  mps_material *material = NULL;
-  mps_mpm *mpm = NULL;
+  scoped_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_domain *domain = NULL;
+  scoped_particles *particles = NULL;
+  scoped_material *material = NULL;
+  scoped_mpm *mpm = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {16.0, 8.0};
   const mps_domain_def domain_def = team_domain_def(t, rank);
-  mps_particles_def set_def = mps_particles_defaults();
-  set_def.spacing = 0.5;
+  DEF(particles, set_def, .spacing = 0.5);
   mps_status status = mps_domain_create(own, &domain_def, &domain);
   if (status == MPS_OK) status = mps_particles_create(own, &set_def, &particles);
   if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
-  def.domain = domain;
+  DEF(mpm, def, .cell = 1.0, .domain = domain);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 16.0;
   if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
   out->made = status;
   out->set = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
   (void)snprintf(out->message, sizeof out->message, "%s", mps_context_error(own)->message);
   out->stepped = mps_mpm_step(mpm, 2);
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&particles);
-  mps_material_destroy(&material);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
 }
 
-static void refused_on_ranks(void **state) {
-  (void)state;
+TEST(refused_on_ranks) {
   answer of[2] = {{0}};
   team_compute(2, ask_on_rank, of);
   for (int rank = 0; rank < 2; rank++) {
@@ -459,45 +413,22 @@ static void refused_on_ranks(void **state) {
 
 static mps_status make(mps_context *own, int what) {
   (void)what;
-  mps_particles_def set_def = mps_particles_defaults();
-  mps_particles *particles = NULL;
-  mps_material *material = NULL;
-  mps_mpm *mpm = NULL;
+  DEF(particles, set_def, .spacing = 0.5);
+  scoped_particles *particles = NULL;
+  scoped_material *material = NULL;
+  scoped_mpm *mpm = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 2.0};
-  set_def.spacing = 0.5;
   mps_status status = mps_particles_create(own, &set_def, &particles);
   if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
+  DEF(mpm, def, .cell = 1.0);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 4.0;
   if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
   if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
   if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
   if (status == MPS_OK) status = mps_mpm_step(mpm, 2);
-  mps_mpm_destroy(&mpm);
-  mps_particles_destroy(&particles);
-  mps_material_destroy(&material);
   return status;
 }
 
-static void refused_memory_leaves_nothing(void **state) {
-  (void)state;
-  test_allocator_sweep(make, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(goes_back_bit_for_bit),
-                                     cmocka_unit_test(goes_on_from_a_file),
-                                     cmocka_unit_test(takes_the_rows_of_a_file),
-                                     cmocka_unit_test(columns_of_other_laws_are_refused),
-                                     cmocka_unit_test(refused_steps_are_undone),
-                                     cmocka_unit_test(columns_are_heated_with_the_ground),
-                                     cmocka_unit_test(refuses_by_name),
-                                     cmocka_unit_test(refuses_ground_that_settles),
-                                     cmocka_unit_test(refuses_ground_without_neighbour),
-                                     cmocka_unit_test(refused_on_ranks),
-                                     cmocka_unit_test(refused_memory_leaves_nothing)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
-}
+TEST(refused_memory_leaves_nothing) { test_allocator_sweep(make, 0); }

@@ -1,21 +1,17 @@
 /* test_hdf5_ranks.c - a checkpoint of several ranks has the particles of one, bit for bit, and rank
  * 0, which writes it, has little more memory than the others for that: theirs come in pieces.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/same.h"
 #include "test_common.h"
 
 #include "ranks_memory.h"
 #include "test_hdf5.h"
 
-#include <mps/dynamics.h>
-#include <mps/io.h>
-#include <mps/mpm.h>
-
 #define MOST_RATIO 1.2 /* of the memory of rank 0 to that of the rank with most of the others */
 
 static mps_status begin_set(mps_context *own, mps_domain *domain, mps_particles **out) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {200.0, 150.0};
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 1.0;
+  DEF(particles, def, .spacing = 1.0);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
@@ -31,10 +27,9 @@ static void count_anew(const peak_allocator *allocator) {
 /* `user`: path of the file. */
 static mps_status save_dynamics(mps_context *own, mps_domain *domain,
                                 const peak_allocator *allocator, void *user) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_particles *set = NULL;
-  mps_dynamics *dynamics = NULL;
-  def.domain = domain;
+  DEF(dynamics, def, .domain = domain);
+  scoped_particles *set = NULL;
+  scoped_dynamics *dynamics = NULL;
   mps_status status = begin_set(own, domain, &set);
   TRY(mps_particles_set(set, "density", 0, 1900.0));
   TRY(mps_particles_set(set, "shear_velocity", 0, 200.0));
@@ -44,20 +39,15 @@ static mps_status save_dynamics(mps_context *own, mps_domain *domain,
   TRY(mps_dynamics_step(dynamics, 2));
   count_anew(allocator);
   TRY(mps_dynamics_save(dynamics, user, NULL));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
   return status;
 }
 
 static mps_status save_mpm(mps_context *own, mps_domain *domain, const peak_allocator *allocator,
                            void *user) {
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_particles *set = NULL;
-  mps_material *material = NULL;
-  mps_mpm *mpm = NULL;
-  def.domain = domain;
-  def.cell = 2.0;
-  def.gravity[1] = -9.81;
+  DEF(mpm, def, .domain = domain, .cell = 2.0, .gravity[1] = -9.81);
+  scoped_particles *set = NULL;
+  scoped_material *material = NULL;
+  scoped_mpm *mpm = NULL;
   mps_status status = begin_set(own, domain, &set);
   TRY(mps_particles_set(set, "density", 0, 1900.0));
   TRY(mps_material_create_linear_elastic(own, 1e7, 0.3, &material));
@@ -65,9 +55,6 @@ static mps_status save_mpm(mps_context *own, mps_domain *domain, const peak_allo
   TRY(mps_mpm_step(mpm, 2));
   count_anew(allocator);
   TRY(mps_mpm_save(mpm, user, NULL));
-  mps_mpm_destroy(&mpm);
-  mps_material_destroy(&material);
-  mps_particles_destroy(&set);
   return status;
 }
 
@@ -75,33 +62,9 @@ static mps_status save_mpm(mps_context *own, mps_domain *domain, const peak_allo
 static mps_particles *read_set(mps_context *context, const char *path) {
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_particles *set = NULL;
-  mps_assert_ok(context, begin_set(context, NULL, &set));
-  mps_assert_ok(context, mps_checkpoint_read(set, path, &info));
+  OK(begin_set(context, NULL, &set));
+  OK(mps_checkpoint_read(set, path, &info));
   return set;
-}
-
-/* Has each particle of the one the same bits in all fields of the other? */
-static void compare_sets(mps_context *context, mps_particles *a, mps_particles *b) {
-  const int64_t n = mps_particles_count(a);
-  mps_view id;
-  assert_int_equal(mps_particles_count(b), n);
-  assert_int_equal(mps_particles_field_count(b), mps_particles_field_count(a));
-  mps_assert_ok(context, mps_particles_view(a, "id", &id));
-  for (int32_t f = 0; f < mps_particles_field_count(a); f++) {
-    mps_particles_field_info info;
-    mps_view x, y;
-    mps_assert_ok(context, mps_particles_get_field_info(a, f, &info));
-    mps_assert_ok(context, mps_particles_view(a, info.name, &x));
-    mps_assert_ok(context, mps_particles_view(b, info.name, &y));
-    for (int64_t k = 0; k < n; k++) {
-      const int64_t at = mps_particles_index(b, *mps_view_i64(&id, k, 0));
-      assert_true(at >= 0);
-      for (int32_t c = 0; c < info.components; c++)
-        if (memcmp((const int64_t *)x.data + k + c * x.stride[1],
-                   (const int64_t *)y.data + at + c * y.stride[1], 8) != 0)
-          fail_msg("field %s of particle %lld", info.name, (long long)k);
-    }
-  }
 }
 
 static memory_peaks save_on(int32_t size, memory_fn *save, char *path, mps_status expected) {
@@ -122,31 +85,24 @@ static void compare_files(memory_fn *save) {
   assert_true((double)p.most[0] <= MOST_RATIO * (double)others);
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *a = read_set(context, one), *b = read_set(context, four);
-  compare_sets(context, a, b);
+  assert_same_by_id(a, b, "");
   mps_particles_destroy(&a);
   mps_particles_destroy(&b);
   mps_context_destroy(&context);
   remove(one), remove(four);
 }
 
-static void test_dynamics(void **state) { (void)state, compare_files(save_dynamics); }
+TEST(test_dynamics) { compare_files(save_dynamics); }
 
-static void test_mpm(void **state) { (void)state, compare_files(save_mpm); }
+TEST(test_mpm) { compare_files(save_mpm); }
 
 /* A path that will not do, before any particle is sent, and a disk that is full when half of them
  * are written: an error on all ranks, and none waits. */
-static void test_refused(void **state) {
+TEST(test_refused) {
   char nowhere[] = "no/such/folder/hdf5_ranks.h5", file[] = "hdf5_ranks_full.h5";
-  (void)state;
   save_on(3, save_mpm, nowhere, MPS_ERROR_IO);
   test_disk_limit(1000000);
   save_on(3, save_dynamics, file, MPS_ERROR_IO);
   test_disk_limit(0);
   assert_null(fopen(file, "rb"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_dynamics), cmocka_unit_test(test_mpm),
-                                     cmocka_unit_test(test_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,10 @@
  * bit, the run that never stopped: every integrator, with and without damping, driven, with a
  * viscous base and free-field columns.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/same.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "soil_column.h"
 #include "test_fixture.h"
-
-#include <mps/dynamics.h>
-#include <mps/io.h>
-
-#include <stdbool.h>
 
 #define STEPS_BEFORE 37
 #define STEPS_AFTER 53
@@ -27,18 +24,17 @@ typedef struct body {
 } body;
 
 static void set_field(mps_particles *set, const char *name, double value) {
-  mps_assert_ok(context, mps_particles_set(set, name, 0, value));
+  OK(mps_particles_set(set, name, 0, value));
 }
 
 /* A block of 8 x 6 particles in slow motion, on its base. The time step is no dyadic number, so
  * that times are rounded. `dt` NaN: the library's own choice. */
 static body build(const run *r, double dt) {
   body b = {NULL, NULL};
-  mps_particles_def set_def = mps_particles_defaults();
+  DEF(particles, set_def, .spacing = 1.0);
   const double lo[2] = {0.0, 0.0}, hi[2] = {8.0, 6.0};
-  set_def.spacing = 1.0;
-  mps_assert_ok(context, mps_particles_create(context, &set_def, &b.set));
-  mps_assert_ok(context, mps_particles_fill_box(b.set, lo, hi, NULL));
+  OK(mps_particles_create(context, &set_def, &b.set));
+  OK(mps_particles_fill_box(b.set, lo, hi, NULL));
   set_field(b.set, "density", 1500.0);
   set_field(b.set, "shear_velocity", 100.0);
   set_field(b.set, "pressure_velocity", 200.0);
@@ -46,33 +42,28 @@ static body build(const run *r, double dt) {
   set_field(b.set, "velocity", 0.0);
   mps_view x;
   mps_edit v;
-  mps_assert_ok(context, mps_particles_view(b.set, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(b.set, "velocity", &v));
+  OK(mps_particles_view(b.set, "position", &x));
+  OK(mps_particles_edit(b.set, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
-  mps_assert_ok(context, mps_particles_commit(b.set, &v));
-  if (!r->driven)
-    mps_assert_ok(context, mps_dynamics_add_free_field(b.set, MPS_DYNAMICS_SIDE_LEFT, 3));
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = r->integrator;
-  def.rotation = r->rotation;
-  def.dt = dt;
-  mps_assert_ok(context, mps_dynamics_create(context, b.set, &def, &b.solver));
+  OK(mps_particles_commit(b.set, &v));
+  if (!r->driven) OK(mps_dynamics_add_free_field(b.set, MPS_SIDE_X_LOWER, 3));
+  DEF(dynamics, def, .integrator = r->integrator, .rotation = r->rotation, .dt = dt);
+  OK(mps_dynamics_create(context, b.set, &def, &b.solver));
   const double base_lo[2] = {-20.0, 0.0}, base_hi[2] = {20.0, 1.0};
   int64_t ids[64], count;
   mps_signal *wave = NULL;
-  mps_assert_ok(context, mps_particles_select_box(b.set, base_lo, base_hi, 64, &count, ids));
-  mps_assert_ok(context, mps_signal_create_ricker(context, 9.0, 0.05, 0.01, &wave));
+  OK(mps_particles_select_box(b.set, base_lo, base_hi, 64, &count, ids));
+  OK(mps_signal_create_ricker(context, 9.0, 0.05, 0.01, &wave));
   if (r->driven) {
-    mps_assert_ok(context, soil_add_held(b.solver, MPS_DOF_Y, count, ids));
-    mps_assert_ok(context, soil_add_driven(b.solver, 0, wave, 1.0, count, ids));
+    OK(soil_add_held(b.solver, MPS_DOF_Y, count, ids));
+    OK(soil_add_driven(b.solver, 0, wave, 1.0, count, ids));
   } else {
-    mps_dynamics_boundary_def viscous = mps_dynamics_boundary_defaults();
-    viscous.signal[0] = wave;
-    mps_assert_ok(context, soil_add_viscous(b.solver, &viscous, count, ids));
+    DEF(dynamics_boundary, viscous, .signal[0] = wave);
+    OK(soil_add_viscous(b.solver, &viscous, count, ids));
   }
   mps_signal_destroy(&wave);
-  if (r->start != 0.0) mps_assert_ok(context, mps_dynamics_restart(b.solver, r->start));
+  if (r->start != 0.0) OK(mps_dynamics_restart(b.solver, r->start));
   return b;
 }
 
@@ -82,32 +73,18 @@ static void drop(body *b) {
 }
 
 static void same_bits(const body *a, const body *b, const char *what) {
-  mps_view va, vb;
-  mps_particles_field_info info;
-  assert_int_equal(mps_particles_field_count(a->set), mps_particles_field_count(b->set));
-  for (int32_t f = 0; f < mps_particles_field_count(a->set); f++) {
-    mps_assert_ok(context, mps_particles_get_field_info(a->set, f, &info));
-    mps_assert_ok(context, mps_particles_view(a->set, info.name, &va));
-    mps_assert_ok(context, mps_particles_view(b->set, info.name, &vb));
-    for (int64_t c = 0; c < va.shape[1]; c++)
-      for (int64_t i = 0; i < va.shape[0]; i++)
-        if (memcmp(mps_view_f64(&va, i, c), mps_view_f64(&vb, i, c), 8) != 0)
-          fail_msg("%s: %s[%d] of particle %d: %.17g and %.17g", what, info.name, (int)c, (int)i,
-                   *mps_view_f64(&va, i, c), *mps_view_f64(&vb, i, c));
-  }
+  assert_same_rows(a->set, b->set, what);
   assert_int_equal(mps_dynamics_steps(a->solver), mps_dynamics_steps(b->solver));
   const double time[2] = {mps_dynamics_time(a->solver), mps_dynamics_time(b->solver)};
   if (time[0] != time[1]) fail_msg("%s: time %.17g and %.17g s", what, time[0], time[1]);
 }
 
-static void checkpoint(const body *b) {
-  mps_assert_ok(context, mps_dynamics_save(b->solver, path, NULL));
-}
+static void checkpoint(const body *b) { OK(mps_dynamics_save(b->solver, path, NULL)); }
 
 /* The program that continues: with a time step of its own, which the file's replaces. */
 static body resume(const run *r) {
   body b = build(r, 1e-4);
-  mps_assert_ok(context, mps_dynamics_restore(b.solver, path, NULL));
+  OK(mps_dynamics_restore(b.solver, path, NULL));
   return b;
 }
 
@@ -115,14 +92,14 @@ static void stop_and_go_on(const run *r, double dt, int64_t steps) {
   char what[128];
   snprintf(what, sizeof what, "integrator %d rotation %d damping %g driven %d start %g",
            r->integrator, r->rotation, r->damping, r->driven, r->start);
-  body whole = build(r, dt);
-  mps_assert_ok(context, mps_dynamics_step(whole.solver, steps));
+  SCOPED(drop) body whole = build(r, dt);
+  OK(mps_dynamics_step(whole.solver, steps));
   checkpoint(&whole);
-  body other = resume(r);
+  SCOPED(drop) body other = resume(r);
   same_bits(&whole, &other, what);
   for (int k = 0; k < 2; k++) {
-    mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_AFTER));
-    mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+    OK(mps_dynamics_step(whole.solver, STEPS_AFTER));
+    OK(mps_dynamics_step(other.solver, STEPS_AFTER));
     same_bits(&whole, &other, what);
     /* a checkpoint of the resumed run serves as well */
     drop(&other);
@@ -130,14 +107,11 @@ static void stop_and_go_on(const run *r, double dt, int64_t steps) {
     other = resume(r);
   }
   mps_totals energy;
-  mps_assert_ok(context, mps_dynamics_get_totals(whole.solver, &energy));
+  OK(mps_dynamics_get_totals(whole.solver, &energy));
   assert_true(energy.strain > 0.0); /* something moved */
-  drop(&whole);
-  drop(&other);
 }
 
-static void every_integrator_goes_on_bit_for_bit(void **state) {
-  (void)state;
+TEST(every_integrator_goes_on_bit_for_bit) {
   static const double start[] = {0.0, 0.3};
   for (int integrator = 0; integrator < 3; integrator++)
     for (int damped = 0; damped < 2; damped++)
@@ -151,15 +125,13 @@ static void every_integrator_goes_on_bit_for_bit(void **state) {
         }
 }
 
-static void so_does_a_run_with_the_librarys_time_step(void **state) {
-  (void)state;
+TEST(so_does_a_run_with_the_librarys_time_step) {
   const run r = {MPS_DYNAMICS_INTEGRATOR_VERLET, MPS_DYNAMICS_ROTATION_MEAN_MATRIX, 0.02, true,
                  0.0};
   stop_and_go_on(&r, NAN, STEPS_BEFORE);
 }
 
-static void so_does_one_that_has_not_begun(void **state) {
-  (void)state;
+TEST(so_does_one_that_has_not_begun) {
   for (int integrator = 0; integrator < 3; integrator++) {
     const run r = {integrator, MPS_DYNAMICS_ROTATION_MEAN_MATRIX, 0.02, true, 0.0};
     stop_and_go_on(&r, 7e-4, 0);
@@ -168,47 +140,33 @@ static void so_does_one_that_has_not_begun(void **state) {
 
 /* A run that is dug into, and stops after that, continues in a new solver on all particles; and a
  * run goes back to a file from before in a solver that has been dug into. */
-static void so_does_one_that_was_dug_into(void **state) {
-  (void)state;
+TEST(so_does_one_that_was_dug_into) {
   for (int driven = 0; driven < 2; driven++) {
     const run r = {0, MPS_DYNAMICS_ROTATION_MEAN_MATRIX, 0.02, driven == 1, 0.0};
     const double lo[2] = {2.1, -1.0}, hi[2] = {4.9, 99.0}; /* down to the base */
     int64_t ids[32], count;
-    body whole = build(&r, 7e-4);
-    mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_BEFORE));
-    mps_assert_ok(context, mps_dynamics_save(whole.solver, before, NULL));
-    mps_assert_ok(context, mps_particles_select_box(whole.set, lo, hi, 32, &count, ids));
-    mps_assert_ok(context, mps_particles_remove(whole.set, count, ids));
-    mps_assert_ok(context, mps_dynamics_step(whole.solver, 5));
+    SCOPED(drop) body whole = build(&r, 7e-4);
+    OK(mps_dynamics_step(whole.solver, STEPS_BEFORE));
+    OK(mps_dynamics_save(whole.solver, before, NULL));
+    OK(mps_particles_select_box(whole.set, lo, hi, 32, &count, ids));
+    OK(mps_particles_remove(whole.set, ids, count));
+    OK(mps_dynamics_step(whole.solver, 5));
     checkpoint(&whole);
-    body other = resume(&r);
+    SCOPED(drop) body other = resume(&r);
     assert_int_equal(mps_particles_count(whole.set), mps_particles_count(other.set));
-    assert_int_equal(mps_dynamics_pairs(whole.solver), mps_dynamics_pairs(other.solver));
+    assert_int_equal(whole.solver->pairs, other.solver->pairs);
     for (int part = 0; part < 2; part++) {
       same_bits(&whole, &other, "dug");
-      mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_AFTER));
-      mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+      OK(mps_dynamics_step(whole.solver, STEPS_AFTER));
+      OK(mps_dynamics_step(other.solver, STEPS_AFTER));
     }
-    body fresh = build(&r, 7e-4);
-    mps_assert_ok(context, mps_dynamics_restore(fresh.solver, before, NULL));
-    mps_assert_ok(context, mps_dynamics_restore(other.solver, before, NULL));
+    SCOPED(drop) body fresh = build(&r, 7e-4);
+    OK(mps_dynamics_restore(fresh.solver, before, NULL));
+    OK(mps_dynamics_restore(other.solver, before, NULL));
     for (int part = 0; part < 2; part++) {
       same_bits(&fresh, &other, "filled");
-      mps_assert_ok(context, mps_dynamics_step(fresh.solver, STEPS_AFTER));
-      mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+      OK(mps_dynamics_step(fresh.solver, STEPS_AFTER));
+      OK(mps_dynamics_step(other.solver, STEPS_AFTER));
     }
-    drop(&whole);
-    drop(&other);
-    drop(&fresh);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_integrator_goes_on_bit_for_bit),
-      cmocka_unit_test(so_does_a_run_with_the_librarys_time_step),
-      cmocka_unit_test(so_does_one_that_has_not_begun),
-      cmocka_unit_test(so_does_one_that_was_dug_into),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -3,6 +3,7 @@
  * threads, refuses edits under way and calls from callbacks, and goes back bit for bit. In the
  * library names are mps_x_..., the struct is private to its folder, and the definition is in a
  * public header. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/definition/table.h"
 #include "core/particles/particles_internal.h"
 #include "core/state/state.h"
 
@@ -16,7 +17,19 @@ typedef struct fall_def {
   double gravity; /* m/s2 along the last axis, finite; no default */
   double dt;      /* s, > 0; default 1e-3 */
 } fall_def;
+
+/* ---- the table of its members, in src/core/definition -----------------------------------------
+ */
+
 #define MPSI_RELEASED_fall_def 24 /* bytes; scripts/update-sizes writes that of a public struct */
+
+/* clang-format off */
+#define FALL(X, S) \
+  X(S, INT,  reserved, 1, "",     RESERVED,          0,     OWN) \
+  X(S, REAL, gravity,  1, "m/s2", FINITE,            UNSET, SAME) \
+  X(S, REAL, dt,       1, "s",    ABOVE(0, DBL_MAX), 1e-3,  SAME)
+MPSI_DEFINITION(fall_def, "fall", FALL)
+/* clang-format on */
 
 /* ---- the solver ------------------------------------------------------------------------------ */
 
@@ -31,12 +44,6 @@ struct fall {
   int64_t steps, count;
   double *x, *v; /* columns of the set, bound again where they may have moved */
 };
-
-static const fall_def defaults = {.struct_size = sizeof(fall_def), .gravity = NAN, .dt = 1e-3};
-
-static mps_status fall_def_init(fall_def *def, size_t size) {
-  return MPSI_DEF_INIT(fall_def, def, size, &defaults);
-}
 
 static void bind(void *solver) {
   fall *f = solver;
@@ -60,18 +67,13 @@ static mps_status leave(void *self, const char *function, int64_t count, const i
 /* Checks everything before it changes anything; on an error the set is as before. */
 static mps_status fall_create(mps_context *owner, mps_particles *particles, const fall_def *user,
                               fall **out) {
-  fall_def def = defaults;
+  fall_def def;
   if (!owner) return MPS_ERROR_ARGUMENT;
   if (!particles || !out)
     return mpsi_fail(owner, __func__, MPS_ERROR_ARGUMENT, "particles or out is NULL");
   *out = NULL;
   mps_status status = MPSI_DEF_READ(owner, __func__, fall_def, user, &def);
-  if (status != MPS_OK) return status;
-  if (!isfinite(def.gravity) || !(def.dt > 0.0 && isfinite(def.dt)))
-    return mpsi_fail(owner, __func__, MPS_ERROR_ARGUMENT,
-                     "gravity is %g m/s2 and dt %g s: must be finite, and dt > 0", def.gravity,
-                     def.dt);
-  status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
   if (status != MPS_OK) return status;
   fall *f = mpsi_alloc(owner, 1, sizeof *f);
@@ -180,138 +182,110 @@ static mps_status fall_rollback(fall *f, const mps_snapshot *snapshot) {
 #include "test_fixture.h"
 
 static mps_particles *make_set(void) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = 1.0);
   mps_particles *set = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {3.0, 50.0};
-  def.spacing = 1.0;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_create(context, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
   return set;
 }
 
 static fall *make(mps_particles *set) {
   fall_def def;
   fall *f = NULL;
-  assert_int_equal(fall_def_init(&def, sizeof def), MPS_OK);
+  mpsi_definition_fill(&mpsi_definition_of_fall_def, &def, sizeof def);
   def.gravity = -9.81;
-  mps_assert_ok(context, fall_create(context, set, &def, &f));
+  OK(fall_create(context, set, &def, &f));
   return f;
 }
 
 static double lowest(mps_particles *set) {
   mps_view x;
   double low = INFINITY;
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  OK(mps_particles_view(set, "position", &x));
   for (int64_t k = 0; k < x.shape[0]; k++) low = fmin(low, *mps_view_f64(&x, k, 1));
   return low;
 }
 
-static void it_falls_along_the_parabola(void **state) {
-  (void)state;
-  mps_particles *set = make_set();
+TEST(it_falls_along_the_parabola) {
+  scoped_particles *set = make_set();
   fall *f = make(set);
   const double start = lowest(set);
-  mps_assert_ok(context, fall_step(f, 500));
-  mps_assert_near(f->time, 0.5, 1e-12);
-  mps_assert_near(lowest(set), start - 0.5 * 9.81 * 0.25, 1e-12);
+  OK(fall_step(f, 500));
+  NEAR(f->time, 0.5, 1e-12);
+  NEAR(lowest(set), start - 0.5 * 9.81 * 0.25, 1e-12);
   fall_destroy(&f);
   assert_null(f);
-  mps_particles_destroy(&set);
 }
 
-static void it_goes_back_bit_for_bit(void **state) {
-  (void)state;
-  mps_particles *set = make_set();
+TEST(it_goes_back_bit_for_bit) {
+  scoped_particles *set = make_set();
   fall *f = make(set), *other = NULL;
-  mps_snapshot *then = NULL;
-  mps_assert_ok(context, fall_step(f, 7));
-  mps_assert_ok(context, fall_snapshot(f, &then));
-  mps_assert_ok(context, fall_step(f, 11));
+  scoped_snapshot *then = NULL;
+  OK(fall_step(f, 7));
+  OK(fall_snapshot(f, &then));
+  OK(fall_step(f, 11));
   const double there = lowest(set), time = f->time;
-  mps_assert_ok(context, fall_rollback(f, then));
+  OK(fall_rollback(f, then));
   assert_int_equal(f->steps, 7);
-  mps_assert_ok(context, fall_step(f, 11));
+  OK(fall_step(f, 11));
   assert_true(lowest(set) == there && f->time == time);
   fall_destroy(&f);
   other = make(set);
-  mps_assert_fails(context, fall_rollback(other, then), MPS_ERROR_ARGUMENT, "snapshot");
-  mps_snapshot_destroy(&then);
+  REFUSES(fall_rollback(other, then), "snapshot");
   fall_destroy(&other);
-  mps_particles_destroy(&set);
 }
 
-static void what_is_wrong_is_refused(void **state) {
-  (void)state;
-  mps_particles *set = make_set();
+TEST(what_is_wrong_is_refused) {
+  scoped_particles *set = make_set();
   const int32_t fields = mps_particles_field_count(set);
   fall_def def;
   fall *f = NULL, *second = NULL;
   mps_edit edit;
-  assert_int_equal(fall_def_init(&def, sizeof def), MPS_OK);
-  mps_assert_fails(context, fall_create(context, set, &def, &f), MPS_ERROR_ARGUMENT,
-                   "gravity is nan");
+  mpsi_definition_fill(&mpsi_definition_of_fall_def, &def, sizeof def);
+  REFUSES(fall_create(context, set, &def, &f), "gravity is nan");
   assert_int_equal(mps_particles_field_count(set), fields);
   f = make(set);
   def.gravity = 1.0;
-  mps_assert_fails(context, fall_create(context, set, &def, &second), MPS_ERROR_STATE,
-                   "a solver of free fall");
-  mps_assert_fails(context, fall_step(f, -1), MPS_ERROR_ARGUMENT, "count is -1");
-  mps_assert_ok(context, mps_particles_edit(set, "velocity", &edit));
-  mps_assert_fails(context, fall_step(f, 1), MPS_ERROR_STATE, "velocity");
-  mps_assert_ok(context, mps_particles_abandon(set, &edit));
+  FAILS(fall_create(context, set, &def, &second), MPS_ERROR_STATE, "a solver of free fall");
+  REFUSES(fall_step(f, -1), "count is -1");
+  OK(mps_particles_edit(set, "velocity", &edit));
+  FAILS(fall_step(f, 1), MPS_ERROR_STATE, "velocity");
+  OK(mps_particles_abandon(set, &edit));
   mpsi_guard_enter(&f->guard, context, "a callback");
-  mps_assert_fails(context, fall_step(f, 1), MPS_ERROR_STATE, "a callback");
+  FAILS(fall_step(f, 1), MPS_ERROR_STATE, "a callback");
   mpsi_guard_end(&f->guard);
   assert_int_equal(f->steps, 0);
   fall_destroy(&f);
-  mps_particles_destroy(&set);
 }
 
-static void particles_come_and_go(void **state) {
-  (void)state;
-  mps_particles *set = make_set();
+TEST(particles_come_and_go) {
+  scoped_particles *set = make_set();
   fall *f = make(set);
   const double more[2] = {1.5, -1.0};
   const int64_t first = 0;
-  mps_assert_ok(context, mps_particles_append(set, 1, more));
-  mps_assert_ok(context, mps_particles_remove(set, 1, &first));
+  OK(mps_particles_append(set, 1, more));
+  OK(mps_particles_remove(set, &first, 1));
   assert_int_equal(f->count, 150);
-  mps_assert_ok(context, fall_step(f, 1));
-  mps_assert_near(lowest(set), -1.0 - 0.5 * 9.81e-6, 1e-15);
+  OK(fall_step(f, 1));
+  NEAR(lowest(set), -1.0 - 0.5 * 9.81e-6, 1e-15);
   fall_destroy(&f);
-  mps_particles_destroy(&set);
 }
 
 /* Its state has no room for other particles: it goes back only to those that it has. */
-static void other_particles_have_another_state(void **state) {
-  (void)state;
-  mps_particles *set = make_set();
+TEST(other_particles_have_another_state) {
+  scoped_particles *set = make_set();
   fall *f = make(set);
-  mps_snapshot *then = NULL;
+  scoped_snapshot *then = NULL;
   const double place[2] = {1.5, -1.0};
   const int64_t first = 0;
-  mps_assert_ok(context, fall_snapshot(f, &then));
-  mps_assert_ok(context, fall_step(f, 3));
-  mps_assert_ok(context, mps_particles_remove(set, 1, &first));
+  OK(fall_snapshot(f, &then));
+  OK(fall_step(f, 3));
+  OK(mps_particles_remove(set, &first, 1));
   const double there = lowest(set);
-  mps_assert_fails(context, fall_rollback(f, then), MPS_ERROR_STATE,
-                   "the state is of 150 particles, the set has 149");
-  mps_assert_ok(context, mps_particles_append(set, 1, place));
-  mps_assert_fails(context, fall_rollback(f, then), MPS_ERROR_STATE,
-                   "a particle of id 0, the set has none");
+  FAILS(fall_rollback(f, then), MPS_ERROR_STATE, "the state is of 150 particles, the set has 149");
+  OK(mps_particles_append(set, 1, place));
+  FAILS(fall_rollback(f, then), MPS_ERROR_STATE, "a particle of id 0, the set has none");
   assert_true(f->steps == 3 && lowest(set) == fmin(there, -1.0)); /* nothing has changed */
-  mps_snapshot_destroy(&then);
   fall_destroy(&f);
-  mps_particles_destroy(&set);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(it_falls_along_the_parabola),
-      cmocka_unit_test(it_goes_back_bit_for_bit),
-      cmocka_unit_test(what_is_wrong_is_refused),
-      cmocka_unit_test(particles_come_and_go),
-      cmocka_unit_test(other_particles_have_another_state),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

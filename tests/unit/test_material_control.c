@@ -7,102 +7,80 @@
 
 static mps_material *hooke(double nu) {
   mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, nu, &m));
+  OK(mps_material_create_linear_elastic(context, 1e7, nu, &m));
   return m;
 }
 
 /* Six stresses at once: the strains are Hooke's. */
-static void all_stresses_of_an_elastic_point(void **state) {
-  (void)state;
+TEST(all_stresses_of_an_elastic_point) {
   static const double nus[2] = {0.3, 0.4999};
   for (int k = 0; k < 2; k++) {
     const double nu = nus[k], target[6] = {-1e3, 2e3, 0.0, 500.0, -200.0, 100.0};
-    mps_material *m = hooke(nu);
+    scoped_material *m = hooke(nu);
     mps_material_point x = point_under(m, 0.0);
     const double still[9] = {0.0};
     double L[9];
-    mps_assert_ok(context,
-                  mps_material_point_control(context, m, &x, still, ALL, target, 1.0, 1, L));
-    for (int c = 0; c < 6; c++) mps_assert_near(x.stress[c], target[c], 1e-5);
+    OK(mps_material_point_control(context, m, &x, still, ALL, target, 1.0, 1, L));
+    for (int c = 0; c < 6; c++) NEAR(x.stress[c], target[c], 1e-5);
     for (int c = 0; c < 3; c++) {
       const double sum = target[0] + target[1] + target[2];
-      mps_assert_near(L[4 * c], ((1.0 + nu) * target[c] - nu * sum) / 1e7, 1e-11);
+      NEAR(L[4 * c], ((1.0 + nu) * target[c] - nu * sum) / 1e7, 1e-11);
     }
-    mps_assert_near(L[1], 500.0 * (1.0 + nu) / 1e7, 1e-11); /* half of the engineering strain */
-    mps_assert_near(L[1], L[3], 0.0);
-    mps_assert_near(x.time, 1.0, 0.0);
-    mps_material_destroy(&m);
+    NEAR(L[1], 500.0 * (1.0 + nu) / 1e7, 1e-11); /* half of the engineering strain */
+    NEAR(L[1], L[3], 0.0);
+    NEAR(x.time, 1.0, 0.0);
   }
 }
 
 /* Uniaxial stress of von Mises: s = sigma_Y + the hardening line, lateral strain free. */
-static void a_tension_test(void **state) {
-  (void)state;
-  mps_material_von_mises_def def = mps_material_von_mises_defaults();
-  def.young = 2e11, def.yield_stress = 2e8, def.hardening = 1e10;
-  mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &m));
+TEST(a_tension_test) {
+  DEF(material_von_mises, def, .young = 2e11, .yield_stress = 2e8, .hardening = 1e10);
+  scoped_material *m = NULL;
+  OK(mps_material_create_von_mises(context, &def, &m));
   mps_material_point x = point_under(m, 0.0);
   const double pull[9] = {0.01}, target[6] = {0.0};
-  mps_assert_ok(context, mps_material_point_control(context, m, &x, pull,
-                                                    MPS_MATERIAL_POINT_YY | MPS_MATERIAL_POINT_ZZ,
-                                                    target, 1.0, 50, NULL));
+  OK(mps_material_point_control(context, m, &x, pull, MPS_MATERIAL_POINT_YY | MPS_MATERIAL_POINT_ZZ,
+                                target, 1.0, 50, NULL));
   const double plastic = (0.01 - 2e8 / 2e11) / (1.0 + 1e10 / 2e11); /* of e = s/E + plastic */
-  mps_assert_near(x.stress[0] / (2e8 + 1e10 * plastic), 1.0, 1e-9);
-  mps_assert_near(x.history[0], plastic, 1e-9);
-  mps_material_destroy(&m);
+  NEAR(x.stress[0] / (2e8 + 1e10 * plastic), 1.0, 1e-9);
+  NEAR(x.history[0], plastic, 1e-9);
 }
 
-static void bad_arguments_are_refused(void **state) {
-  (void)state;
-  mps_material *m = hooke(0.3);
+TEST(bad_arguments_are_refused) {
+  scoped_material *m = hooke(0.3);
   mps_material_point x = point_under(m, -1e3);
   const mps_material_point first = x;
   const double still[9] = {0.0}, target[6] = {0.0}, bad[6] = {0.0, NAN};
-#define REFUSED(call, text) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
-  REFUSED(mps_material_point_control(context, NULL, &x, still, 1, target, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, NULL, &x, still, 1, target, 1.0, 1, NULL),
           "material is NULL");
-  REFUSED(mps_material_point_control(context, m, NULL, still, 1, target, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, NULL, still, 1, target, 1.0, 1, NULL),
           "point is NULL");
-  REFUSED(mps_material_point_control(context, m, &x, NULL, 1, target, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, NULL, 1, target, 1.0, 1, NULL),
           "gradient is NULL");
-  REFUSED(mps_material_point_control(context, m, &x, still, 1, NULL, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, still, 1, NULL, 1.0, 1, NULL),
           "target is NULL");
-  REFUSED(mps_material_point_control(context, m, &x, still, 64, target, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, still, 64, target, 1.0, 1, NULL),
           "controlled is 64");
-  REFUSED(mps_material_point_control(context, m, &x, still, 2, bad, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, still, 2, bad, 1.0, 1, NULL),
           "target[1] is nan");
-  REFUSED(mps_material_point_control(context, m, &x, still, 1, target, 0.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, still, 1, target, 0.0, 1, NULL),
           "duration is 0 s");
-  REFUSED(mps_material_point_control(context, m, &x, still, 1, target, 1.0, 0, NULL), "steps is 0");
+  REFUSES(mps_material_point_control(context, m, &x, still, 1, target, 1.0, 0, NULL), "steps is 0");
   x.stress[4] = INFINITY;
-  REFUSED(mps_material_point_control(context, m, &x, still, 1, target, 1.0, 1, NULL),
+  REFUSES(mps_material_point_control(context, m, &x, still, 1, target, 1.0, 1, NULL),
           "stress[4] of the point is inf");
   x.stress[4] = 0.0;
   assert_int_equal(mps_material_point_control(NULL, m, &x, still, 1, target, 1.0, 1, NULL),
                    MPS_ERROR_ARGUMENT);
   mps_material_destroy(&m);
 
-  mps_material_mohr_coulomb_def sand = mps_material_mohr_coulomb_defaults();
-  sand.young = 1e7, sand.friction = PI / 6.0;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &sand, &m));
+  DEF(material_mohr_coulomb, sand, .young = 1e7, .friction = PI / 6.0);
+  OK(mps_material_create_mohr_coulomb(context, &sand, &m));
   const double beyond[6] = {-1e3, -1e3, -3.5e3}; /* Kp = 3 */
-  mps_assert_fails(context,
-                   mps_material_point_control(context, m, &x, still, 7, beyond, 1.0, 50, NULL),
-                   MPS_ERROR_NUMERIC, "no strain gives the target stress");
+  FAILS(mps_material_point_control(context, m, &x, still, 7, beyond, 1.0, 50, NULL),
+        MPS_ERROR_NUMERIC, "no strain gives the target stress");
   assert_memory_equal(&x, &first, sizeof x);
   const double within[6] = {-1e3, -1e3, -2.9e3};
-  mps_assert_ok(context,
-                mps_material_point_control(context, m, &x, still, 7, within, 1.0, 50, NULL));
-  mps_assert_near(x.stress[2], -2.9e3, 1e-4);
-  mps_material_destroy(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(all_stresses_of_an_elastic_point),
-      cmocka_unit_test(a_tension_test),
-      cmocka_unit_test(bad_arguments_are_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  OK(mps_material_point_control(context, m, &x, still, 7, within, 1.0, 50, NULL));
+  NEAR(x.stress[2], -2.9e3, 1e-4);
 }

@@ -6,17 +6,13 @@
 #include "core/context/levels.h"
 #include "material/material_private.h"
 
-#include <mps/geostatic.h>
-#include <mps/soil.h>
-
 #define E 1e6
 #define NU 0.3
 
 /* ---- descriptors ----------------------------------------------------------------------------- */
 
-static void each_kind_has_its_descriptor(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(each_kind_has_its_descriptor) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const int32_t levels[] = {MPSI_ALL_LEVELS(MPSI_LEVEL_VALUE, , )};
   for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
     const mpsi_law_type *type = &mpsi_law_types[kind];
@@ -33,7 +29,6 @@ static void each_kind_has_its_descriptor(void **state) {
         if (table) assert_non_null(table->apply[kind][geometry]);
       }
   }
-  mps_context_destroy(&context);
 }
 
 /* ---- a user's law in place of a built-in one ------------------------------------------------- */
@@ -68,27 +63,24 @@ enum { BUILT_IN, USER, UMAT, UNSTATED, WAYS };
 static mps_material *make(mps_context *context, int way, hooke *law) {
   mps_material *built_in = NULL, *out = NULL;
   mps_moduli m;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, NU, &built_in));
-  mps_assert_ok(context, mps_material_get_moduli(built_in, 1.0, &m));
+  OK(mps_material_create_linear_elastic(context, E, NU, &built_in));
+  OK(mps_material_get_moduli(built_in, 1.0, &m));
   *law = (hooke){m.shear, m.bulk, m.lambda};
   if (way == BUILT_IN) return built_in;
   mps_material_destroy(&built_in);
   if (way == UMAT) {
     const double props[] = {m.shear, m.lambda};
-    mps_material_umat_def def = mps_material_umat_defaults();
-    def.umat = by_umat;
-    def.props = props, def.props_count = 2;
-    def.bulk_modulus = m.bulk, def.shear_modulus = m.shear;
-    mps_assert_ok(context, mps_material_create_umat(context, &def, &out));
+    DEF(material_umat, def, .umat = by_umat, .props = props, .props_count = 2,
+        .bulk_modulus = m.bulk, .shear_modulus = m.shear);
+    OK(mps_material_create_umat(context, &def, &out));
     return out;
   }
-  mps_material_user_def def = mps_material_user_defaults();
-  def.update = by_user, def.user = law;
+  DEF(material_user, def, .update = by_user, .user = law);
   if (way == USER)
     def.bulk_modulus = m.bulk, def.shear_modulus = m.shear;
   else
     def.wave_modulus = m.wave;
-  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
+  OK(mps_material_create_user(context, &def, &out));
   return out;
 }
 
@@ -102,24 +94,23 @@ typedef struct result {
 static void throw_block(mps_context *context, int way, result *out) {
   const double spacing = 1.0 / 64.0;
   hooke law;
-  mpm_scene s = mpm_scene_begin_in(context, 2, spacing, 0.0, 0.0, E);
+  scoped_mpm_scene s = mpm_scene_begin_in(context, 2, spacing, 0.0, 0.0, E);
   mps_material_destroy(&s.material);
   s.material = make(context, way, &law);
   mpm_scene_box(&s, 0.25, 0.25, 0.5, 0.5);
   const double down[] = {0.4, -3.0}, none[4] = {0.0};
   mpm_scene_affine(&s, down, none);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 2.0 * spacing;
+  DEF(mpm, def, .cell = 2.0 * spacing);
   def.upper[0] = def.upper[1] = 1.0;
   def.lower[0] = def.lower[1] = -0.5;
   mpm_scene_solve(&s, &def);
   const mps_body_def ground = mps_body_defaults();
   const double wedge[] = {0.0, 0.0, 0.75, 0.0, 0.75, 0.22, 0.0, 0.25};
   mps_body *body = NULL;
-  mps_assert_ok(context, mps_body_create_polygon(context, &ground, 4, wedge, &body));
+  OK(mps_body_create_polygon(context, &ground, 4, wedge, &body));
   mpm_scene_contact(&s, body, 0.4);
   mps_body_destroy(&body);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 120));
+  OK(mps_mpm_step(s.mpm, 120));
   mps_view id = mpm_scene_view(&s, "id");
   mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
   mps_view stress = mpm_scene_view(&s, "stress");
@@ -133,13 +124,11 @@ static void throw_block(mps_context *context, int way, result *out) {
     for (int c = 0; c < 4; c++) out->s[i][c] = *mps_view_f64(&stress, k, c);
   }
   out->time = mps_mpm_time(s.mpm);
-  mpm_scene_end(&s);
 }
 
-static void a_users_law_equals_the_built_in_one(void **state) {
-  (void)state;
+TEST(a_users_law_equals_the_built_in_one) {
   static result results[WAYS];
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int way = 0; way < WAYS; way++) throw_block(context, way, &results[way]);
   double most = 0.0;
   for (int k = 0; k < COUNT; k++) most = fmax(most, -results[0].s[k][1]);
@@ -148,55 +137,36 @@ static void a_users_law_equals_the_built_in_one(void **state) {
   assert_memory_equal(&results[UMAT], &results[BUILT_IN], sizeof(result));
   /* without the moduli nu is 1/4, and other sizes are in contact */
   assert_memory_not_equal(&results[UNSTATED], &results[BUILT_IN], sizeof(result));
-  mps_context_destroy(&context);
 }
 
-static void moduli_of_users_laws_are_checked(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  static const struct {
-    double bulk, shear, wave;
-    const char *text;
-  } wrong[] = {{NAN, NAN, 0.0, "wave modulus is 0"},
-               {NAN, NAN, NAN, "wave modulus is nan"},
-               {0.0, 0.0, 1e6, "bulk modulus is 0"},
-               {1e6, 3e5, 0.0, "wave modulus is 0"},
-               {0.0, 1e5, 1e6, "bulk modulus is 0"},
-               {-1.0, 0.0, 1e6, "bulk modulus is -1"},
-               {NAN, 1e5, 0.0, "bulk modulus is nan"},
-               {1e6, -2.0, 0.0, "shear modulus is -2"},
-               {1e6, 3e5, 1.3e6, "at least K + 4G/3 of its moduli, 1.4e+06 Pa"},
-               {1e6, 3e5, INFINITY, "wave modulus is inf"}};
+TEST(moduli_of_users_laws_are_checked) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_material_user_def def = mps_material_user_defaults();
   mps_material_umat_def umat = mps_material_umat_defaults();
-  mps_material *material = NULL;
+  scoped_material *material = NULL;
   mps_moduli m;
   def.update = by_user, umat.umat = by_umat;
-  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
-    def.bulk_modulus = umat.bulk_modulus = wrong[k].bulk;
-    def.shear_modulus = umat.shear_modulus = wrong[k].shear;
-    def.wave_modulus = umat.wave_modulus = wrong[k].wave;
-    mps_assert_fails(context, mps_material_create_user(context, &def, &material),
-                     MPS_ERROR_ARGUMENT, wrong[k].text);
-    mps_assert_fails(context, mps_material_create_umat(context, &umat, &material),
-                     MPS_ERROR_ARGUMENT, wrong[k].text);
-  }
+  def.bulk_modulus = umat.bulk_modulus = 1e6;
+  def.shear_modulus = umat.shear_modulus = 3e5;
+  def.wave_modulus = umat.wave_modulus = 1.3e6;
+  REFUSES(mps_material_create_user(context, &def, &material),
+          "at least K + 4G/3 of its moduli, 1.4e+06 Pa");
+  REFUSES(mps_material_create_umat(context, &umat, &material),
+          "at least K + 4G/3 of its moduli, 1.4e+06 Pa");
   def.bulk_modulus = 1e6, def.shear_modulus = 3e5, def.wave_modulus = NAN;
-  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
-  mps_assert_near(mps_material_wave_modulus(material), 1.4e6, 1e-8);
-  mps_assert_ok(context, mps_material_get_moduli(material, 2e3, &m));
-  mps_assert_near(m.shear, 3e5, 0.0);
+  OK(mps_material_create_user(context, &def, &material));
+  NEAR(mps_material_wave_modulus(material), 1.4e6, 1e-8);
+  OK(mps_material_get_moduli(material, 2e3, &m));
+  NEAR(m.shear, 3e5, 0.0);
   mps_material_destroy(&material);
   def.wave_modulus = 5e6; /* of a stiffer state, for the step */
-  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
-  mps_assert_near(mps_material_wave_modulus(material), 5e6, 0.0);
-  mps_assert_near(mpsi_material_rest_modulus(material), 1.4e6, 1e-8);
+  OK(mps_material_create_user(context, &def, &material));
+  NEAR(mps_material_wave_modulus(material), 5e6, 0.0);
+  NEAR(mpsi_material_rest_modulus(material), 1.4e6, 1e-8);
   mps_material_destroy(&material);
   def.bulk_modulus = def.shear_modulus = NAN;
-  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
+  OK(mps_material_create_user(context, &def, &material));
   assert_int_equal(mps_material_get_moduli(material, 2e3, &m), MPS_ERROR_UNSUPPORTED);
-  mps_material_destroy(&material);
-  mps_context_destroy(&context);
 }
 
 /* ---- constants ------------------------------------------------------------------------------ */
@@ -215,49 +185,42 @@ static void expect_other_constants(const mps_material *a, mps_material **b, int3
   mps_material_destroy(b);
 }
 
-static void constants_tell_materials_apart(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(constants_tell_materials_apart) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_material *a = NULL, *b = NULL;
-  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
-  mises.young = E, mises.yield_stress = 1e3;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &a));
-  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
+  DEF(material_von_mises, mises, .young = E, .yield_stress = 1e3);
+  OK(mps_material_create_von_mises(context, &mises, &a));
+  OK(mps_material_create_von_mises(context, &mises, &b));
   expect_other_constants(a, &b, 0);
   mises.hardening = 10.0;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
+  OK(mps_material_create_von_mises(context, &mises, &b));
   expect_other_constants(a, &b, 1);
   mps_material_destroy(&a);
   double props[] = {1.0, 2.0};
-  mps_material_umat_def umat = mps_material_umat_defaults();
-  umat.umat = by_umat, umat.wave_modulus = E;
-  umat.props = props, umat.props_count = 2;
-  mps_assert_ok(context, mps_material_create_umat(context, &umat, &a));
-  mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
+  DEF(material_umat, umat, .umat = by_umat, .wave_modulus = E, .props = props, .props_count = 2);
+  OK(mps_material_create_umat(context, &umat, &a));
+  OK(mps_material_create_umat(context, &umat, &b));
   expect_other_constants(a, &b, 0);
   props[1] = 3.0, umat.temperature = 20.0;
-  mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
+  OK(mps_material_create_umat(context, &umat, &b));
   expect_other_constants(a, &b, 1); /* one hash of them */
   mps_material_destroy(&a);
-  mps_material_small_strain_def soil = mps_material_small_strain_defaults();
-  soil.shear_modulus = 1e7, soil.reference_strain = 1e-4;
-  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &a));
-  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &b));
+  DEF(material_small_strain, soil, .shear_modulus = 1e7, .reference_strain = 1e-4);
+  OK(mps_material_create_small_strain(context, &soil, &a));
+  OK(mps_material_create_small_strain(context, &soil, &b));
   expect_other_constants(a, &b, 0);
   soil.reference_strain = 2e-4; /* the layers' strengths, and not their moduli */
-  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &b));
+  OK(mps_material_create_small_strain(context, &soil, &b));
   expect_other_constants(a, &b, 1);
   mps_material_destroy(&a);
-  mps_material_cyclic_sand_def sand = mps_material_cyclic_sand_defaults();
-  sand.young = 1e7, sand.friction = 0.6, sand.relative_density = 0.5;
-  mps_assert_ok(context, mps_material_create_cyclic_sand(context, &sand, &a));
-  mps_assert_ok(context, mps_material_create_cyclic_sand(context, &sand, &b));
+  DEF(material_cyclic_sand, sand, .young = 1e7, .friction = 0.6, .relative_density = 0.5);
+  OK(mps_material_create_cyclic_sand(context, &sand, &a));
+  OK(mps_material_create_cyclic_sand(context, &sand, &b));
   expect_other_constants(a, &b, 0);
   sand.relative_density = 0.6; /* C1 and C2 */
-  mps_assert_ok(context, mps_material_create_cyclic_sand(context, &sand, &b));
+  OK(mps_material_create_cyclic_sand(context, &sand, &b));
   expect_other_constants(a, &b, 2);
   mps_material_destroy(&a);
-  mps_context_destroy(&context);
 }
 
 /* ---- values that are not finite -------------------------------------------------------------- */
@@ -283,18 +246,14 @@ static mps_status spoiling(void *user, const mps_material_block *b) {
 
 static mps_material *make_spoiling(mps_context *context, spoil *s) {
   static const char *const names[] = {"age"};
-  mps_material_user_def def = mps_material_user_defaults();
+  DEF(material_user, def, .update = spoiling, .user = s, .name = "mud", .history_count = 1,
+      .history = names, .bulk_modulus = 1e5, .shear_modulus = 1e4);
   mps_material *out = NULL;
-  def.update = spoiling, def.user = s;
-  def.name = "mud";
-  def.history_count = 1, def.history = names;
-  def.bulk_modulus = 1e5, def.shear_modulus = 1e4;
-  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
+  OK(mps_material_create_user(context, &def, &out));
   return out;
 }
 
-static void a_law_that_yields_no_number_is_an_error(void **state) {
-  (void)state;
+TEST(a_law_that_yields_no_number_is_an_error) {
   static const spoil spoils[] = {
       {17, 0, NAN, 0.0}, {23, 3, INFINITY, 0.0}, {5, 4, -INFINITY, 0.0}, {5, 5, 0.0, 0.0}};
   static const char *const texts[] = {
@@ -304,15 +263,14 @@ static void a_law_that_yields_no_number_is_an_error(void **state) {
       "the law 'mud' has refused particle 5: volume_ratio is 0, must be finite and > 0"};
   for (int k = 0; k < 4; k++)
     for (int32_t volumetric = 0; volumetric <= MPS_MPM_VOLUMETRIC_NODES; volumetric++) {
-      mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+      scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
       spoil s = spoils[k];
-      mpm_scene scene = mpm_scene_begin_in(context, 2, 0.01, 0.0, 0.0, E);
+      scoped_mpm_scene scene = mpm_scene_begin_in(context, 2, 0.01, 0.0, 0.0, E);
       mps_material_destroy(&scene.material);
       s.from = 0.02;
       scene.material = make_spoiling(context, &s);
       mpm_scene_box(&scene, 0.1, 0.1, 0.2, 0.2);
-      mps_mpm_def def = mps_mpm_defaults();
-      def.cell = 0.02, def.volumetric = volumetric;
+      DEF(mpm, def, .cell = 0.02, .volumetric = volumetric);
       mpm_scene_solve(&scene, &def);
       mps_status status = MPS_OK;
       double before[100][4], time = 0.0;
@@ -323,47 +281,39 @@ static void a_law_that_yields_no_number_is_an_error(void **state) {
         time = mps_mpm_time(scene.mpm);
         status = mps_mpm_step(scene.mpm, 1);
       }
-      mps_assert_fails(context, status, MPS_ERROR_NUMERIC, texts[k]);
-      mps_assert_near(mps_mpm_time(scene.mpm), time, 0.0);
+      FAILS(status, MPS_ERROR_NUMERIC, texts[k]);
+      NEAR(mps_mpm_time(scene.mpm), time, 0.0);
       mps_view stress = mpm_scene_view(&scene, "stress");
       for (int64_t p = 0; p < 100; p++)
         for (int c = 0; c < 4; c++) assert_true(*mps_view_f64(&stress, p, c) == before[p][c]);
-      mpm_scene_end(&scene);
-      mps_context_destroy(&context);
     }
 }
 
 /* A fluid whose volume vanishes or turns over in a step, and a user's law that fails, at a point.
  */
-static void a_point_keeps_its_state(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_material_newtonian_def water = mps_material_newtonian_defaults();
+TEST(a_point_keeps_its_state) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  DEF(material_newtonian, water, .bulk_modulus = 2e6);
   spoil s = {-1, 2, NAN, 0.5};
-  mps_material *fluid = NULL, *mud = make_spoiling(context, &s);
-  water.bulk_modulus = 2e6;
-  mps_assert_ok(context, mps_material_create_newtonian(context, &water, &fluid));
+  scoped_material *fluid = NULL, *mud = make_spoiling(context, &s);
+  OK(mps_material_create_newtonian(context, &water, &fluid));
   mps_material_point point, before;
-  mps_assert_ok(context, mps_material_point_init(context, fluid, &point));
+  OK(mps_material_point_init(context, fluid, &point));
   before = point;
   const double vanish[9] = {-1.0}, turn[9] = {-3.0};
-  mps_assert_fails(context, mps_material_point_drive(context, fluid, &point, vanish, 1.0, 1),
-                   MPS_ERROR_NUMERIC,
-                   "the law 'newtonian' has refused a block of particles: volume_ratio is 0");
+  FAILS(mps_material_point_drive(context, fluid, &point, vanish, 1.0, 1), MPS_ERROR_NUMERIC,
+        "the law 'newtonian' has refused a block of particles: volume_ratio is 0");
   assert_memory_equal(&point, &before, sizeof point);
-  mps_assert_fails(context, mps_material_point_drive(context, fluid, &point, turn, 1.0, 1),
-                   MPS_ERROR_NUMERIC, "volume_ratio is -2");
+  FAILS(mps_material_point_drive(context, fluid, &point, turn, 1.0, 1), MPS_ERROR_NUMERIC,
+        "volume_ratio is -2");
   assert_memory_equal(&point, &before, sizeof point);
-  mps_assert_ok(context, mps_material_point_drive(context, fluid, &point, vanish, 0.5, 10));
-  mps_assert_ok(context, mps_material_point_init(context, mud, &point));
+  OK(mps_material_point_drive(context, fluid, &point, vanish, 0.5, 10));
+  OK(mps_material_point_init(context, mud, &point));
   before = point;
   const double rest[9] = {0.0};
-  mps_assert_fails(context, mps_material_point_drive(context, mud, &point, rest, 1.0, 10),
-                   MPS_ERROR_NUMERIC, "stress[2] is nan, must be finite");
+  FAILS(mps_material_point_drive(context, mud, &point, rest, 1.0, 10), MPS_ERROR_NUMERIC,
+        "stress[2] is nan, must be finite");
   assert_memory_equal(&point, &before, sizeof point);
-  mps_material_destroy(&fluid);
-  mps_material_destroy(&mud);
-  mps_context_destroy(&context);
 }
 
 /* ---- statuses that are none ------------------------------------------------------------------ */
@@ -377,39 +327,19 @@ static mps_status odd_level(void *user, const double *x, double *level) {
   return (mps_status) * (const int *)user;
 }
 
-static void a_status_that_is_none_is_an_argument(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_status_that_is_none_is_an_argument) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const int odd[] = {-7, 4711};
   static const char *const texts[] = {"it returned status -7 (unknown status code)",
                                       "it returned status 4711 (unknown status code)"};
-  mpm_scene s = mpm_scene_begin_in(context, 2, 0.1, 0.0, 0.0, E);
+  scoped_mpm_scene s = mpm_scene_begin_in(context, 2, 0.1, 0.0, 0.0, E);
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 1.0);
   const mps_geostatic_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2e3};
   for (int k = 0; k < 2; k++) {
     int status = odd[k];
-    mps_assert_fails(context, mps_particles_set_stress(s.particles, odd_stress, &status),
-                     MPS_ERROR_ARGUMENT, texts[k]);
-    mps_geostatic_def def = mps_geostatic_defaults();
-    def.layers = &layer, def.layer_count = 1;
-    def.gravity = 10.0;
-    def.surface_level = odd_level, def.user = &status;
-    mps_assert_fails(context, mps_particles_set_geostatic(s.particles, &def), MPS_ERROR_ARGUMENT,
-                     texts[k]);
+    REFUSES(mps_particles_set_stress(s.particles, odd_stress, &status), texts[k]);
+    DEF(geostatic, def, .layers = &layer, .layer_count = 1, .gravity = 10.0,
+        .surface_level = odd_level, .user = &status);
+    REFUSES(mps_particles_set_geostatic(s.particles, &def), texts[k]);
   }
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_kind_has_its_descriptor),
-      cmocka_unit_test(a_users_law_equals_the_built_in_one),
-      cmocka_unit_test(moduli_of_users_laws_are_checked),
-      cmocka_unit_test(constants_tell_materials_apart),
-      cmocka_unit_test(a_law_that_yields_no_number_is_an_error),
-      cmocka_unit_test(a_point_keeps_its_state),
-      cmocka_unit_test(a_status_that_is_none_is_an_argument),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,28 +83,23 @@ UMAT(mises_umat) {
 static const double constants[4] = {E, NU, 2e4, 1e6};
 
 static mps_material_umat_def umat_of(mps_material_umat_fn call, int32_t statev_count) {
-  mps_material_umat_def def = mps_material_umat_defaults();
-  def.umat = call;
-  def.statev_count = statev_count;
-  def.props = constants;
-  def.props_count = 4;
-  def.wave_modulus = E * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU));
+  DEF(material_umat, def, .umat = call, .statev_count = statev_count, .props = constants,
+      .props_count = 4, .wave_modulus = E * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU)));
   return def;
 }
 
 static mps_material *make_umat(mps_material_umat_fn call, int32_t statev_count) {
   const mps_material_umat_def def = umat_of(call, statev_count);
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
+  OK(mps_material_create_umat(context, &def, &material));
   return material;
 }
 
 static mps_material *make_own(bool mises) {
-  mps_material_von_mises_def def = mps_material_von_mises_defaults();
+  DEF(material_von_mises, def, .young = E, .poisson = NU, .yield_stress = 2e4, .hardening = 1e6);
   mps_material *material = NULL;
-  def.young = E, def.poisson = NU, def.yield_stress = 2e4, def.hardening = 1e6;
-  mps_assert_ok(context, mises ? mps_material_create_von_mises(context, &def, &material)
-                               : mps_material_create_linear_elastic(context, E, NU, &material));
+  OK(mises ? mps_material_create_von_mises(context, &def, &material)
+           : mps_material_create_linear_elastic(context, E, NU, &material));
   return material;
 }
 
@@ -142,51 +137,43 @@ static mps_material_block block_of(state *s, const mps_material *material, int k
   return block;
 }
 
-static void umats_agree_with_the_librarys_laws(void **unused) {
-  (void)unused;
+TEST(umats_agree_with_the_librarys_laws) {
   for (int mises = 0; mises < 2; mises++)
     for (int kind = 0; kind < 3; kind++) {
-      mps_material *umat = make_umat(mises ? mises_umat : elastic_umat, mises);
-      mps_material *own = make_own(mises);
+      scoped_material *umat = make_umat(mises ? mises_umat : elastic_umat, mises);
+      scoped_material *own = make_own(mises);
       static state a, b;
       const mps_material_block x = block_of(&a, umat, kind), y = block_of(&b, own, kind);
       int plastic = 0;
       for (int step = 0; step < 50; step++) {
-        mps_assert_ok(context, mps_material_update(context, umat, &x));
-        mps_assert_ok(context, mps_material_update(context, own, &y));
+        OK(mps_material_update(context, umat, &x));
+        OK(mps_material_update(context, own, &y));
       }
       for (int k = 0; k < COUNT; k++) {
-        for (int c = 0; c < 2 * x.dim; c++)
-          mps_assert_near(a.stress[c][k], b.stress[c][k], 1e-12 * 1e6);
-        mps_assert_near(a.volume[k], b.volume[k], 1e-14);
-        if (mises) mps_assert_near(a.history[0][k], b.history[0][k], 1e-13);
+        for (int c = 0; c < 2 * x.dim; c++) NEAR(a.stress[c][k], b.stress[c][k], 1e-12 * 1e6);
+        NEAR(a.volume[k], b.volume[k], 1e-14);
+        if (mises) NEAR(a.history[0][k], b.history[0][k], 1e-13);
         plastic += mises && b.history[0][k] > 0.0;
       }
       assert_true(!mises || plastic > COUNT / 2);
-      mps_material_destroy(&umat);
-      mps_material_destroy(&own);
     }
 }
 
 /* STRAN turns with the particle: a strained body that is then turned has the turned stress. */
-static void total_strain_turns_with_the_particle(void **unused) {
-  (void)unused;
-  mps_material *umat = make_umat(total_umat, 0), *own = make_own(false);
+TEST(total_strain_turns_with_the_particle) {
+  scoped_material *umat = make_umat(total_umat, 0), *own = make_own(false);
   mps_material_point a = point_under(umat, 0.0), b = point_under(own, 0.0);
   const double strain[9] = {1e-3, 4e-4, 0, 2e-4, -5e-4, 0, 1e-4, 0, 2e-4};
   const double spin[9] = {0, -0.8, 0.3, 0.8, 0, 0.5, -0.3, -0.5, 0};
   for (int turn = 0; turn < 2; turn++) {
-    mps_assert_ok(context, mps_material_point_drive(context, umat, &a, turn ? spin : strain, 1, 9));
-    mps_assert_ok(context, mps_material_point_drive(context, own, &b, turn ? spin : strain, 1, 9));
-    for (int c = 0; c < 6; c++) mps_assert_near(a.stress[c], b.stress[c], 1e-12 * 1e4);
+    OK(mps_material_point_drive(context, umat, &a, turn ? spin : strain, 1, 9));
+    OK(mps_material_point_drive(context, own, &b, turn ? spin : strain, 1, 9));
+    for (int c = 0; c < 6; c++) NEAR(a.stress[c], b.stress[c], 1e-12 * 1e4);
   }
-  mps_material_destroy(&umat);
-  mps_material_destroy(&own);
 }
 
 /* A bar that strikes a wall, 100 steps of the solver: the same motion, and history in fields. */
-static void a_umat_works_in_the_solver(void **unused) {
-  (void)unused;
+TEST(a_umat_works_in_the_solver) {
   mps_view x[2];
   mpm_scene s[2];
   for (int own = 0; own < 2; own++) {
@@ -196,12 +183,11 @@ static void a_umat_works_in_the_solver(void **unused) {
     s[own].material = own ? make_own(true) : make_umat(mises_umat, 1);
     mpm_scene_box(&s[own], 0.4, 0.0, 0.8, 1.0);
     mpm_scene_affine(&s[own], v0, still);
-    mps_mpm_def def = mps_mpm_defaults();
-    def.cell = 0.1;
+    DEF(mpm, def, .cell = 0.1);
     def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* by law von Mises takes means */
     def.lower[1] = 0.0;
     mpm_scene_solve(&s[own], &def);
-    mps_assert_ok(context, mps_mpm_step(s[own].mpm, 100));
+    OK(mps_mpm_step(s[own].mpm, 100));
     x[own] = mpm_scene_view(&s[own], "position");
   }
   mps_view strain = mpm_scene_view(&s[0], "umat.statev_1"),
@@ -210,11 +196,10 @@ static void a_umat_works_in_the_solver(void **unused) {
            own = mpm_scene_view(&s[1], "plastic_strain");
   double largest = 0.0;
   for (int64_t k = 0; k < x[0].shape[0]; k++) {
-    for (int c = 0; c < 2; c++)
-      mps_assert_near(*mps_view_f64(&x[0], k, c), *mps_view_f64(&x[1], k, c), 1e-11);
-    mps_assert_near(*mps_view_f64(&strain, k, 0), *mps_view_f64(&own, k, 0), 1e-10);
-    mps_assert_near(*mps_view_f64(&steps, k, 0), 100.0, 0.0);
-    mps_assert_near(*mps_view_f64(&time, k, 0), mps_mpm_time(s[0].mpm), 1e-12);
+    for (int c = 0; c < 2; c++) NEAR(*mps_view_f64(&x[0], k, c), *mps_view_f64(&x[1], k, c), 1e-11);
+    NEAR(*mps_view_f64(&strain, k, 0), *mps_view_f64(&own, k, 0), 1e-10);
+    NEAR(*mps_view_f64(&steps, k, 0), 100.0, 0.0);
+    NEAR(*mps_view_f64(&time, k, 0), mps_mpm_time(s[0].mpm), 1e-12);
     largest = fmax(largest, *mps_view_f64(&strain, k, 0));
   }
   assert_true(largest > 1e-3);
@@ -259,15 +244,14 @@ static void multiply(const double *a, const double *b, bool transpose, double *o
     }
 }
 
-static void arguments_are_those_of_abaqus(void **unused) {
-  (void)unused;
+TEST(arguments_are_those_of_abaqus) {
   static const char *const names[] = {"void_ratio", "calls"};
   static const double initial[] = {0.7, 0.0};
   mps_material_umat_def def = umat_of(spy_umat, 2);
-  mps_material *material = NULL;
+  scoped_material *material = NULL;
   def.name = "Clay_1", def.statev_names = names, def.statev_initial = initial;
   def.needs_deformation = 1, def.length = 0.25, def.temperature = 20.0;
-  mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
+  OK(mps_material_create_umat(context, &def, &material));
   assert_string_equal(mps_material_name(material), "Clay_1");
   assert_int_equal(mps_material_history_count(material), 10);
   assert_string_equal(mps_material_history_name(material, 0), "void_ratio");
@@ -275,9 +259,9 @@ static void arguments_are_those_of_abaqus(void **unused) {
   mps_material_point point = point_under(material, -1e3);
   point.stress[0] = 5e3, point.stress[3] = 2e3, point.stress[4] = -1e3, point.stress[5] = 700.0;
   const double gradient[9] = {0.1, 0.5, -0.3, -0.2, 0.05, 0.4, 0.6, -0.1, -0.2};
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 0.5, 1));
+  OK(mps_material_point_drive(context, material, &point, gradient, 0.5, 1));
   const mps_material_point before = point;
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 0.25, 1));
+  OK(mps_material_point_drive(context, material, &point, gradient, 0.25, 1));
   /* STRESS comes turned by DROT */
   const double *s = before.stress;
   const double old[9] = {s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2]};
@@ -286,21 +270,20 @@ static void arguments_are_those_of_abaqus(void **unused) {
   multiply(half, spied.drot, true, turned);
   multiply(spied.drot, spied.drot, true, unit);
   static const int at[6] = {0, 4, 8, 3, 6, 7}; /* 11, 22, 33, 12, 13, 23 by columns */
-  for (int c = 0; c < 6; c++) mps_assert_near(spied.stress[c], turned[at[c]], 1e-11);
-  for (int c = 0; c < 9; c++) mps_assert_near(unit[c], c % 4 == 0, 1e-15);
+  for (int c = 0; c < 6; c++) NEAR(spied.stress[c], turned[at[c]], 1e-11);
+  for (int c = 0; c < 9; c++) NEAR(unit[c], c % 4 == 0, 1e-15);
   /* DFGRD1 = (1 + dt L) DFGRD0, which are those of the point */
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       step[i + 3 * j] = (i == j) + 0.25 * gradient[3 * i + j];
-      mps_assert_near(spied.f0[i + 3 * j], before.deformation[3 * i + j], 1e-15);
-      mps_assert_near(spied.f1[i + 3 * j], point.deformation[3 * i + j], 0.0);
+      NEAR(spied.f0[i + 3 * j], before.deformation[3 * i + j], 1e-15);
+      NEAR(spied.f1[i + 3 * j], point.deformation[3 * i + j], 0.0);
     }
   multiply(step, spied.f0, false, now);
-  for (int c = 0; c < 9; c++) mps_assert_near(spied.f1[c], now[c], 1e-15);
+  for (int c = 0; c < 9; c++) NEAR(spied.f1[c], now[c], 1e-15);
   const double dstran[6] = {0.1, 0.05, -0.2, 0.3, 0.3, 0.3}; /* shear: sums of both */
-  for (int c = 0; c < 6; c++) mps_assert_near(spied.dstran[c], 0.25 * dstran[c], 1e-16);
-  mps_assert_near(spied.stran[0] + spied.stran[1] + spied.stran[2], 0.5 * (0.1 + 0.05 - 0.2),
-                  1e-16);
+  for (int c = 0; c < 6; c++) NEAR(spied.dstran[c], 0.25 * dstran[c], 1e-16);
+  NEAR(spied.stran[0] + spied.stran[1] + spied.stran[2], 0.5 * (0.1 + 0.05 - 0.2), 1e-16);
   assert_true(spied.time[0] == 0.5 && spied.time[1] == 0.5 && spied.dtime == 0.25);
   assert_true(spied.temp == 20.0 && spied.celent == 0.25);
   assert_true(spied.ndi == 3 && spied.nshr == 3 && spied.ntens == 6);
@@ -314,81 +297,46 @@ static void arguments_are_those_of_abaqus(void **unused) {
     if (c == 8 || block.gradient[c]) deformed.deformation[c] = flat.history[20 + c];
   for (int c = 0; c < 9; c += 4)
     for (int k = 0; k < COUNT; k++) flat.history[20 + c][k] = 1.0; /* no strain yet */
-  mps_assert_ok(context, mps_material_update(context, material, &deformed));
+  OK(mps_material_update(context, material, &deformed));
   assert_true(spied.ndi == 3 && spied.nshr == 1 && spied.ntens == 4);
-  mps_material_destroy(&material);
 }
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-static void a_umat_may_refuse(void **unused) {
-  (void)unused;
+TEST(a_umat_may_refuse) {
   for (int what = 1; what <= 2; what++) {
     const double props[] = {what}, gradient[9] = {1.0};
     mps_material_umat_def def = umat_of(spy_umat, 2);
-    mps_material *material = NULL;
+    scoped_material *material = NULL;
     def.props = props, def.props_count = 1;
-    mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
+    OK(mps_material_create_umat(context, &def, &material));
     mps_material_point point = point_under(material, 0.0), before = point;
-    mps_assert_fails(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1),
-                     MPS_ERROR_NUMERIC,
-                     what == 1 ? "smaller step (PNEWDT)" : "STRESS or STATEV is not finite");
+    FAILS(mps_material_point_drive(context, material, &point, gradient, 1.0, 1), MPS_ERROR_NUMERIC,
+          what == 1 ? "smaller step (PNEWDT)" : "STRESS or STATEV is not finite");
     assert_memory_equal(&point, &before, sizeof point);
-    mps_material_destroy(&material);
   }
 }
 
-static void bad_definitions_are_refused(void **unused) {
-  (void)unused;
-  static const double bad[] = {1.0, NAN};
+TEST(bad_definitions_are_refused) {
   static const char *const twice[] = {"a", "umat_time"};
 #define REFUSED(member, value, text)                                                               \
   do {                                                                                             \
     mps_material_umat_def def = umat_of(spy_umat, 2);                                              \
     mps_material *m = NULL;                                                                        \
     def.member = value;                                                                            \
-    mps_assert_fails(context, mps_material_create_umat(context, &def, &m), MPS_ERROR_ARGUMENT,     \
-                     text);                                                                        \
+    REFUSES(mps_material_create_umat(context, &def, &m), text);                                    \
     assert_null(m);                                                                                \
   } while (0)
-  REFUSED(umat, NULL, "umat is NULL");
-  REFUSED(statev_count, 1001, "statev_count is 1001, must be 0..1000");
-  REFUSED(statev_count, -1, "statev_count is -1");
-  REFUSED(props_count, -1, "props_count is -1, must be >= 0");
-  REFUSED(props, NULL, "0 where props is NULL");
-  REFUSED(props, bad, "props[1] is nan");
-  REFUSED(length, 0.0, "length is 0 m");
-  REFUSED(temperature, INFINITY, "temperature is inf");
-  REFUSED(keeps_strain, 2, "keeps_strain is 2");
   REFUSED(statev_names, twice, "are both \"umat_time\"");
-  REFUSED(statev_initial, bad, "history_initial[1] is nan");
-  REFUSED(wave_modulus, 0.0, "wave modulus is 0 Pa");
   REFUSED(name, "a b", "name is \"a b\"");
 }
 
 static mps_status make_and_destroy(mps_context *own, int what) {
   const mps_material_umat_def def = umat_of(mises_umat, what);
-  mps_material *material = NULL;
+  scoped_material *material = NULL;
   const mps_status status = mps_material_create_umat(own, &def, &material);
   assert_true((material != NULL) == (status == MPS_OK));
-  mps_material_destroy(&material);
   return status;
 }
 
-static void refused_memory_leaves_nothing_behind(void **unused) {
-  (void)unused;
-  test_allocator_sweep(make_and_destroy, 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(umats_agree_with_the_librarys_laws),
-      cmocka_unit_test(total_strain_turns_with_the_particle),
-      cmocka_unit_test(a_umat_works_in_the_solver),
-      cmocka_unit_test(arguments_are_those_of_abaqus),
-      cmocka_unit_test(a_umat_may_refuse),
-      cmocka_unit_test(bad_definitions_are_refused),
-      cmocka_unit_test(refused_memory_leaves_nothing_behind),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
-}
+TEST(refused_memory_leaves_nothing_behind) { test_allocator_sweep(make_and_destroy, 1); }

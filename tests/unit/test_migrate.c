@@ -35,15 +35,13 @@ static void check_curve(int32_t dim, int32_t side) {
   free(seen);
 }
 
-static void test_curve_is_a_walk(void **state) {
-  (void)state;
+TEST(test_curve_is_a_walk) {
   check_curve(2, 256);
   check_curve(3, 32);
 }
 
 /* The same at places drawn from the whole curve, its ends among them. */
-static void test_curve_far_out(void **state) {
-  (void)state;
+TEST(test_curve_far_out) {
   uint64_t h = 1;
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int k = 0; k < 2000; k++) {
@@ -175,8 +173,7 @@ static void check_cut(const scene *s, int32_t size) {
   for (int32_t r = 0; r < size; r++) assert_true(part[r] <= all / size + heaviest + 1);
 }
 
-static void test_cut(void **state) {
-  (void)state;
+TEST(test_cut) {
   static const struct {
     int32_t ranks;
     int64_t blocks, most;
@@ -195,8 +192,7 @@ static void test_cut(void **state) {
 }
 
 /* Equal blocks in equal numbers: equal parts. */
-static void test_cut_of_equal_blocks(void **state) {
-  (void)state;
+TEST(test_cut_of_equal_blocks) {
   scene *s = make_blocks(12, 1);
   run_team(s, 4, run_cut);
   for (int32_t r = 0; r < 4; r++)
@@ -206,8 +202,7 @@ static void test_cut_of_equal_blocks(void **state) {
 }
 
 /* No blocks at all, and blocks that weigh nothing: every key has an owner all the same. */
-static void test_cut_of_nothing(void **state) {
-  (void)state;
+TEST(test_cut_of_nothing) {
   for (int64_t blocks = 0; blocks <= 10; blocks += 10) {
     scene *s = make_blocks(blocks, 1);
     for (int64_t b = 0; b < blocks; b++) s->weight[b] = 0;
@@ -221,8 +216,7 @@ static void test_cut_of_nothing(void **state) {
   }
 }
 
-static void test_cut_refuses(void **state) {
-  (void)state;
+TEST(test_cut_refuses) {
   static const char *const says[] = {"rank 1: key 0 of the curve is", "rank 1: weight 0 is -5"};
   for (int what = 3; what <= 4; what++) {
     scene *s = make_blocks(20, 5);
@@ -296,8 +290,7 @@ static void run_migrate(void *user, team *t, int32_t rank) {
   end_rank(f, domain, own);
 }
 
-static void test_migration(void **state) {
-  (void)state;
+TEST(test_migration) {
   for (int32_t size = 1; size <= 16; size += size < 4 ? 1 : 6)
     for (int what = 0; what <= 1; what++) {
       scene *s = calloc(1, sizeof *s);
@@ -311,8 +304,8 @@ static void test_migration(void **state) {
           assert_int_equal(goal(s, f->id[k], size), r);
           assert_false(seen[f->id[k]]);
           seen[f->id[k]] = true;
-          mps_assert_near(f->value[k], sqrt((double)f->id[k]), 0.0);
-          mps_assert_near(f->half[k], 0.5 * (double)f->id[k], 0.0);
+          NEAR(f->value[k], sqrt((double)f->id[k]), 0.0);
+          NEAR(f->half[k], 0.5 * (double)f->id[k], 0.0);
         }
       }
       for (int64_t id = 0; id < IDS; id++) assert_true(seen[id]);
@@ -320,8 +313,7 @@ static void test_migration(void **state) {
     }
 }
 
-static void test_migration_refuses(void **state) {
-  (void)state;
+TEST(test_migration_refuses) {
   static const char *const says[] = {"for rank 4, allowed are", "the number of columns",
                                      "one is there twice"};
   static const mps_status gives[] = {MPS_ERROR_ARGUMENT, MPS_ERROR_ARGUMENT, MPS_ERROR_INTERNAL};
@@ -355,23 +347,7 @@ static void sweep(team_fn run, int call) {
   }
 }
 
-static void test_refused_memory(void **state) {
-  (void)state;
+TEST(test_refused_memory) {
   sweep(run_cut, 1);
   sweep(run_migrate, 2);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_curve_is_a_walk),
-      cmocka_unit_test(test_curve_far_out),
-      cmocka_unit_test(test_cut),
-      cmocka_unit_test(test_cut_of_equal_blocks),
-      cmocka_unit_test(test_cut_of_nothing),
-      cmocka_unit_test(test_cut_refuses),
-      cmocka_unit_test(test_migration),
-      cmocka_unit_test(test_migration_refuses),
-      cmocka_unit_test(test_refused_memory),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -7,8 +7,7 @@
 #include "test_fixture.h"
 
 static mps_mpm_def small_def(void) {
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
+  DEF(mpm, def, .cell = 0.02);
   def.lower[0] = def.lower[1] = 0.0;
   return def;
 }
@@ -16,7 +15,7 @@ static mps_mpm_def small_def(void) {
 static mpm_scene small_scene(void) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  OK(mps_particles_set(s.particles, "density", 0, 1000.0));
   return s;
 }
 
@@ -24,20 +23,18 @@ static mpm_scene small_scene(void) {
 
 /* A dt above the limit is found last of all: fields, values, order and epoch are as before, and
  * another geometry finds its own volumes. */
-static void refused_creation_changes_nothing(void **state) {
-  (void)state;
-  mpm_scene s = small_scene();
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "volume", 0));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "volume_ratio", 0));
-  mps_material *rubber = NULL;
-  mps_mpm *mpm = NULL;
-  mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e5, 0.3, &rubber));
+TEST(refused_creation_changes_nothing) {
+  scoped_mpm_scene s = small_scene();
+  OK(mps_particles_add_field(s.particles, "volume", 0));
+  OK(mps_particles_add_field(s.particles, "volume_ratio", 0));
+  scoped_material *rubber = NULL;
+  scoped_mpm *mpm = NULL;
+  OK(mps_material_create_neo_hookean(context, 1e5, 0.3, &rubber));
   const uint64_t epoch = mps_particles_epoch(s.particles);
   const int32_t fields = mps_particles_field_count(s.particles);
   mps_mpm_def def = small_def();
   def.dt = 1.0;
-  mps_assert_fails(context, mps_mpm_create(context, s.particles, rubber, &def, &mpm),
-                   MPS_ERROR_ARGUMENT, "above the Courant limit");
+  REFUSES(mps_mpm_create(context, s.particles, rubber, &def, &mpm), "above the Courant limit");
   assert_null(mpm);
   assert_int_equal(mps_particles_field_count(s.particles), fields);
   assert_int_equal(mps_particles_epoch(s.particles), epoch);
@@ -49,30 +46,23 @@ static void refused_creation_changes_nothing(void **state) {
   }
   def = small_def();
   def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, rubber, &def, &mpm));
+  OK(mps_mpm_create(context, s.particles, rubber, &def, &mpm));
   mps_totals t;
-  mps_assert_ok(context, mps_mpm_get_totals(mpm, &t));
+  OK(mps_mpm_get_totals(mpm, &t));
   const double cylinder = 3.14159265358979323846 * 0.1 * 0.1 * 0.1;
-  mps_assert_near(t.volume, cylinder, 1e-12 * cylinder);
-  mps_mpm_destroy(&mpm);
-  mps_material_destroy(&rubber);
-  mpm_scene_end(&s);
+  NEAR(t.volume, cylinder, 1e-12 * cylinder);
 }
 
 /* Density, modulus and cells that no soil has. */
-static void insane_numbers_are_refused(void **state) {
-  (void)state;
-  mpm_scene s = small_scene();
+TEST(insane_numbers_are_refused) {
+  scoped_mpm_scene s = small_scene();
   mps_mpm *mpm = NULL;
   const mps_mpm_def def = small_def();
-  mps_assert_fails(context, mps_particles_set(s.particles, "density", 0, 1e20), MPS_ERROR_ARGUMENT,
-                   "1e+20 kg/m3");
-  mps_assert_fails(context, mps_particles_set(s.particles, "velocity", 0, 1e308),
-                   MPS_ERROR_ARGUMENT, "1e+308 m/s");
+  REFUSES(mps_particles_set(s.particles, "density", 0, 1e20), "1e+20 kg/m3");
+  REFUSES(mps_particles_set(s.particles, "velocity", 0, 1e308), "1e+308 m/s");
   mpsi_particles_column(s.particles, "density", 0)[3] = 1e20; /* past the set's own check */
-  mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &mpm),
-                   MPS_ERROR_ARGUMENT, "particle 3 has density 1e+20 kg/m3");
-  mpm_scene_end(&s);
+  REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &mpm),
+          "particle 3 has density 1e+20 kg/m3");
 }
 
 /* ---- callbacks ------------------------------------------------------------------------------- */
@@ -107,58 +97,51 @@ static mps_status gives_up(void *user, mps_mpm *mpm) {
   return mps_mpm_steps(mpm) == 3 ? MPS_ERROR_IO : MPS_OK;
 }
 
-static void callbacks_may_only_ask(void **state) {
-  (void)state;
-  mpm_scene s = small_scene();
+TEST(callbacks_may_only_ask) {
+  scoped_mpm_scene s = small_scene();
   const mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
   probe p = {.mpm = s.mpm};
-  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &p.start));
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 5.5 * mps_mpm_dt(s.mpm), 1, tries_everything, &p));
+  OK(mps_mpm_snapshot(s.mpm, &p.start));
+  OK(mps_mpm_run(s.mpm, 5.5 * mps_mpm_dt(s.mpm), 1, tries_everything, &p));
   mps_snapshot_destroy(&p.start);
   assert_int_equal(p.count, 8);
   for (int k = 0; k < p.count; k++) assert_int_equal(p.seen[k], MPS_ERROR_STATE);
   assert_true(p.alive);
   assert_int_equal(mps_mpm_steps(s.mpm), 6);
-  mps_assert_ok(context, mps_mpm_set_dt(s.mpm, NAN)); /* allowed again */
-  mpm_scene_end(&s);
+  OK(mps_mpm_set_dt(s.mpm, NAN)); /* allowed again */
 }
 
-static void callbacks_that_stop_are_named(void **state) {
-  (void)state;
-  mpm_scene s = small_scene();
+TEST(callbacks_that_stop_are_named) {
+  scoped_mpm_scene s = small_scene();
   const mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
-  mps_assert_fails(context, mps_mpm_run(s.mpm, 1.0, 1, gives_up, NULL), MPS_ERROR_IO,
-                   "the callback of mps_mpm_run returned status 5");
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* the solver is whole */
-  mpm_scene_end(&s);
+  FAILS(mps_mpm_run(s.mpm, 1.0, 1, gives_up, NULL), MPS_ERROR_IO,
+        "the callback of mps_mpm_run returned status 5");
+  OK(mps_mpm_step(s.mpm, 1)); /* the solver is whole */
 }
 
 /* ---- time ------------------------------------------------------------------------------------ */
 
-static void runs_go_forwards(void **state) {
-  (void)state;
-  mpm_scene s = small_scene();
+TEST(runs_go_forwards) {
+  scoped_mpm_scene s = small_scene();
   const mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
-  mps_assert_fails(context, mps_mpm_run(s.mpm, -1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
-                   "must not be before the solver's time");
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.0, 1, NULL, NULL)); /* no step */
+  REFUSES(mps_mpm_run(s.mpm, -1.0, 1, NULL, NULL), "not before the solver's time");
+  OK(mps_mpm_run(s.mpm, 0.0, 1, NULL, NULL)); /* no step */
   assert_int_equal(mps_mpm_steps(s.mpm), 0);
   const double dt = 0.3 * mps_mpm_limit(s.mpm);
-  mps_assert_ok(context, mps_mpm_set_dt(s.mpm, dt));
-  mps_assert_fails(context, mps_mpm_set_dt(s.mpm, 0.0), MPS_ERROR_ARGUMENT, "dt is 0 s");
-  mps_assert_fails(context, mps_mpm_set_dt(s.mpm, 1.0), MPS_ERROR_ARGUMENT, "Courant limit");
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 7.5 * dt, 1, NULL, NULL));
+  OK(mps_mpm_set_dt(s.mpm, dt));
+  REFUSES(mps_mpm_set_dt(s.mpm, 0.0), "dt is 0 s");
+  REFUSES(mps_mpm_set_dt(s.mpm, 1.0), "Courant limit");
+  OK(mps_mpm_run(s.mpm, 7.5 * dt, 1, NULL, NULL));
   assert_true(mps_mpm_time(s.mpm) == 7.5 * dt);
   assert_int_equal(mps_mpm_steps(s.mpm), 8);
   mps_mpm_def now;
-  mps_assert_ok(context, mps_mpm_get_def(s.mpm, &now));
+  OK(mps_mpm_get_def(s.mpm, &now));
   assert_true(now.dt == dt && now.cell == 0.02 && now.measure == 1.0);
   assert_ptr_equal(mps_mpm_particles(s.mpm), s.particles);
   assert_ptr_equal(mps_mpm_context(s.mpm), context);
-  mpm_scene_end(&s);
 }
 
 static int32_t stop_at_once(void *user) {
@@ -166,86 +149,68 @@ static int32_t stop_at_once(void *user) {
   return 1;
 }
 
-static void steps_can_be_cancelled(void **state) {
-  (void)state;
+TEST(steps_can_be_cancelled) {
   int asked = 0;
   mps_context *own = NULL, *shared = context;
-  mps_context_def hooks = mps_context_defaults();
-  hooks.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  hooks.cancel = stop_at_once, hooks.cancel_user = &asked;
+  DEF(context, hooks, .executor = MPS_CONTEXT_EXECUTOR_SERIAL, .cancel = stop_at_once,
+      .cancel_user = &asked);
   assert_int_equal(mps_context_create(&hooks, &own, NULL, 0), MPS_OK);
   context = own;
   mpm_scene s = small_scene();
   const mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
-  mps_assert_fails(own, mps_mpm_step(s.mpm, 100), MPS_ERROR_CANCELLED, "cancel hook at step 1");
-  assert_int_equal(mps_mpm_steps(s.mpm), 1);
-  mps_assert_ok(own, mps_mpm_step(s.mpm, 1)); /* one step alone calls no hook */
+  FAILS_ON(own, mps_mpm_step(s.mpm, 100), MPS_ERROR_CANCELLED, "cancel hook at step 0");
+  FAILS_ON(own, mps_mpm_step(s.mpm, 1), MPS_ERROR_CANCELLED, "cancel hook at step 0");
+  assert_int_equal(mps_mpm_steps(s.mpm), 0);
+  assert_int_equal(asked, 2); /* before each step */
   mpm_scene_end(&s);
   mps_context_destroy(&own);
   context = shared;
 }
 
 /* A body that flies as a whole: with STEP_FROM_WAVE its speed does not shorten the step. */
-static void step_from_the_wave_alone(void **state) {
-  (void)state;
+TEST(step_from_the_wave_alone) {
   const double c = sqrt(1e5 * 0.7 / (1.3 * 0.4) / 1000.0);
   for (int32_t from = 0; from < 2; from++) {
-    mpm_scene s = small_scene();
-    mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 30.0));
+    scoped_mpm_scene s = small_scene();
+    OK(mps_particles_set(s.particles, "velocity", 0, 30.0));
     mps_mpm_def def = small_def();
     def.step_from = from;
     def.lower[0] = def.lower[1] = -INFINITY;
     mpm_scene_solve(&s, &def);
-    mps_assert_near(mps_mpm_limit(s.mpm), 0.02 / (from ? c : c + 30.0), 1e-12);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 2));
-    if (from) mps_assert_near(mps_mpm_limit(s.mpm), 0.02 / c, 1e-12);
-    mpm_scene_end(&s);
+    NEAR(mps_mpm_limit(s.mpm), 0.02 / (from ? c : c + 30.0), 1e-12);
+    OK(mps_mpm_step(s.mpm, 2));
+    if (from) NEAR(mps_mpm_limit(s.mpm), 0.02 / c, 1e-12);
   }
 }
 
 /* ---- the measure ----------------------------------------------------------------------------- */
 
 /* Twice the thickness: the same motion, bit for bit but for rounding, and twice the forces. */
-static void forces_are_of_the_measure(void **state) {
-  (void)state;
+TEST(forces_are_of_the_measure) {
   double x[2], force[2], touch[2];
   for (int k = 0; k < 2; k++) {
-    mpm_scene s = small_scene();
+    scoped_mpm_scene s = small_scene();
     mps_mpm_def def = small_def();
     def.measure = k ? 2.0 : NAN;
     def.gravity[1] = -9.81;
     mpm_scene_solve(&s, &def);
-    mps_body *plate = NULL;
+    scoped_body *plate = NULL;
     mps_body_def body = mps_body_defaults();
     body.position[1] = 0.1 + 0.049; /* presses 1 mm */
-    mps_assert_ok(context, mps_body_create_box(context, &body, 0.4, 0.1, &plate));
+    OK(mps_body_create_box(context, &body, 0.4, 0.1, &plate));
     mpm_scene_contact(&s, plate, 0.0);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+    OK(mps_mpm_step(s.mpm, 20));
     mps_reaction r;
-    mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, MPS_MPM_SIDE_Y_LOWER, &r));
+    OK(mps_mpm_get_reaction(s.mpm, MPS_SIDE_Y_LOWER, &r));
     force[k] = r.impulse[1];
-    mps_assert_ok(context, mps_body_get_reaction(plate, -1, &r));
+    OK(mps_body_get_reaction(plate, -1, &r));
     touch[k] = r.impulse[1];
     const mps_view at = mpm_scene_view(&s, "position");
     x[k] = *mps_view_f64(&at, mps_particles_index(s.particles, 55), 1);
-    mps_body_destroy(&plate);
-    mpm_scene_end(&s);
   }
-  mps_assert_near(x[1], x[0], 1e-15);
-  mps_assert_near(force[1], 2.0 * force[0], 1e-10 * fabs(force[0]));
+  NEAR(x[1], x[0], 1e-15);
+  NEAR(force[1], 2.0 * force[0], 1e-10 * fabs(force[0]));
   assert_true(touch[0] > 0.0);
-  mps_assert_near(touch[1], 2.0 * touch[0], 1e-10 * touch[0]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(refused_creation_changes_nothing),
-                                     cmocka_unit_test(insane_numbers_are_refused),
-                                     cmocka_unit_test(callbacks_may_only_ask),
-                                     cmocka_unit_test(callbacks_that_stop_are_named),
-                                     cmocka_unit_test(runs_go_forwards),
-                                     cmocka_unit_test(steps_can_be_cancelled),
-                                     cmocka_unit_test(step_from_the_wave_alone),
-                                     cmocka_unit_test(forces_are_of_the_measure)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(touch[1], 2.0 * touch[0], 1e-10 * touch[0]);
 }

@@ -58,18 +58,17 @@ static void add_bodies(mps_mpm *mpm, int dim) {
   if (dim == 3) {
     for (int c = 0; c < 3; c++) def.position[c] = 0.07;
     def.rotation[0] = 0.4;
-    mps_assert_ok(context, mps_body_create_cylinder(context, &def, 0.012, 0.12, &bodies[0]));
+    OK(mps_body_create_cylinder(context, &def, 0.012, 0.12, &bodies[0]));
     def.position[0] = 0.01, def.position[1] = 0.17;
-    mps_assert_ok(context, mps_body_create_sphere(context, &def, 0.05, &bodies[1]));
+    OK(mps_body_create_sphere(context, &def, 0.05, &bodies[1]));
   } else {
-    mps_assert_ok(context, mps_body_create_polygon(context, &def, 7, comb, &bodies[0]));
+    OK(mps_body_create_polygon(context, &def, 7, comb, &bodies[0]));
     def.position[0] = 0.05, def.position[1] = 0.22;
-    mps_assert_ok(context, mps_body_create_disc(context, &def, 0.06, &bodies[1]));
+    OK(mps_body_create_disc(context, &def, 0.06, &bodies[1]));
   }
   for (int b = 0; b < 2; b++) {
-    mps_contact_def contact = mps_contact_defaults();
-    contact.inside = MPS_CONTACT_INSIDE_PUSH;
-    mps_assert_ok(context, mps_mpm_add_contact(mpm, bodies[b], &contact, NULL));
+    DEF(contact, contact, .inside = MPS_CONTACT_INSIDE_PUSH);
+    OK(mps_mpm_add_contact(mpm, bodies[b], &contact, NULL));
     mpm->contact.handle[b]->thin = false; /* cuts supports, as thick bodies do */
     mps_body_destroy(&bodies[b]);
   }
@@ -81,6 +80,7 @@ static void add_particles(mpm_scene *s, int dim, int count) {
   double last[3] = {0.1, 0.1, 0.1};
   for (int k = 0; k < count; k++) {
     double x[3];
+    bool taken = false; /* corners: no two particles share a place */
     for (int c = 0; c < 3; c++) {
       x[c] = uniform(0.01, 0.99) * CELLS * CELL;
       if (k % 3 == 1 && (c == k % dim || k % 2 == 0))
@@ -88,7 +88,15 @@ static void add_particles(mpm_scene *s, int dim, int count) {
       if (k % 3 == 2) x[c] = last[c] + (last[c] < 0.15 ? 0.1 : -0.1) * CELL;
       last[c] = x[c];
     }
-    mps_assert_ok(context, mps_particles_append(s->particles, 1, x));
+    const mps_view all = mpm_scene_view(s, "position");
+    for (int64_t i = 0; i < all.shape[0] && !taken; i++) {
+      double apart = 0.0;
+      for (int c = 0; c < dim; c++) apart = fmax(apart, fabs(*mps_view_f64(&all, i, c) - x[c]));
+      taken = apart < 1e-9;
+    }
+    const double moved = 1e-5 * CELL * (1 + k % 1009);
+    for (int c = 0; c < dim && taken; c++) x[c] += x[c] < 0.15 ? moved : -moved;
+    OK(mps_particles_append(s->particles, 1, x));
   }
 }
 
@@ -96,15 +104,11 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
   add_particles(&s, dim, dim == 2 ? 700 : 8000);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.spline = spline;
-  def.cell = CELL;
-  def.walls = walls;
+  DEF(mpm, def, .geometry = geometry, .spline = spline, .cell = CELL, .edge = walls);
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = CELLS * CELL;
   mpm_scene_solve(&s, &def);
   const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(s.mpm);
-  mps_assert_ok(context, mpsi_mpm_update_boundaries(&boundaries, "test", MPS_OK));
+  OK(mpsi_mpm_update_boundaries(&boundaries, "test", MPS_OK));
   add_bodies(s.mpm, dim);
   const int64_t n = s.mpm->p.count;
   for (int64_t k = 0; k < n; k++) {
@@ -114,7 +118,7 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
     for (int c = 0; c < 2 * dim; c++) s.mpm->p.s[c][k] = uniform(-1e3, 1e3);
   }
   s.mpm->def.gravity[1] = -9.81;
-  mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test", MPS_OK));
+  OK(mpsi_mpm_find_near(s.mpm, "test", MPS_OK));
   s.mpm->run.dt = 1e-4;
   return s;
 }
@@ -176,9 +180,24 @@ static uint32_t held_by(const mps_mpm *mpm, const mpsi_places *places, int k) {
          (MPSI_IMPULSE | MPSI_PENALTY);
 }
 
+/* Whether a particle sees nodes in bodies: some of its stencil that have weight for it. */
+static bool is_beside(const mps_mpm *mpm, const mpsi_stencil *at) {
+  double w[3][4] = {{1.0}, {1.0}, {1.0}}; /* outside the domain too */
+  bool beside = false;
+  for (int c = 0; c < mpm->grid.dim; c++) mpsi_weights(mpm->grid.spline, -at->s[c][0], w[c]);
+  REFERENCE_NODES(n, i, j, k) {
+    (void)n;
+    if (!(fmin(w[0][i], fmin(w[1][j], w[2][k])) > 0x1p-60)) continue; /* perhaps beyond the tile */
+    const int t = mpsi_tile_index(at->at[0] + i, at->at[1] + j, at->at[2] + k);
+    const uint32_t state = mpm->grid.workers[0].state[t];
+    beside = beside || (state & (MPSI_INSIDE | MPSI_IMPULSE | MPSI_PENALTY)) > MPSI_INSIDE;
+  }
+  return beside;
+}
+
 /* Whether a particle keeps its moment. */
-static bool spins(const mps_mpm *mpm, uint32_t held) {
-  return held && mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
+static bool spins(const mps_mpm *mpm, bool beside) {
+  return beside && mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
 }
 
 static void compare_scatter(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_segment *segment,
@@ -202,8 +221,8 @@ static void compare_scatter(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_
     mpsi_stencil at;
     mpsi_shape_values f;
     mpm->kernels->fit(work, chunk + k, &at, &f);
-    reference_scatter(mpm, &at, &f, chunk + k, mpm->run.moments && spins(mpm, held), worker->tile,
-                      worker->force);
+    reference_scatter(mpm, &at, &f, chunk + k, mpm->run.moments && spins(mpm, is_beside(mpm, &at)),
+                      worker->tile, worker->force);
   }
   out->scatter = fmax(out->scatter, difference(mpm, worker->tile, batch[0]));
   out->scatter = fmax(out->scatter, difference(mpm, worker->force, batch[1]));
@@ -215,7 +234,6 @@ static void compare_scatter(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_
 static void compare_gather(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_segment *segment,
                            compared *out) {
   const mpsi_worker *worker = work->worker;
-  const uint32_t held = held_by(mpm, segment->places, segment->begin);
   mpsi_gathered batch;
   for (int64_t n = 0; n < mpm->grid.tile_nodes; n++)
     for (int c = 0; c < 4; c++) worker->tile[n][c] = uniform(-1.0, 1.0);
@@ -224,7 +242,8 @@ static void compare_gather(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_s
     mpsi_stencil at;
     mpsi_shape_values f;
     mpm->kernels->fit(work, segment->places->chunk + k, &at, &f);
-    const reference one = reference_gather(mpm, work->cells, &at, &f, held != 0, spins(mpm, held),
+    const bool beside = is_beside(mpm, &at);
+    const reference one = reference_gather(mpm, work->cells, &at, &f, beside, spins(mpm, beside),
                                            (const mpsi_node *)worker->tile);
     for (int c = 0; c < mpm->grid.dim; c++) {
       out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[c]));
@@ -259,12 +278,11 @@ static void compare_block(mps_mpm *mpm, int64_t b, compared *out) {
 
 /* ---- tests ----------------------------------------------------------------------------------- */
 
-static void vectors_do_as_the_reference(void **state) {
-  (void)state;
+TEST(vectors_do_as_the_reference) {
   for (int variant = 0; variant < 24; variant++) {
     const int32_t geometry = variant / 8, spline = 2 + variant % 2;
-    mpm_scene s =
-        scene_of(geometry, spline, variant & 2 ? MPS_MPM_WALLS_MIRROR : MPS_MPM_WALLS_FIT);
+    scoped_mpm_scene s =
+        scene_of(geometry, spline, variant & 2 ? MPS_MPM_EDGE_MIRROR : MPS_MPM_EDGE_FIT);
     compared c = {.scatter = 0.0};
     s.mpm->run.moments = (variant & 4) != 0; /* spins of particles beside bodies */
     for (int64_t b = 0; b < s.mpm->grid.cell_count; b++)
@@ -272,7 +290,7 @@ static void vectors_do_as_the_reference(void **state) {
     print_message(
         "%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, %lld full, %lld sides, "
         "scatter %.2g, gather %.2g, feet %.2g\n",
-        geometry, spline, s.mpm->def.walls, s.mpm->run.moments, (long long)c.batches[1],
+        geometry, spline, s.mpm->def.edge, s.mpm->run.moments, (long long)c.batches[1],
         (long long)c.batches[2], (long long)c.batches[3], (long long)c.batches[4],
         (long long)c.full, (long long)c.sides, c.scatter, c.gather, c.feet);
     for (int n = 1; n <= 4; n++) assert_true(c.batches[n] >= 5);
@@ -280,7 +298,6 @@ static void vectors_do_as_the_reference(void **state) {
     assert_true(variant & 2 || c.sides >= 5);
     assert_true(c.scatter <= 1e-12);
     assert_true(c.gather <= 1e-13 && c.feet <= 1e-13);
-    mpm_scene_end(&s);
   }
 }
 
@@ -288,13 +305,12 @@ static void vectors_do_as_the_reference(void **state) {
 static mpm_scene pressed(int dim, bool plane) {
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
   const double lo[3] = {0.0}, hi[3] = {10 * CELL, 10 * CELL, dim == 3 ? 6 * CELL : 0.0};
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
-  def.cell = CELL;
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
+  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
+      .cell = CELL);
   mpm_scene_solve(&s, &def);
   mps_body_def body = mps_body_defaults();
-  mps_body *made = NULL;
+  scoped_body *made = NULL;
   body.position[0] = body.position[1] = 5 * CELL;
   body.position[dim - 1] = (dim == 3 ? 9.0 : 13.5) * CELL;
   body.rotation[dim == 3 ? 0 : 2] = 0.2;
@@ -303,35 +319,30 @@ static mpm_scene pressed(int dim, bool plane) {
   for (int c = dim == 2 ? 2 : 0; c < 3; c++) body.inertia[c] = 1e6;
   body.velocity[dim - 1] = -3.0;
   if (dim == 3)
-    mps_assert_ok(context, mps_body_create_cylinder(context, &body, 3 * CELL, 4 * CELL, &made));
+    OK(mps_body_create_cylinder(context, &body, 3 * CELL, 4 * CELL, &made));
   else
-    mps_assert_ok(context, mps_body_create_box(context, &body, 5 * CELL, 5 * CELL, &made));
+    OK(mps_body_create_box(context, &body, 5 * CELL, 5 * CELL, &made));
   mpm_scene_contact(&s, made, 0.3);
   assert_true(s.mpm->contact.handle[0]->convex);
   s.mpm->contact.handle[0]->convex = plane;
-  mps_body_destroy(&made);
   return s;
 }
 
 /* Nothing changes by what the tangent planes of a convex body leave out of the search. */
-static void tangent_planes_leave_out_nothing_near(void **state) {
-  (void)state;
+TEST(tangent_planes_leave_out_nothing_near) {
   for (int dim = 2; dim <= 3; dim++) {
-    mpm_scene s = pressed(dim, true), other = pressed(dim, false);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
-    mps_assert_ok(context, mps_mpm_step(other.mpm, 60));
+    scoped_mpm_scene s = pressed(dim, true), other = pressed(dim, false);
+    OK(mps_mpm_step(s.mpm, 60));
+    OK(mps_mpm_step(other.mpm, 60));
     assert_true(s.mpm->contact.impulses.warm_count > 3);
     assert_int_equal(s.mpm->contact.impulses.warm_count, other.mpm->contact.impulses.warm_count);
     for (int c = 0; c < dim; c++)
       assert_memory_equal(s.mpm->p.v[c], other.mpm->p.v[c], (size_t)s.mpm->p.count * 8);
-    mpm_scene_end(&s);
-    mpm_scene_end(&other);
   }
 }
 
 /* A cone with a hollow base, a ring: solids whose meridian is convex, but not they. */
-static void solids_of_revolution_are_convex_or_not(void **state) {
-  (void)state;
+TEST(solids_of_revolution_are_convex_or_not) {
   static const double cylinder[] = {0, 0, 1, 0, 1, 2, 0, 2}, cone[] = {0, 0, 1, 2, 0, 2};
   static const double hollow[] = {0, 1, 1, 0, 1, 2, 0, 2}, ring[] = {1, 0, 2, 0, 2, 1, 1, 1};
   static const struct {
@@ -340,17 +351,8 @@ static void solids_of_revolution_are_convex_or_not(void **state) {
     bool convex;
   } cases[] = {{cylinder, 4, true}, {cone, 3, true}, {hollow, 4, false}, {ring, 4, false}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    mps_body *body = NULL;
-    mps_assert_ok(context,
-                  mps_body_create_revolution(context, NULL, cases[k].corners, cases[k].rz, &body));
+    scoped_body *body = NULL;
+    OK(mps_body_create_revolution(context, NULL, cases[k].corners, cases[k].rz, &body));
     assert_true(mpsi_body_is_convex(body) == cases[k].convex);
-    mps_body_destroy(&body);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(vectors_do_as_the_reference),
-                                     cmocka_unit_test(tangent_planes_leave_out_nothing_near),
-                                     cmocka_unit_test(solids_of_revolution_are_convex_or_not)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

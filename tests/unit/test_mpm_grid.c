@@ -4,10 +4,6 @@
 #include "mpm_twins.h"
 #include "pthread_executor.h"
 
-#include <mps/grid.h>
-
-#define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
-
 enum { MOST = 40000 };
 
 typedef struct nodes {
@@ -18,8 +14,7 @@ typedef struct nodes {
 static nodes *read_nodes(mps_mpm *mpm) {
   nodes *n = malloc(sizeof *n);
   assert_non_null(n);
-  mps_assert_ok(mps_mpm_context(mpm),
-                mps_grid_get_nodes(mps_mpm_grid(mpm), MOST, &n->count, n->x, n->mass, n->v, n->f));
+  OK(mps_grid_get_nodes(mps_mpm_grid(mpm), MOST, &n->count, n->x, n->mass, n->v, n->f));
   assert_in_range(n->count, 1, MOST);
   return n;
 }
@@ -34,7 +29,7 @@ static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
   const double v0[3] = {0.3, -0.2, 0.1};
   const double plane[4] = {0.1, -0.4, 0.3, 0.2};
   const double space[9] = {0.1, -0.4, 0.2, 0.3, 0.2, -0.1, 0.05, 0.15, -0.3};
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   def.geometry = geometry;
   def.cell = 0.1;
@@ -44,12 +39,11 @@ static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
   return s;
 }
 
-static void nodes_have_the_particles_mass_and_momentum(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(nodes_have_the_particles_mass_and_momentum) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int corner = 0; corner < 2; corner++) {
-      mpm_scene s = block(context, geometry, corner != 0);
+      scoped_mpm_scene s = block(context, geometry, corner != 0);
       nodes *n = read_nodes(s.mpm);
       const mps_totals t = mpm_scene_totals(&s);
       double mass = 0.0, momentum[3] = {0.0}, force[3] = {0.0}, extent = 0.0;
@@ -58,39 +52,34 @@ static void nodes_have_the_particles_mass_and_momentum(void **state) {
         for (int c = 0; c < 3; c++) {
           momentum[c] += n->mass[k] * n->v[3 * k + c], force[c] += n->f[3 * k + c];
           const double cells = n->x[3 * k + c] / 0.1;
-          mps_assert_near(cells, nearbyint(cells), 1e-9);
+          NEAR(cells, nearbyint(cells), 1e-9);
           extent = fmax(extent, fabs(n->x[3 * k + c]));
         }
       }
-      mps_assert_near(mass, t.mass, 1e-13 * t.mass);
+      NEAR(mass, t.mass, 1e-13 * t.mass);
       for (int c = 0; c < 3 && !corner; c++) { /* in the corner the images give theirs */
-        mps_assert_near(force[c], c == 1 ? -9.81 * t.mass : 0.0, 1e-12 * 9.81 * t.mass);
-        mps_assert_near(momentum[c], t.linear[c], 1e-12 * t.mass);
+        NEAR(force[c], c == 1 ? -9.81 * t.mass : 0.0, 1e-12 * 9.81 * t.mass);
+        NEAR(momentum[c], t.linear[c], 1e-12 * t.mass);
       }
       assert_true(extent < 2.2);
       free(n);
-      mpm_scene_end(&s);
     }
-  mps_context_destroy(&context);
 }
 
 /* Uniform stress: forces inside the block vanish, those at its upper face pull it down by s A. */
-static void forces_are_those_of_the_stress(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
-  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 1, 1000.0));
+TEST(forces_are_those_of_the_stress) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
+  OK(mps_particles_set(s.particles, "stress", 1, 1000.0));
   nodes *n = read_nodes(s.mpm);
   double upper = 0.0;
   for (int64_t k = 0; k < n->count; k++) {
     const double *x = n->x + 3 * k, pull = n->f[3 * k + 1] + 9.81 * n->mass[k];
-    if (x[1] > 1.25 && x[1] < 1.45) mps_assert_near(pull, 0.0, 1e-9);
+    if (x[1] > 1.25 && x[1] < 1.45) NEAR(pull, 0.0, 1e-9);
     if (x[1] > 1.4) upper += pull;
   }
-  mps_assert_near(upper, -1000.0 * 0.5, 1e-9);
+  NEAR(upper, -1000.0 * 0.5, 1e-9);
   free(n);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
 }
 
 /* A few digits of a sequence that fills (0, 1). */
@@ -99,29 +88,28 @@ static double filling(int64_t k, int c) {
   return fmod((double)(k + 1) * step[c], 1.0);
 }
 
-static void linear_fields_are_reproduced(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(linear_fields_are_reproduced) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
-      mpm_scene s = block(context, geometry, true);
+      scoped_mpm_scene s = block(context, geometry, true);
       const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
       mps_mpm_def def;
-      mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
+      OK(mps_mpm_get_def(s.mpm, &def));
       def.spline = spline;
       mps_mpm_destroy(&s.mpm);
-      mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-      mps_assert_ok(context, mps_particles_add_field(s.particles, "tracer", 2));
+      OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+      OK(mps_particles_add_field(s.particles, "tracer", 2));
       mps_view x = mpm_scene_view(&s, "position");
       mps_edit tracer;
-      mps_assert_ok(context, mps_particles_edit(s.particles, "tracer", &tracer));
+      OK(mps_particles_edit(s.particles, "tracer", &tracer));
       for (int64_t k = 0; k < x.shape[0]; k++)
         for (int c = 0; c < 2; c++) {
           double value = 3.0 + c;
           for (int d = 0; d < dim; d++) value += (1.0 + d - 2.0 * c) * *mps_view_f64(&x, k, d);
           *mps_edit_f64(&tracer, k, c) = value;
         }
-      mps_assert_ok(context, mps_particles_commit(s.particles, &tracer));
+      OK(mps_particles_commit(s.particles, &tracer));
       enum { POINTS = 200 };
       static double points[3 * POINTS], both[2 * POINTS], one[POINTS];
       static int32_t states[POINTS];
@@ -129,37 +117,35 @@ static void linear_fields_are_reproduced(void **state) {
       for (int64_t i = 0; i < POINTS; i++)
         for (int c = 0; c < 3; c++) points[3 * i + c] = size[c] * filling(i, c);
       mps_grid *grid = mps_mpm_grid(s.mpm);
-      mps_assert_ok(context, mps_grid_evaluate(grid, "tracer", -1, POINTS, points, both, states));
-      mps_assert_ok(context, mps_grid_evaluate(grid, "tracer", 1, POINTS, points, one, NULL));
+      OK(mps_grid_evaluate(grid, "tracer", -1, POINTS, points, both, states));
+      OK(mps_grid_evaluate(grid, "tracer", 1, POINTS, points, one, NULL));
       for (int64_t i = 0; i < POINTS; i++) {
         assert_int_equal(states[i], MPS_GRID_POINT_INSIDE);
         for (int c = 0; c < 2; c++) {
           double value = 3.0 + c;
           for (int d = 0; d < dim; d++) value += (1.0 + d - 2.0 * c) * points[3 * i + d];
-          mps_assert_near(both[2 * i + c], value, 1e-12);
+          NEAR(both[2 * i + c], value, 1e-12);
         }
         assert_true(one[i] == both[2 * i + 1]);
       }
-      mpm_scene_end(&s);
     }
-  mps_context_destroy(&context);
 }
 
-static void points_know_where_they_are(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, true); /* 0.5 x 0.7 from the origin */
+TEST(points_know_where_they_are) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_mpm_scene s =
+      block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, true); /* 0.5 x 0.7 from the origin */
   mps_grid *grid = mps_mpm_grid(s.mpm);
   const double points[3 * 7] = {0.25, 0.35, 0.0, 0.25, 0.7, NAN, 0.5, 0.7,  0.0, 0.0, 0.0,
                                 0.0,  0.25, 0.9, 0.0,  2.0, 2.0, 0.0, -0.1, 0.2, 0.0};
   const int32_t expected[7] = {0, 0, 0, 0, 1, 1, 2};
   double values[7];
   int32_t states[7];
-  mps_assert_ok(context, mps_grid_evaluate(grid, "density", 0, 7, points, values, states));
+  OK(mps_grid_evaluate(grid, "density", 0, 7, points, values, states));
   for (int i = 0; i < 7; i++) {
     assert_int_equal(states[i], expected[i]);
     if (expected[i] == 0)
-      mps_assert_near(values[i], 1000.0, 1e-9);
+      NEAR(values[i], 1000.0, 1e-9);
     else
       assert_true(isnan(values[i]));
   }
@@ -168,22 +154,17 @@ static void points_know_where_they_are(void **state) {
   assert_null(mps_mpm_grid(NULL));
   assert_int_equal(mps_grid_evaluate(NULL, "density", 0, 0, NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_grid_get_nodes(NULL, 0, &count, NULL, NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_grid_fill(NULL, s.particles), MPS_ERROR_ARGUMENT);
   FAILS(mps_grid_evaluate(grid, "nothing", 0, 1, points, values, NULL), MPS_ERROR_FIELD, "nothing");
   FAILS(mps_grid_evaluate(grid, "id", 0, 1, points, values, NULL), MPS_ERROR_FIELD, "'id'");
-  FAILS(mps_grid_evaluate(grid, "stress", 4, 1, points, values, NULL), MPS_ERROR_ARGUMENT, "to 3");
-  FAILS(mps_grid_evaluate(grid, "stress", 0, -1, points, values, NULL), MPS_ERROR_ARGUMENT, "-1");
-  FAILS(mps_grid_evaluate(grid, "stress", 0, 1, bad, values, NULL), MPS_ERROR_ARGUMENT, "x = inf");
-  FAILS(mps_grid_get_nodes(grid, 0, NULL, NULL, NULL, NULL, NULL), MPS_ERROR_ARGUMENT, "count");
-  FAILS(mps_grid_fill(grid, s.particles), MPS_ERROR_STATE, "held by");
-  FAILS(mps_grid_fill(grid, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  REFUSES(mps_grid_evaluate(grid, "stress", 4, 1, points, values, NULL), "to 3");
+  REFUSES(mps_grid_evaluate(grid, "stress", 0, -1, points, values, NULL), "-1");
+  REFUSES(mps_grid_evaluate(grid, "stress", 0, 1, bad, values, NULL), "x = inf");
+  REFUSES(mps_grid_get_nodes(grid, 0, NULL, NULL, NULL, NULL, NULL), "count");
   mps_grid_info info;
-  mps_assert_ok(context, mps_grid_get_info(grid, &info));
-  mps_assert_near(info.cell, 0.1, 0.0);
+  OK(mps_grid_get_info(grid, &info));
+  NEAR(info.cell, 0.1, 0.0);
   assert_int_equal(info.dim, 2);
   assert_int_equal(info.spline, 3);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
 }
 
 static mps_status ask(void *user, mps_mpm *mpm) {
@@ -196,116 +177,42 @@ static mps_status ask(void *user, mps_mpm *mpm) {
 }
 
 /* Bodies, friction, plastic soil, several threads: the run is the same bit for bit. */
-static void asking_changes_nothing(void **state) {
-  (void)state;
+TEST(asking_changes_nothing) {
   for (int32_t geometry = 0; geometry < 3; geometry++) {
     int32_t threads = 1 + geometry;
-    mps_context *context = on_threads(&threads);
-    scene x = build(context, geometry, &none), twin = build(context, geometry, &none);
+    scoped_context *context = on_threads(&threads);
+    SCOPED(drop) scene x = build(context, geometry, &none), twin = build(context, geometry, &none);
     int calls = 0;
     const int64_t every = test_quick() ? 1 : 5;
     const double end = (double)(12 * every) * mps_mpm_dt(x.s.mpm);
-    mps_assert_ok(context, mps_mpm_run(x.s.mpm, end, every, ask, &calls));
-    mps_assert_ok(context, mps_mpm_run(twin.s.mpm, end, every, NULL, NULL));
+    OK(mps_mpm_run(x.s.mpm, end, every, ask, &calls));
+    OK(mps_mpm_run(twin.s.mpm, end, every, NULL, NULL));
     assert_true(calls > 10);
     same(&x, &twin);
-    drop(&x);
-    drop(&twin);
-    mps_context_destroy(&context);
   }
 }
 
-/* The nodes as a set; a recorder may hold it. */
-static void nodes_fill_a_set(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
-  mps_particles_def def = mps_particles_defaults();
-  mps_recorder_def series = mps_recorder_defaults();
-  mps_particles *set = NULL;
-  mps_recorder *recorder = NULL;
-  def.spacing = 0.1;
-  series.path = TEST_TMP "/grid_nodes.vtkhdf";
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_ok(context, mps_grid_fill(mps_mpm_grid(s.mpm), set));
-  const mps_status there = mps_recorder_create(context, set, &series, &recorder);
-  assert_true(there == MPS_OK || there == MPS_ERROR_UNSUPPORTED);
-  for (int k = 0; k < 3; k++) { /* it grows and shrinks with the material */
-    mps_assert_ok(context, mps_grid_fill(mps_mpm_grid(s.mpm), set));
-    nodes *n = read_nodes(s.mpm);
-    mps_view x, m, f;
-    mps_assert_ok(context, mps_particles_view(set, "position", &x));
-    mps_assert_ok(context, mps_particles_view(set, "mass", &m));
-    mps_assert_ok(context, mps_particles_view(set, "force", &f));
-    assert_int_equal(x.shape[0], n->count);
-    for (int64_t i = 0; i < n->count; i++) {
-      assert_true(*mps_view_f64(&x, i, 1) == n->x[3 * i + 1]);
-      assert_true(*mps_view_f64(&m, i, 0) == n->mass[i]);
-      assert_true(*mps_view_f64(&f, i, 1) == n->f[3 * i + 1]);
-    }
-    free(n);
-    if (recorder) mps_assert_ok(context, mps_recorder_write(recorder, (double)k));
-    int64_t ids[100], count = 0;
-    const double lo[2] = {0.0, 0.0}, hi[2] = {9.0, 1.2};
-    if (k == 0) {
-      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 100, &count, ids));
-      mps_assert_ok(context, mps_particles_remove(s.particles, count, ids));
-    } else {
-      mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
-    }
-  }
-  if (recorder) mps_assert_ok(context, mps_recorder_close(&recorder));
-  mps_particles_destroy(&set);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
-}
-
-/* The weights as an object, given or queried. */
-static void weights_are_a_kernel(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
-  mps_kernel *kernel = mps_mpm_kernel(s.mpm), *other = NULL;
-  double mean = 0.0;
-  assert_int_equal(mps_kernel_get_kind(kernel), MPS_KERNEL_SPLINE3);
-  mps_assert_near(mps_kernel_weight(kernel, 0.0), 2.0 / 3.0, 1e-15);
-  mps_assert_near(mps_kernel_weight(kernel, 0.1), 1.0 / 6.0, 1e-15); /* at the next node */
-  mps_assert_ok(context, mps_kernel_moment(context, kernel, 1, 2, &mean));
-  mps_assert_near(mean, 0.1 * 0.01 / 3.0, 1e-15); /* h times the moment h^2/3 of the fit */
-  assert_null(mps_mpm_kernel(NULL));
+/* The weights as an object. */
+TEST(weights_are_a_kernel) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
+  mps_kernel *other = NULL;
   mps_mpm_def def;
-  mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
+  OK(mps_mpm_get_def(s.mpm, &def));
   mps_mpm_destroy(&s.mpm);
   assert_null(def.kernel);
-  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 0.2, &def.kernel));
-  FAILS(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), MPS_ERROR_ARGUMENT,
-        "kernel is of kind 0");
+  OK(mps_kernel_create(context, MPS_KERNEL_MPS, 0.2, &def.kernel));
+  REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "kernel is of kind 0");
   mps_kernel_destroy(&def.kernel);
-  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.2, &def.kernel));
-  FAILS(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), MPS_ERROR_ARGUMENT,
-        "must be 1.5 cells");
+  OK(mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.2, &def.kernel));
+  REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "must be 1.5 cells");
   mps_kernel_destroy(&def.kernel);
-  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.15, &other));
+  OK(mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.15, &other));
   def.kernel = other;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_kernel_destroy(&def.kernel); /* the caller's share */
-  mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
+  OK(mps_mpm_get_def(s.mpm, &def));
   assert_int_equal(def.spline, 2);
-  assert_ptr_equal(mps_mpm_kernel(s.mpm), other);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nodes_have_the_particles_mass_and_momentum),
-      cmocka_unit_test(forces_are_those_of_the_stress),
-      cmocka_unit_test(linear_fields_are_reproduced),
-      cmocka_unit_test(points_know_where_they_are),
-      cmocka_unit_test(asking_changes_nothing),
-      cmocka_unit_test(nodes_fill_a_set),
-      cmocka_unit_test(weights_are_a_kernel),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  assert_ptr_equal(def.kernel, other);
+  OK(mps_mpm_step(s.mpm, 3));
 }

@@ -10,8 +10,8 @@
  */
 static void follows(scene *x, scene *twin, int64_t steps) {
   same(x, twin);
-  mps_assert_ok(x->s.context, mps_mpm_step(x->s.mpm, steps));
-  mps_assert_ok(twin->s.context, mps_mpm_step(twin->s.mpm, steps));
+  OK(mps_mpm_step(x->s.mpm, steps));
+  OK(mps_mpm_step(twin->s.mpm, steps));
   same(x, twin);
 }
 
@@ -19,31 +19,27 @@ static mps_status roll(scene *x, mps_snapshot *s) { return mps_mpm_rollback(x->s
 
 /* A twin never goes back. */
 static void goes_back(int32_t geometry, int32_t threads, int64_t steps) {
-  mps_context *context = on_threads(&threads);
-  scene x = build(context, geometry, &none), twin = build(context, geometry, &none);
+  scoped_context *context = on_threads(&threads);
+  SCOPED(drop) scene x = build(context, geometry, &none), twin = build(context, geometry, &none);
   mps_snapshot *snapshot = NULL;
   for (int k = 0; k < 4; k++) {
-    mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, steps));
-    mps_assert_ok(context, roll(&x, snapshot));
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 3)); /* twice from the same snapshot */
-    mps_assert_ok(context, roll(&x, snapshot));
+    OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
+    OK(mps_mpm_step(x.s.mpm, steps));
+    OK(roll(&x, snapshot));
+    OK(mps_mpm_step(x.s.mpm, 3)); /* twice from the same snapshot */
+    OK(roll(&x, snapshot));
     follows(&x, &twin, steps);
   }
   for (int b = 0; b < BODIES; b++) { /* all this has been of contact */
     mps_reaction r;
-    mps_assert_ok(context, mps_body_get_reaction(x.body[b], -1, &r));
+    OK(mps_body_get_reaction(x.body[b], -1, &r));
     assert_true(r.impulse[1] != 0.0);
   }
   mps_snapshot_destroy(&snapshot);
   assert_null(snapshot);
-  drop(&x);
-  drop(&twin);
-  mps_context_destroy(&context);
 }
 
-static void goes_back_bit_for_bit_on_any_threads(void **state) {
-  (void)state;
+TEST(goes_back_bit_for_bit_on_any_threads) {
   for (int32_t threads = test_quick() ? 3 : 1; threads <= 3; threads++)
     goes_back(MPS_MPM_GEOMETRY_PLANE_STRAIN, threads, 50);
   goes_back(MPS_MPM_GEOMETRY_AXISYMMETRIC, 2, 80);
@@ -51,95 +47,79 @@ static void goes_back_bit_for_bit_on_any_threads(void **state) {
 }
 
 /* Walls that look for their forces at rest, boxes of nodes, loads, two materials. */
-static void goes_back_with_walls_and_loads(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(goes_back_with_walls_and_loads) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
   scene x = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN),
         twin = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   for (int k = 0; k < 4; k++) {
-    mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 50));
-    mps_assert_ok(context, roll(&x, snapshot));
+    OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
+    OK(mps_mpm_step(x.s.mpm, 50));
+    OK(roll(&x, snapshot));
     same_fields(&x, &twin);
     same_forces(&x, &twin);
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
-    mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 20));
+    OK(mps_mpm_step(x.s.mpm, 20));
+    OK(mps_mpm_step(twin.s.mpm, 20));
     same_fields(&x, &twin);
     same_forces(&x, &twin);
   }
-  mps_snapshot_destroy(&snapshot);
-  drop(&x);
-  drop(&twin);
-  mps_context_destroy(&context);
 }
 
 /* A step that fails half way is forgotten. */
-static void mends_a_failed_step(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(mends_a_failed_step) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
+  scoped_snapshot *snapshot = NULL;
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
   mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
-  mps_assert_fails(context, mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
-  mps_assert_fails(context, mps_mpm_snapshot(x.s.mpm, &snapshot), MPS_ERROR_STATE, "has failed");
-  mps_assert_ok(context, roll(&x, snapshot));
+  FAILS(mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
+  assert_int_equal(mps_mpm_steps(x.s.mpm), 0); /* undone */
+  OK(roll(&x, snapshot));
   follows(&x, &twin, 20);
-  mps_snapshot_destroy(&snapshot);
-  drop(&x);
-  drop(&twin);
-  mps_context_destroy(&context);
 }
 
-static void belongs_to_its_solver(void **state) {
-  (void)state;
+TEST(belongs_to_its_solver) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         y = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  mps_snapshot *snapshot = NULL;
-#define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
-  FAILS(mps_mpm_rollback(x.s.mpm, NULL), MPS_ERROR_ARGUMENT, "snapshot is NULL");
-  FAILS(mps_mpm_snapshot(x.s.mpm, NULL), MPS_ERROR_ARGUMENT, "snapshot is NULL");
+  scoped_snapshot *snapshot = NULL;
+  REFUSES(mps_mpm_rollback(x.s.mpm, NULL), "snapshot is NULL");
+  REFUSES(mps_mpm_snapshot(x.s.mpm, NULL), "snapshot is NULL");
   assert_int_equal(mps_mpm_snapshot(NULL, &snapshot), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_mpm_rollback(NULL, snapshot), MPS_ERROR_ARGUMENT);
   mps_snapshot_destroy(&snapshot); /* nothing */
   mps_snapshot_destroy(NULL);
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
-  FAILS(mps_mpm_rollback(y.s.mpm, snapshot), MPS_ERROR_ARGUMENT, "of another solver");
-  FAILS(mps_mpm_snapshot(y.s.mpm, &snapshot), MPS_ERROR_ARGUMENT, "of another solver");
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
+  REFUSES(mps_mpm_rollback(y.s.mpm, snapshot), "of another solver");
+  REFUSES(mps_mpm_snapshot(y.s.mpm, &snapshot), "of another solver");
   assert_non_null(snapshot);
   drop(&x); /* it survives, also where the next solver gets the memory of this one */
   x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
-  FAILS(mps_mpm_rollback(x.s.mpm, snapshot), MPS_ERROR_ARGUMENT, "of another solver");
+  REFUSES(mps_mpm_rollback(x.s.mpm, snapshot), "of another solver");
   drop(&x);
   drop(&y);
   mps_context_destroy(&context); /* and its context's last share */
-  mps_snapshot_destroy(&snapshot);
 }
 
 /* What the caller has built since is not undone: it is named. */
-static void another_build_is_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(another_build_is_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   change c = none;
   c.bodies = 1;
+  SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c);
-  mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
-  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 5));
+  scoped_snapshot *snapshot = NULL;
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
+  OK(mps_mpm_step(x.s.mpm, 5));
+  OK(mps_mpm_step(twin.s.mpm, 5));
   mpm_scene_contact(&x.s, x.body[1], 0.4);
   mpm_scene_contact(&twin.s, twin.body[1], 0.4);
   FAILS(roll(&x, snapshot), MPS_ERROR_STATE, "in the snapshot bodies is 1, in this solver 2");
   follows(&x, &twin, 5);
-#undef FAILS
-  mps_snapshot_destroy(&snapshot);
-  drop(&x);
-  drop(&twin);
-  mps_context_destroy(&context);
 }
 
 /* ---- memory ---------------------------------------------------------------------------------- */
@@ -147,37 +127,32 @@ static void another_build_is_refused(void **state) {
 static mps_status snapshot_once(mps_context *own, int what) {
   (void)what;
   scene x;
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
   if (status == MPS_OK) status = mps_mpm_rollback(x.s.mpm, snapshot);
-  mps_snapshot_destroy(&snapshot);
   drop(&x);
   return status;
 }
 
-static void refused_allocations_leave_nothing_behind(void **state) {
-  (void)state;
-  test_allocator_sweep(snapshot_once, 0);
-}
+TEST(refused_allocations_leave_nothing_behind) { test_allocator_sweep(snapshot_once, 0); }
 
 /* Each allocation of a rollback, and of a snapshot filled again, is refused in turn: the run is
  * where it was, and the snapshot what it was. The particles have been sorted in between. */
-static void refused_allocations_change_nothing(void **state) {
-  (void)state;
+TEST(refused_allocations_change_nothing) {
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         first = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
   const uint64_t epoch = mps_particles_epoch(x.s.particles);
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 120));
-  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 120));
+  OK(mps_mpm_step(x.s.mpm, 120));
+  OK(mps_mpm_step(twin.s.mpm, 120));
   assert_true(mps_particles_epoch(x.s.particles) != epoch);
-  mps_assert_ok(context, mps_particles_add_field(x.s.particles, "own", 2)); /* larger than it was */
-  mps_assert_ok(context, mps_particles_add_field(twin.s.particles, "own", 2));
+  OK(mps_particles_add_field(x.s.particles, "own", 2)); /* larger than it was */
+  OK(mps_particles_add_field(twin.s.particles, "own", 2));
   for (int what = 0; what < 2; what++) {
     mps_status status = MPS_ERROR_MEMORY;
     for (int64_t k = 1; status != MPS_OK; k++) {
@@ -192,17 +167,17 @@ static void refused_allocations_change_nothing(void **state) {
       follows(&x, &twin, 1);
       if (!what) { /* still the first state */
         mps_snapshot *second = NULL;
-        mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &second));
-        mps_assert_ok(context, roll(&x, snapshot));
+        OK(mps_mpm_snapshot(x.s.mpm, &second));
+        OK(roll(&x, snapshot));
         assert_int_equal(mps_mpm_steps(x.s.mpm), 0);
         same_bodies(&x, &first);
-        mps_assert_ok(context, roll(&x, second));
+        OK(roll(&x, second));
         mps_snapshot_destroy(&second);
       }
     }
     if (what == 0) { /* the snapshot is now of here, and rollback has to undo a sort */
-      mps_assert_ok(context, mps_mpm_step(x.s.mpm, 120));
-      mps_assert_ok(context, roll(&x, snapshot));
+      OK(mps_mpm_step(x.s.mpm, 120));
+      OK(roll(&x, snapshot));
       follows(&x, &twin, 120);
     }
   }
@@ -215,15 +190,14 @@ static void refused_allocations_change_nothing(void **state) {
 }
 
 /* Filled again with the same sizes, a snapshot allocates no more than its list. */
-static void memory_is_reused(void **state) {
-  (void)state;
+TEST(memory_is_reused) {
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
   const int64_t live = allocator.live, before = allocator.calls;
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
   assert_int_equal(allocator.live, live);
   const int64_t again = allocator.calls - before;
   assert_true(again <= 4); /* the list of items, which grows */
@@ -231,18 +205,4 @@ static void memory_is_reused(void **state) {
   drop(&x);
   mps_context_destroy(&context);
   assert_int_equal(allocator.live, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(goes_back_bit_for_bit_on_any_threads),
-      cmocka_unit_test(goes_back_with_walls_and_loads),
-      cmocka_unit_test(mends_a_failed_step),
-      cmocka_unit_test(belongs_to_its_solver),
-      cmocka_unit_test(another_build_is_refused),
-      cmocka_unit_test(refused_allocations_leave_nothing_behind),
-      cmocka_unit_test(refused_allocations_change_nothing),
-      cmocka_unit_test(memory_is_reused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,6 @@
 #include "mpm_twins.h"
 #include "test_fixture.h"
 
-#include <mps/grid.h>
-
 /* ---- a law that refuses ---------------------------------------------------------------------- */
 
 /* A law that stiffens with the work it has seen; it refuses particle `id` when it has written. */
@@ -36,51 +34,31 @@ static mps_status update(void *user, const mps_material_block *b) {
 static mps_material *law_of(mps_context *own, touchy *t) {
   static const char *const names[] = {"work"};
   mps_material *out = NULL;
-  mps_material_user_def law = mps_material_user_defaults();
-  law.update = update, law.user = t;
-  law.name = "touchy", law.wave_modulus = 1.5e5;
-  law.history_count = 1, law.history = names;
-  law.needs_deformation = 1;
-  mps_assert_ok(own, mps_material_create_user(own, &law, &out));
+  DEF(material_user, law, .update = update, .user = t, .name = "touchy", .wave_modulus = 1.5e5,
+      .history_count = 1, .history = names, .needs_deformation = 1);
+  OK(mps_material_create_user(own, &law, &out));
   return out;
 }
 
 static scene held_scene(mps_context *own, const mps_mpm_def *def, touchy *t) {
   int32_t box, loads[2];
   scene x = {.s = held_begin_with(own, def, &box, loads)};
-  mps_material *law = law_of(own, t);
-  mps_assert_ok(own, mps_mpm_set_material(x.s.mpm, law, 0, NULL));
-  mps_material_destroy(&law);
+  scoped_material *law = law_of(own, t);
+  OK(mps_mpm_set_material(x.s.mpm, law, NULL, 0));
   return x;
 }
 
 static void same_totals(scene *a, scene *b) {
   mps_totals t[2];
   memset(t, 0, sizeof t);
-  mps_assert_ok(a->s.context, mps_mpm_get_totals(a->s.mpm, &t[0]));
-  mps_assert_ok(b->s.context, mps_mpm_get_totals(b->s.mpm, &t[1]));
+  OK(mps_mpm_get_totals(a->s.mpm, &t[0]));
+  OK(mps_mpm_get_totals(b->s.mpm, &t[1]));
   assert_memory_equal(&t[0], &t[1], sizeof t[0]);
 }
 
-/* Each particle has the same fields; a step that did not happen may have sorted them. */
-static void same_particles(scene *a, scene *b) {
-  mps_view id = mpm_scene_view(&a->s, "id");
-  assert_int_equal(mps_particles_count(a->s.particles), mps_particles_count(b->s.particles));
-  for (int32_t f = 0; f < mps_particles_field_count(a->s.particles); f++) {
-    mps_particles_field_info info;
-    mps_assert_ok(a->s.context, mps_particles_get_field_info(a->s.particles, f, &info));
-    mps_view va = mpm_scene_view(&a->s, info.name), vb = mpm_scene_view(&b->s, info.name);
-    for (int64_t k = 0; k < va.shape[0]; k++) {
-      const int64_t other = mps_particles_index(b->s.particles, *mps_view_i64(&id, k, 0));
-      for (int64_t c = 0; c < va.shape[1]; c++)
-        if (memcmp(mps_view_f64(&va, k, c), mps_view_f64(&vb, other, c), 8) != 0)
-          fail_msg("%s[%d] of particle %d", info.name, (int)c, (int)*mps_view_i64(&id, k, 0));
-    }
-  }
-}
-
+/* A step that did not happen may have sorted the particles. */
 static void same_state(scene *a, scene *b) {
-  same_particles(a, b);
+  assert_same_by_id(a->s.particles, b->s.particles, "");
   if (a->body[DRIVEN])
     same_bodies(a, b);
   else
@@ -91,49 +69,45 @@ static void same_state(scene *a, scene *b) {
 
 static scene scene_with_bodies(mps_context *own, int32_t geometry, touchy *t) {
   scene x = build(own, geometry, &none);
-  mps_material *law = law_of(own, t);
-  mps_assert_ok(own, mps_mpm_set_material(x.s.mpm, law, 0, NULL));
-  mps_material_destroy(&law);
+  scoped_material *law = law_of(own, t);
+  OK(mps_mpm_set_material(x.s.mpm, law, NULL, 0));
   return x;
 }
 
 /* With boundaries of all kinds, or with bodies. */
 static void refuses(const mps_mpm_def *def, int32_t threads, bool bodies) {
-  mps_context *own = on_threads(&threads);
+  scoped_context *own = on_threads(&threads);
   touchy never = {-1}, now = {-1};
+  SCOPED(drop)
   scene x = bodies ? scene_with_bodies(own, def->geometry, &now) : held_scene(own, def, &now);
   scene twin =
       bodies ? scene_with_bodies(own, def->geometry, &never) : held_scene(own, def, &never);
   for (int round = 0; round < (bodies ? 12 : 3); round++) {
-    mps_assert_ok(own, mps_mpm_step(x.s.mpm, 9));
-    mps_assert_ok(own, mps_mpm_step(twin.s.mpm, 9));
+    OK(mps_mpm_step(x.s.mpm, 9));
+    OK(mps_mpm_step(twin.s.mpm, 9));
     same_totals(&x, &twin);     /* sums in the same order */
     now.id = 100 * (round % 7); /* of another block each time */
     for (int again = 0; again < 2; again++) {
-      mps_assert_fails(own, mps_mpm_step(x.s.mpm, 1), MPS_ERROR_NUMERIC, "'touchy' has refused");
+      FAILS_ON(own, mps_mpm_step(x.s.mpm, 1), MPS_ERROR_NUMERIC, "'touchy' has refused");
       assert_int_equal(mps_context_error(own)->particle, now.id);
       same_state(&x, &twin);
     }
     now.id = -1;
   }
-  mps_assert_ok(own, mps_mpm_step(x.s.mpm, 9));
-  mps_assert_ok(own, mps_mpm_step(twin.s.mpm, 9));
+  OK(mps_mpm_step(x.s.mpm, 9));
+  OK(mps_mpm_step(twin.s.mpm, 9));
   same_state(&x, &twin);
   same_totals(&x, &twin);
   if (bodies) {
     mps_reaction r;
-    mps_assert_ok(own, mps_body_get_reaction(x.body[DRIVEN], -1, &r));
+    OK(mps_body_get_reaction(x.body[DRIVEN], -1, &r));
     assert_true(r.impulse[1] != 0.0);
   }
-  drop(&x);
   drop(&twin);
-  mps_context_destroy(&own);
 }
 
-static void a_refused_step_has_not_happened(void **state) {
-  (void)state;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.budget = 1;
+TEST(a_refused_step_has_not_happened) {
+  DEF(mpm, def, .budget = 1);
   refuses(&def, 1, false);
   refuses(&def, 3, false);
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
@@ -154,9 +128,9 @@ static mpm_scene flying(int32_t volumetric) {
   def.cell = 0.02;
   def.volumetric = volumetric;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.3, def.upper[1] = 0.4;
-  mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 3.0));
+  OK(mps_particles_set(s.particles, "velocity", 0, 3.0));
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0);
   return s;
 }
 
@@ -180,8 +154,8 @@ static int64_t lose_one(mpm_scene *s) {
   mps_view x = mpm_scene_view(s, "position"), id = mpm_scene_view(s, "id");
   mps_view v = mpm_scene_view(s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++)
-    mps_assert_near(*mps_view_f64(&x, k, 0),
-                    before[*mps_view_i64(&id, k, 0)] + dt * *mps_view_f64(&v, k, 0), 1e-14);
+    NEAR(*mps_view_f64(&x, k, 0), before[*mps_view_i64(&id, k, 0)] + dt * *mps_view_f64(&v, k, 0),
+         1e-14);
   return lost;
 }
 
@@ -190,55 +164,42 @@ static void no_step_until_it_is_mended(mpm_scene *s) {
   const int64_t steps = mps_mpm_steps(s->mpm);
   const double point[3] = {0.2, 0.15, 0.0};
   double value[2];
-  mps_assert_fails(context, mps_mpm_step(s->mpm, 1), MPS_ERROR_STATE, "edit its position");
-  mps_assert_fails(context, mps_mpm_run(s->mpm, 9.0, 1, NULL, NULL), MPS_ERROR_STATE,
-                   "outside the domain");
-  mps_assert_fails(context, mps_mpm_snapshot(s->mpm, &snapshot), MPS_ERROR_STATE, "edit its");
-  mps_assert_fails(context,
-                   mps_grid_evaluate(mps_mpm_grid(s->mpm), "velocity", -1, 1, point, value, NULL),
-                   MPS_ERROR_STATE, "outside the domain");
+  FAILS(mps_mpm_step(s->mpm, 1), MPS_ERROR_STATE, "edit its position");
+  FAILS(mps_mpm_run(s->mpm, 9.0, 1, NULL, NULL), MPS_ERROR_STATE, "outside the domain");
+  FAILS(mps_mpm_snapshot(s->mpm, &snapshot), MPS_ERROR_STATE, "edit its");
+  FAILS(mps_grid_evaluate(mps_mpm_grid(s->mpm), "velocity", -1, 1, point, value, NULL),
+        MPS_ERROR_STATE, "outside the domain");
   assert_int_equal(mps_mpm_steps(s->mpm), steps);
 }
 
-static void a_step_that_loses_a_particle_is_whole(void **state) {
-  (void)state;
+TEST(a_step_that_loses_a_particle_is_whole) {
   for (int32_t by_cell = 0; by_cell < 2; by_cell++) {
-    mpm_scene s = flying(by_cell ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT);
-    mps_snapshot *snapshot = NULL;
+    scoped_mpm_scene s = flying(by_cell ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT);
+    scoped_snapshot *snapshot = NULL;
     mps_totals t;
-    mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &snapshot));
+    OK(mps_mpm_snapshot(s.mpm, &snapshot));
     lose_one(&s);
-    mps_assert_ok(context, mps_mpm_get_totals(s.mpm, &t));
-    mps_assert_near(t.linear[0], 180 * 0.1 * 3.0, 1e-12 * 54.0); /* free flight: all have it */
+    OK(mps_mpm_get_totals(s.mpm, &t));
+    NEAR(t.linear[0], 180 * 0.1 * 3.0, 1e-12 * 54.0); /* free flight: all have it */
     no_step_until_it_is_mended(&s);
     mps_edit x;
-    mps_assert_ok(context, mps_particles_edit(s.particles, "position", &x));
+    OK(mps_particles_edit(s.particles, "position", &x));
     for (int64_t k = 0; k < x.view.shape[0]; k++)
       if (*mps_view_f64(&x.view, k, 0) > 0.3) *mps_edit_f64(&x, k, 0) = 0.2999;
-    mps_assert_ok(context, mps_particles_commit(s.particles, &x));
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* put back by hand */
-    for (int round = 0; round < 3; round++) {       /* taken away */
+    OK(mps_particles_commit(s.particles, &x));
+    OK(mps_mpm_step(s.mpm, 1));               /* put back by hand */
+    for (int round = 0; round < 3; round++) { /* taken away */
       lose_one(&s);
       int64_t outside[400], count;
       const double lo[2] = {0.3, -9.0}, hi[2] = {9.0, 9.0};
-      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 400, &count, outside));
+      OK(mps_particles_select_box(s.particles, lo, hi, 400, &count, outside));
       assert_true(count > 0);
-      mps_assert_ok(context, mps_particles_remove(s.particles, count, outside));
-      mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+      OK(mps_particles_remove(s.particles, outside, count));
+      OK(mps_mpm_step(s.mpm, 1));
     }
     lose_one(&s);
-    mps_assert_ok(context, mps_mpm_rollback(s.mpm, snapshot)); /* or forgotten */
+    OK(mps_mpm_rollback(s.mpm, snapshot)); /* or forgotten */
     assert_int_equal(mps_particles_count(s.particles), 180);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
-    mps_snapshot_destroy(&snapshot);
-    mpm_scene_end(&s);
+    OK(mps_mpm_step(s.mpm, 1));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_refused_step_has_not_happened),
-      cmocka_unit_test(a_step_that_loses_a_particle_is_whole),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

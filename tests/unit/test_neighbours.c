@@ -4,9 +4,6 @@
 #include "test_common.h"
 #include "test_allocator.h"
 
-#include <mps/neighbours.h>
-#include <mps/particles.h>
-
 static mps_view view_of(const double *xy, int64_t n, int32_t dim) {
   return (mps_view){.data = (void *)(uintptr_t)xy,
                     .shape = {n, dim, 1},
@@ -14,81 +11,57 @@ static mps_view view_of(const double *xy, int64_t n, int32_t dim) {
                     .dtype = {2, 64, 1}};
 }
 
-static void bad_arguments_are_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_neighbours_def good = mps_neighbours_defaults(), def;
+TEST(bad_arguments_are_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_neighbours_def good = mps_neighbours_defaults();
   mps_neighbours *nb = NULL;
-  const double radii[] = {0.0, -1.0, NAN, INFINITY, 1e-200, 1e200};
   assert_int_equal(good.dim, 2);
   good.radius = 1.0;
   assert_int_equal(mps_neighbours_create(NULL, &good, &nb), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_neighbours_create(context, &good, NULL), MPS_ERROR_ARGUMENT, "out");
-  mps_assert_fails(context, mps_neighbours_create(context, NULL, &nb), MPS_ERROR_ARGUMENT, "def");
-  for (int r = 0; r < 6; r++) {
-    def = good;
-    def.radius = radii[r];
-    mps_assert_fails(context, mps_neighbours_create(context, &def, &nb), MPS_ERROR_ARGUMENT,
-                     "radius is ");
-  }
-  def = good;
-  def.dim = 4;
-  mps_assert_fails(context, mps_neighbours_create(context, &def, &nb), MPS_ERROR_ARGUMENT,
-                   "dim is 4");
-  def = good;
-  def.half = 2;
-  mps_assert_fails(context, mps_neighbours_create(context, &def, &nb), MPS_ERROR_ARGUMENT,
-                   "half is 2");
-  def = good;
-  def.reserved = 1;
-  mps_assert_fails(context, mps_neighbours_create(context, &def, &nb), MPS_ERROR_ARGUMENT,
-                   "reserved is 1");
+  REFUSES(mps_neighbours_create(context, &good, NULL), "out");
+  REFUSES(mps_neighbours_create(context, NULL, &nb), "def");
   assert_null(nb);
   assert_int_equal(mps_neighbours_build(NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_neighbours_lists(NULL, NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
   mps_neighbours_destroy(NULL);
-  mps_context_destroy(&context);
 }
 
-static void bad_positions_leave_the_former_list(void **state) {
-  (void)state;
+TEST(bad_positions_leave_the_former_list) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_neighbours_def def = mps_neighbours_defaults();
+  DEF(neighbours, def, .radius = 1.0);
   mps_neighbours *nb = NULL;
   double xy[] = {0, 0, 0.5, 0, 3, 0};
   const int64_t *offsets, *indices;
   int64_t n = -1;
-  def.radius = 1.0;
-  mps_assert_ok(context, mps_neighbours_create(context, &def, &nb));
-  mps_assert_ok(context, mps_neighbours_lists(nb, &n, &offsets, NULL));
+  OK(mps_neighbours_create(context, &def, &nb));
+  OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
   assert_int_equal(n, 0);
   assert_int_equal(offsets[0], 0);
   mps_view view = view_of(xy, 3, 2), bad = view;
-  mps_assert_ok(context, mps_neighbours_build(nb, &view));
-  mps_assert_fails(context, mps_neighbours_build(nb, NULL), MPS_ERROR_ARGUMENT, "position is NULL");
+  OK(mps_neighbours_build(nb, &view));
+  REFUSES(mps_neighbours_build(nb, NULL), "position is NULL");
   bad.shape[1] = 3;
-  mps_assert_fails(context, mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "(3, 3)");
+  FAILS(mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "(3, 3)");
   bad = view;
   bad.shape[0] = INT64_C(1) << 32;
-  mps_assert_fails(context, mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "(4294967296, 2)");
+  FAILS(mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "(4294967296, 2)");
   bad = view;
   bad.dtype.bits = 32;
-  mps_assert_fails(context, mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "of 32 bits");
+  FAILS(mps_neighbours_build(nb, &bad), MPS_ERROR_FIELD, "of 32 bits");
   bad = view;
   bad.data = NULL;
-  mps_assert_fails(context, mps_neighbours_build(nb, &bad), MPS_ERROR_ARGUMENT, "data NULL");
+  REFUSES(mps_neighbours_build(nb, &bad), "data NULL");
   xy[5] = NAN;
-  mps_assert_fails(context, mps_neighbours_build(nb, &view), MPS_ERROR_ARGUMENT,
-                   "position 2 has y = nan");
-  mps_assert_ok(context, mps_neighbours_lists(nb, &n, &offsets, &indices));
+  REFUSES(mps_neighbours_build(nb, &view), "position 2 has y = nan");
+  OK(mps_neighbours_lists(nb, &n, &offsets, &indices));
   assert_int_equal(n, 3);
   assert_int_equal(offsets[3], 2);
   assert_int_equal(indices[0], 1);
   assert_int_equal(indices[1], 0);
   view.shape[0] = 0;
   view.data = NULL;
-  mps_assert_ok(context, mps_neighbours_build(nb, &view));
-  mps_assert_ok(context, mps_neighbours_lists(nb, &n, &offsets, NULL));
+  OK(mps_neighbours_build(nb, &view));
+  OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
   assert_int_equal(n, 0);
   assert_int_equal(offsets[0], 0);
   mps_context_destroy(&context); /* the lists keep it alive */
@@ -98,28 +71,23 @@ static void bad_positions_leave_the_former_list(void **state) {
 
 /* On the lattice with radius 1.5 D an inner particle has 8 neighbours in 2D, 18 in 3D; with
  * exactly D none: the radius itself is outside. */
-static void lattice_particles_have_the_neighbours_known_by_hand(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(lattice_particles_have_the_neighbours_known_by_hand) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t dim = 2; dim <= 3; dim++) {
-    mps_particles_def def = mps_particles_defaults();
-    mps_particles *set = NULL;
+    DEF(particles, def, .dim = dim, .spacing = 1.0);
+    scoped_particles *set = NULL;
     const double lo[3] = {-4, -4, -4}, hi[3] = {5, 5, 5};
-    def.dim = dim;
-    def.spacing = 1.0;
-    mps_assert_ok(context, mps_particles_create(context, &def, &set));
-    mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+    OK(mps_particles_create(context, &def, &set));
+    OK(mps_particles_fill_box(set, lo, hi, NULL));
     mps_view x;
-    mps_assert_ok(context, mps_particles_view(set, "position", &x));
+    OK(mps_particles_view(set, "position", &x));
     for (int ring = 0; ring < 2; ring++) {
-      mps_neighbours_def nd = mps_neighbours_defaults();
+      DEF(neighbours, nd, .dim = dim, .radius = ring ? 1.5 : 1.0);
       mps_neighbours *nb = NULL;
       const int64_t *offsets, *indices, middle = mps_particles_count(set) / 2;
-      nd.dim = dim;
-      nd.radius = ring ? 1.5 : 1.0;
-      mps_assert_ok(context, mps_neighbours_create(context, &nd, &nb));
-      mps_assert_ok(context, mps_neighbours_build(nb, &x));
-      mps_assert_ok(context, mps_neighbours_lists(nb, NULL, &offsets, &indices));
+      OK(mps_neighbours_create(context, &nd, &nb));
+      OK(mps_neighbours_build(nb, &x));
+      OK(mps_neighbours_lists(nb, NULL, &offsets, &indices));
       assert_int_equal(offsets[middle + 1] - offsets[middle], !ring ? 0 : dim == 2 ? 8 : 18);
       if (ring && dim == 2) {
         const int64_t expected[] = {-10, -9, -8, -1, 1, 8, 9, 10};
@@ -129,23 +97,19 @@ static void lattice_particles_have_the_neighbours_known_by_hand(void **state) {
       }
       mps_neighbours_destroy(&nb);
     }
-    mps_particles_destroy(&set);
   }
-  mps_context_destroy(&context);
 }
 
 static mps_status build_twice(mps_context *context, mps_neighbours **nb, const mps_view *first,
                               const mps_view *second) {
-  mps_neighbours_def def = mps_neighbours_defaults();
-  def.radius = 1.5;
+  DEF(neighbours, def, .radius = 1.5);
   mps_status status = mps_neighbours_create(context, &def, nb);
   if (status == MPS_OK) status = mps_neighbours_build(*nb, first);
   if (status == MPS_OK) status = mps_neighbours_build(*nb, second);
   return status;
 }
 
-static void allocation_failures_leave_the_former_list(void **state) {
-  (void)state;
+TEST(allocation_failures_leave_the_former_list) {
   double xy[400];
   for (int i = 0; i < 200; i++) {
     xy[2 * i] = i % 20;
@@ -168,11 +132,11 @@ static void allocation_failures_leave_the_former_list(void **state) {
     assert_true(status == MPS_OK || status == MPS_ERROR_MEMORY);
     memory.refuse_at = 0;
     if (nb) {
-      mps_assert_ok(context, mps_neighbours_lists(nb, &n, &offsets, NULL));
+      OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
       assert_true(n == 0 || n == 3 || n == 200);
       assert_int_equal(offsets[n], n == 0 ? 0 : n == 3 ? 4 : 2 * (19 * 10 + 20 * 9 + 2 * 19 * 9));
-      mps_assert_ok(context, mps_neighbours_build(nb, &large)); /* and recovers */
-      mps_assert_ok(context, mps_neighbours_lists(nb, &n, NULL, NULL));
+      OK(mps_neighbours_build(nb, &large)); /* and recovers */
+      OK(mps_neighbours_lists(nb, &n, NULL, NULL));
       assert_int_equal(n, 200);
     }
     mps_neighbours_destroy(&nb);
@@ -182,11 +146,10 @@ static void allocation_failures_leave_the_former_list(void **state) {
   assert_true(refuse > 12);
 }
 
-static void building_again_allocates_nothing(void **state) {
-  (void)state;
+TEST(building_again_allocates_nothing) {
   test_allocator memory = {0};
   mps_context_def def = mps_context_defaults();
-  mps_context *context = NULL;
+  scoped_context *context = NULL;
   mps_neighbours *nb = NULL;
   char text[128];
   double x[2000];
@@ -199,24 +162,12 @@ static void building_again_allocates_nothing(void **state) {
   mps_view view = view_of(x, 1000, 2);
   view.stride[0] = 1;
   view.stride[1] = 1000;
-  mps_assert_ok(context, build_twice(context, &nb, &view, &view));
+  OK(build_twice(context, &nb, &view, &view));
   const int64_t calls = memory.calls;
   for (int round = 0; round < 5; round++) {
     x[500 + round] += 0.1;
-    mps_assert_ok(context, mps_neighbours_build(nb, &view));
+    OK(mps_neighbours_build(nb, &view));
   }
   assert_int_equal(memory.calls, calls);
   mps_neighbours_destroy(&nb);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_arguments_are_refused),
-      cmocka_unit_test(bad_positions_leave_the_former_list),
-      cmocka_unit_test(lattice_particles_have_the_neighbours_known_by_hand),
-      cmocka_unit_test(allocation_failures_leave_the_former_list),
-      cmocka_unit_test(building_again_allocates_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

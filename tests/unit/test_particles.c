@@ -4,17 +4,13 @@
 #include "test_fixture.h"
 #include "test_allocator.h"
 
-#include <mps/particles.h>
-
 #include <core/particles/fields.h>
 #include <core/particles/particles_internal.h>
 
 static mps_particles *make_set(int32_t dim) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .dim = dim, .spacing = 0.5);
   mps_particles *set = NULL;
-  def.dim = dim;
-  def.spacing = 0.5;
-  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  OK(mps_particles_create(context, &def, &set));
   return set;
 }
 
@@ -22,67 +18,43 @@ static mps_particles *make_set(int32_t dim) {
 static mps_particles *make_five(void) {
   const double xy[] = {0, 0, 1, 0, 2, -1, 3, -2, 4, -3};
   mps_particles *set = make_set(2);
-  mps_assert_ok(context, mps_particles_append(set, 5, xy));
+  OK(mps_particles_append(set, 5, xy));
   return set;
 }
 
 static mps_view view_of(mps_particles *set, const char *name) {
   mps_view view;
-  mps_assert_ok(context, mps_particles_view(set, name, &view));
+  OK(mps_particles_view(set, name, &view));
   return view;
 }
 
-static void bad_definitions_are_refused(void **state) {
-  (void)state;
-  const mps_particles_def good = {.struct_size = sizeof good, .dim = 3, .spacing = 1.0};
-  mps_particles_def def = good;
+TEST(bad_definitions_are_refused) {
+  const mps_particles_def def = {.struct_size = sizeof def, .dim = 3, .spacing = 1.0};
   mps_particles *set = NULL;
   assert_int_equal(mps_particles_create(NULL, &def, &set), MPS_ERROR_ARGUMENT);
-  mps_assert_fails(context, mps_particles_create(context, &def, NULL), MPS_ERROR_ARGUMENT, "out");
-  mps_assert_fails(context, mps_particles_create(context, NULL, &set), MPS_ERROR_ARGUMENT, "def");
-  def.struct_size = 8;
-  mps_assert_fails(context, mps_particles_create(context, &def, &set), MPS_ERROR_ARGUMENT,
-                   "struct_size is 8");
-  def = good;
-  def.dim = 1;
-  mps_assert_fails(context, mps_particles_create(context, &def, &set), MPS_ERROR_ARGUMENT,
-                   "dim is 1");
-  const double spacings[] = {0.0, -1.0, NAN, INFINITY};
-  for (int s = 0; s < 4; s++) {
-    def = good;
-    def.spacing = spacings[s];
-    mps_assert_fails(context, mps_particles_create(context, &def, &set), MPS_ERROR_ARGUMENT,
-                     "spacing is ");
-  }
-  def = good;
-  def.origin[2] = NAN;
-  mps_assert_fails(context, mps_particles_create(context, &def, &set), MPS_ERROR_ARGUMENT,
-                   "origin[2] is nan");
+  REFUSES(mps_particles_create(context, &def, NULL), "out");
+  REFUSES(mps_particles_create(context, NULL, &set), "def");
   assert_null(set);
-  assert_int_equal(mps_particles_def_init(&def, 4), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_defaults().dim, 2);
 }
 
-static void a_new_set_is_empty_and_has_id_and_position(void **state) {
-  (void)state;
+TEST(a_new_set_is_empty_and_has_id_and_position) {
   mps_particles *set = make_set(3);
   assert_int_equal(mps_particles_count(set), 0);
   assert_int_equal(mps_particles_dim(set), 3);
-  mps_assert_near(mps_particles_spacing(set), 0.5, 0.0);
+  NEAR(mps_particles_spacing(set), 0.5, 0.0);
   assert_int_equal(mps_particles_field_count(set), 2);
   mps_particles_field_info info;
-  mps_assert_ok(context, mps_particles_get_field_info(set, 0, &info));
+  OK(mps_particles_get_field_info(set, 0, &info));
   assert_string_equal(info.name, "id");
   assert_int_equal(info.flags, MPS_VIEW_READONLY);
-  mps_assert_ok(context, mps_particles_get_field_info(set, 1, &info));
+  OK(mps_particles_get_field_info(set, 1, &info));
   assert_string_equal(info.name, "position");
   assert_string_equal(info.unit, "m");
   assert_int_equal(info.components, 3);
   assert_int_equal(info.flags, 0);
-  mps_assert_fails(context, mps_particles_get_field_info(set, 2, &info), MPS_ERROR_ARGUMENT,
-                   "index is 2");
-  mps_assert_fails(context, mps_particles_get_field_info(set, -1, &info), MPS_ERROR_ARGUMENT,
-                   "index is -1");
+  REFUSES(mps_particles_get_field_info(set, 2, &info), "index is 2");
+  REFUSES(mps_particles_get_field_info(set, -1, &info), "index is -1");
   assert_int_equal(view_of(set, "position").shape[0], 0);
   const double x[3] = {0, 0, 0};
   assert_int_equal(mps_particles_nearest(set, x), -1);
@@ -92,8 +64,7 @@ static void a_new_set_is_empty_and_has_id_and_position(void **state) {
   mps_particles_destroy(NULL);
 }
 
-static void queries_of_no_set_answer_nothing(void **state) {
-  (void)state;
+TEST(queries_of_no_set_answer_nothing) {
   assert_int_equal(mps_particles_count(NULL), 0);
   assert_int_equal(mps_particles_dim(NULL), 0);
   assert_true(mps_particles_spacing(NULL) == 0.0);
@@ -109,18 +80,17 @@ static void queries_of_no_set_answer_nothing(void **state) {
   assert_int_equal(mps_particles_select_box(NULL, NULL, NULL, 0, NULL, NULL), MPS_ERROR_ARGUMENT);
 }
 
-static void appending_keeps_what_was_there_and_zeroes_what_is_new(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
-  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1800.0));
+TEST(appending_keeps_what_was_there_and_zeroes_what_is_new) {
+  scoped_particles *set = make_five();
+  OK(mps_particles_set(set, "density", 0, 1800.0));
   uint64_t epoch = mps_particles_epoch(set);
   for (int64_t n = 5; n < 3000; n++) {
     const double xy[2] = {(double)n, (double)-n};
-    mps_assert_ok(context, mps_particles_append(set, 1, xy));
+    OK(mps_particles_append(set, 1, xy));
     assert_true(mps_particles_epoch(set) != epoch);
     epoch = mps_particles_epoch(set);
   }
-  mps_assert_ok(context, mps_particles_append(set, 0, NULL));
+  OK(mps_particles_append(set, 0, NULL));
   assert_int_equal(mps_particles_epoch(set), epoch);
   const mps_view id = view_of(set, "id"), x = view_of(set, "position"),
                  density = view_of(set, "density");
@@ -131,32 +101,27 @@ static void appending_keeps_what_was_there_and_zeroes_what_is_new(void **state) 
   for (int64_t i = 0; i < 3000; i++) {
     assert_int_equal(*mps_view_i64(&id, i, 0), i);
     assert_int_equal(mps_particles_index(set, i), i);
-    mps_assert_near(*mps_view_f64(&x, i, 0), (double)i, 0.0);
-    mps_assert_near(*mps_view_f64(&density, i, 0), i < 5 ? 1800.0 : 0.0, 0.0);
+    NEAR(*mps_view_f64(&x, i, 0), (double)i, 0.0);
+    NEAR(*mps_view_f64(&density, i, 0), i < 5 ? 1800.0 : 0.0, 0.0);
   }
-  mps_particles_destroy(&set);
 }
 
-static void bad_positions_append_nothing(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
+TEST(bad_positions_append_nothing) {
+  scoped_particles *set = make_five();
   const double xy[] = {9, 9, 9, NAN};
   const uint64_t epoch = mps_particles_epoch(set);
-  mps_assert_fails(context, mps_particles_append(set, 2, xy), MPS_ERROR_ARGUMENT,
-                   "position 1 has y = nan");
-  mps_assert_fails(context, mps_particles_append(set, -1, xy), MPS_ERROR_ARGUMENT, "count is -1");
-  mps_assert_fails(context, mps_particles_append(set, INT64_MAX, xy), MPS_ERROR_ARGUMENT, "2^40");
-  mps_assert_fails(context, mps_particles_append(set, 1, NULL), MPS_ERROR_ARGUMENT, "positions");
+  REFUSES(mps_particles_append(set, 2, xy), "position 1 has y = nan");
+  REFUSES(mps_particles_append(set, -1, xy), "count is -1");
+  REFUSES(mps_particles_append(set, INT64_MAX, xy), "2^40");
+  REFUSES(mps_particles_append(set, 1, NULL), "positions");
   assert_int_equal(mps_particles_count(set), 5);
   assert_int_equal(mps_particles_epoch(set), epoch);
-  mps_particles_destroy(&set);
 }
 
-static void every_component_is_aligned_padded_and_staggered(void **state) {
-  (void)state;
-  mps_particles *set = make_set(3);
-  mps_assert_ok(context, mps_particles_add_field(set, "restoring_old", 0));
-  mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
+TEST(every_component_is_aligned_padded_and_staggered) {
+  scoped_particles *set = make_set(3);
+  OK(mps_particles_add_field(set, "restoring_old", 0));
+  OK(mps_particles_add_field(set, "velocity", 0));
   for (int round = 0; round < 3; round++) {
     const double *column[12];
     for (int c = 0; c < 12; c++)
@@ -171,24 +136,22 @@ static void every_component_is_aligned_padded_and_staggered(void **state) {
         assert_true((uintptr_t)column[c] % 4096 != (uintptr_t)column[d] % 4096);
     }
     const double lo[3] = {0, 0, 0}, hi[3] = {8, 8, 4.0 * (round + 1)};
-    mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+    OK(mps_particles_fill_box(set, lo, hi, NULL));
   }
   assert_null(mpsi_particles_column(set, "velocity", 3));
   assert_null(mpsi_particles_column(set, "velocity", -1));
   assert_null(mpsi_particles_column(set, "density", 0));
   assert_null(mpsi_particles_column(set, "id", 0));
-  mps_particles_destroy(&set);
 }
 
-static void fields_of_the_table_get_their_documented_shape(void **state) {
-  (void)state;
+TEST(fields_of_the_table_get_their_documented_shape) {
   for (int32_t dim = 2; dim <= 3; dim++) {
     mps_particles *set = make_set(dim);
 #define I64 0
 #define F64 2
 #define CHECK(field, type, comps, unit_, meaning_, writer, valid)                                  \
-  mps_assert_ok(context, mps_particles_add_field(set, #field, 0));                                 \
-  mps_assert_ok(context, mps_particles_add_field(set, #field, mpsi_field_components(comps, dim))); \
+  OK(mps_particles_add_field(set, #field, 0));                                                     \
+  OK(mps_particles_add_field(set, #field, mpsi_field_components(comps, dim)));                     \
   assert_int_equal(view_of(set, #field).dtype.code, type);                                         \
   assert_int_equal(view_of(set, #field).dtype.bits, 64);                                           \
   assert_int_equal(view_of(set, #field).shape[1], mpsi_field_components(comps, dim));
@@ -198,168 +161,144 @@ static void fields_of_the_table_get_their_documented_shape(void **state) {
 #undef F64
     assert_int_equal(view_of(set, "rotation").shape[1], dim == 2 ? 1 : 3);
     assert_int_equal(view_of(set, "restoring_old").shape[1], dim == 2 ? 3 : 6);
-    mps_assert_fails(context, mps_particles_add_field(set, "velocity", 1), MPS_ERROR_FIELD,
-                     "components of field 'velocity' is 1");
+    FAILS(mps_particles_add_field(set, "velocity", 1), MPS_ERROR_FIELD,
+          "components of field 'velocity' is 1");
     mps_particles_destroy(&set);
   }
 }
 
-static void the_callers_own_fields_follow_their_rules(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
+TEST(the_callers_own_fields_follow_their_rules) {
+  scoped_particles *set = make_five();
   const uint64_t epoch = mps_particles_epoch(set);
   const char *longest = "a23456789_123456789_123456789_123456789_1234567";
   const char *bad[] = {"",    "2d",       "a-b",
                        "a b", "\xc3\xa9", "a23456789_123456789_123456789_123456789_12345678"};
-  mps_assert_ok(context, mps_particles_add_field(set, longest, 16));
-  mps_assert_ok(context, mps_particles_add_field(set, "_T2", 2));
-  mps_assert_ok(context, mps_particles_add_field(set, "_T2", 2));
+  OK(mps_particles_add_field(set, longest, 16));
+  OK(mps_particles_add_field(set, "_T2", 2));
+  OK(mps_particles_add_field(set, "_T2", 2));
   assert_int_equal(mps_particles_field_count(set), 4);
-  for (int b = 0; b < 6; b++)
-    mps_assert_fails(context, mps_particles_add_field(set, bad[b], 1), MPS_ERROR_ARGUMENT,
-                     "name is '");
-  mps_assert_fails(context, mps_particles_add_field(set, NULL, 1), MPS_ERROR_ARGUMENT, "NULL");
-  mps_assert_fails(context, mps_particles_add_field(set, "_T2", 3), MPS_ERROR_FIELD,
-                   "exists with 2");
-  mps_assert_fails(context, mps_particles_add_field(set, "_T2", 0), MPS_ERROR_ARGUMENT, "is 0");
-  mps_assert_fails(context, mps_particles_add_field(set, "new", 17), MPS_ERROR_ARGUMENT, "is 17");
+  for (int b = 0; b < 6; b++) REFUSES(mps_particles_add_field(set, bad[b], 1), "name is '");
+  REFUSES(mps_particles_add_field(set, NULL, 1), "NULL");
+  FAILS(mps_particles_add_field(set, "_T2", 3), MPS_ERROR_FIELD, "exists with 2");
+  REFUSES(mps_particles_add_field(set, "_T2", 0), "is 0");
+  REFUSES(mps_particles_add_field(set, "new", 17), "is 17");
   assert_int_equal(mps_particles_epoch(set), epoch);
   const mps_view t = view_of(set, "_T2");
   assert_int_equal(t.shape[0], 5);
   for (int c = 0; c < 2; c++)
     for (int i = 0; i < 5; i++) assert_true(*mps_view_f64(&t, i, c) == 0.0);
-  mps_particles_destroy(&set);
 }
 
-static void an_unknown_field_is_an_error_that_lists_the_known(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
+TEST(an_unknown_field_is_an_error_that_lists_the_known) {
+  scoped_particles *set = make_five();
   mps_view view;
-  mps_assert_fails(context, mps_particles_view(set, "preasure", &view), MPS_ERROR_FIELD,
-                   "no field 'preasure'; the set has: id, position");
+  FAILS(mps_particles_view(set, "preasure", &view), MPS_ERROR_FIELD,
+        "no field 'preasure'; the set has: id, position");
   assert_null(view.data);
-  mps_assert_fails(context, mps_particles_view(set, NULL, &view), MPS_ERROR_ARGUMENT, "name");
-  mps_assert_fails(context, mps_particles_view(set, "id", NULL), MPS_ERROR_ARGUMENT, "out");
+  REFUSES(mps_particles_view(set, NULL, &view), "name");
+  REFUSES(mps_particles_view(set, "id", NULL), "out");
   char name[16];
   for (int f = 0; f < 100; f++) { /* a list longer than the record is cut, not overrun */
     snprintf(name, sizeof name, "own_field_%d", f);
-    mps_assert_ok(context, mps_particles_add_field(set, name, 1));
+    OK(mps_particles_add_field(set, name, 1));
   }
-  mps_assert_fails(context, mps_particles_view(set, "x", &view), MPS_ERROR_FIELD, "own_field_0");
-  mps_particles_destroy(&set);
+  FAILS(mps_particles_view(set, "x", &view), MPS_ERROR_FIELD, "own_field_0");
 }
 
-static void setting_adds_a_known_field_and_fills_one_component(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
-  mps_assert_ok(context, mps_particles_set(set, "velocity", 1, -2.5));
+TEST(setting_adds_a_known_field_and_fills_one_component) {
+  scoped_particles *set = make_five();
+  OK(mps_particles_set(set, "velocity", 1, -2.5));
   const mps_view v = view_of(set, "velocity");
   for (int i = 0; i < 5; i++) {
     assert_true(*mps_view_f64(&v, i, 0) == 0.0);
     assert_true(*mps_view_f64(&v, i, 1) == -2.5);
   }
-  mps_assert_fails(context, mps_particles_set(set, NULL, 0, 1.0), MPS_ERROR_ARGUMENT, "name");
-  mps_assert_fails(context, mps_particles_set(set, "mine", 0, 1.0), MPS_ERROR_FIELD, "'mine'");
-  mps_assert_fails(context, mps_particles_set(set, "id", 0, 1.0), MPS_ERROR_FIELD, "int64");
-  mps_assert_fails(context, mps_particles_set(set, "spin", 1, 1.0), MPS_ERROR_ARGUMENT,
-                   "is 1, allowed are 0 to 0");
-  mps_assert_fails(context, mps_particles_set(set, "spin", -1, 1.0), MPS_ERROR_ARGUMENT, "is -1");
-  mps_assert_fails(context, mps_particles_set(set, "spin", 0, NAN), MPS_ERROR_ARGUMENT, "nan");
+  REFUSES(mps_particles_set(set, NULL, 0, 1.0), "name");
+  FAILS(mps_particles_set(set, "mine", 0, 1.0), MPS_ERROR_FIELD, "'mine'");
+  FAILS(mps_particles_set(set, "id", 0, 1.0), MPS_ERROR_FIELD, "int64");
+  REFUSES(mps_particles_set(set, "spin", 1, 1.0), "is 1, and the field has one alone");
+  REFUSES(mps_particles_set(set, "spin", -1, 1.0), "is -1");
+  REFUSES(mps_particles_set(set, "spin", 0, NAN), "nan");
   assert_int_equal(mps_particles_field_count(set), 3); /* spin was not added by mistake */
-  mps_particles_destroy(&set);
 }
 
-static void sorting_takes_every_field_along(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
+TEST(sorting_takes_every_field_along) {
+  scoped_particles *set = make_five();
   const int64_t order[] = {4, 2, 0, 1, 3};
   const double x2[2] = {2.1, -1.0};
   int64_t ids[5], count;
-  mps_assert_ok(context, mps_particles_add_field(set, "mine", 2));
-  mps_assert_ok(context, mps_particles_add_field(set, "group", 0));
+  OK(mps_particles_add_field(set, "mine", 2));
+  OK(mps_particles_add_field(set, "group", 0));
   mps_edit mine, group;
-  mps_assert_ok(context, mps_particles_edit(set, "mine", &mine));
-  mps_assert_ok(context, mps_particles_edit(set, "group", &group));
+  OK(mps_particles_edit(set, "mine", &mine));
+  OK(mps_particles_edit(set, "group", &group));
   for (int i = 0; i < 5; i++) {
     *mps_edit_f64(&mine, i, 1) = 10.0 * i;
     *mps_edit_i64(&group, i, 0) = 100 + i;
   }
-  mps_assert_ok(context, mps_particles_commit(set, &mine));
-  mps_assert_ok(context, mps_particles_commit(set, &group));
+  OK(mps_particles_commit(set, &mine));
+  OK(mps_particles_commit(set, &group));
   const uint64_t epoch = mps_particles_epoch(set);
-  mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
+  OK(mpsi_particles_permute(set, __func__, order));
   assert_true(mps_particles_epoch(set) != epoch);
   const mps_view id = view_of(set, "id"), x = view_of(set, "position");
   for (int k = 0; k < 5; k++) {
     assert_int_equal(*mps_view_i64(&id, k, 0), order[k]);
     assert_int_equal(*mps_view_i64(&group.view, k, 0), 100 + order[k]);
-    mps_assert_near(*mps_view_f64(&x, k, 0), (double)order[k], 0.0);
-    mps_assert_near(*mps_view_f64(&mine.view, k, 1), 10.0 * (double)order[k], 0.0);
+    NEAR(*mps_view_f64(&x, k, 0), (double)order[k], 0.0);
+    NEAR(*mps_view_f64(&mine.view, k, 1), 10.0 * (double)order[k], 0.0);
     assert_int_equal(mps_particles_index(set, order[k]), k);
   }
   assert_int_equal(mps_particles_nearest(set, x2), 2);
   const double lo[2] = {0.0, -2.0}, hi[2] = {3.0, INFINITY};
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 5, &count, ids));
+  OK(mps_particles_select_box(set, lo, hi, 5, &count, ids));
   assert_int_equal(count, 4);
   for (int k = 0; k < 4; k++) assert_int_equal(ids[k], k);
   const double more[2] = {7, 7};
-  mps_assert_ok(context, mps_particles_append(set, 1, more));
+  OK(mps_particles_append(set, 1, more));
   assert_int_equal(mps_particles_index(set, 5), 5);
   assert_int_equal(mps_particles_index(set, 4), 0);
-  mps_particles_destroy(&set);
 }
 
-static void selection_takes_the_closed_box(void **state) {
-  (void)state;
-  mps_particles *set = make_five();
+TEST(selection_takes_the_closed_box) {
+  scoped_particles *set = make_five();
   const double lo[2] = {1, -3}, hi[2] = {3, 0}, empty[2] = {2, -INFINITY};
   int64_t ids[2] = {-7, -7}, count = -1;
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 0, &count, NULL));
+  OK(mps_particles_select_box(set, lo, hi, 0, &count, NULL));
   assert_int_equal(count, 3);
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 1, &count, ids));
+  OK(mps_particles_select_box(set, lo, hi, 1, &count, ids));
   assert_int_equal(count, 3);
   assert_int_equal(ids[0], 1);
   assert_int_equal(ids[1], -7); /* not past the capacity */
-  mps_assert_fails(context, mps_particles_select_box(set, lo, empty, 2, &count, ids),
-                   MPS_ERROR_ARGUMENT, "the box in y is [-3, -inf]");
+  REFUSES(mps_particles_select_box(set, lo, empty, 2, &count, ids), "the box in y is [-3, -inf]");
   const double bad[2] = {NAN, 0};
-  mps_assert_fails(context, mps_particles_select_box(set, bad, hi, 2, &count, ids),
-                   MPS_ERROR_ARGUMENT, "the box in x is [nan, 3]");
-  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, -1, &count, ids),
-                   MPS_ERROR_ARGUMENT, "capacity is -1");
-  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, 1, &count, NULL),
-                   MPS_ERROR_ARGUMENT, "capacity is 1");
-  mps_assert_fails(context, mps_particles_select_box(set, NULL, hi, 0, &count, NULL),
-                   MPS_ERROR_ARGUMENT, "lo is NULL");
-  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, 0, NULL, NULL),
-                   MPS_ERROR_ARGUMENT, "count is NULL");
+  REFUSES(mps_particles_select_box(set, bad, hi, 2, &count, ids), "the box in x is [nan, 3]");
+  REFUSES(mps_particles_select_box(set, lo, hi, -1, &count, ids), "capacity is -1");
+  REFUSES(mps_particles_select_box(set, lo, hi, 1, &count, NULL), "capacity is 1");
+  REFUSES(mps_particles_select_box(set, NULL, hi, 0, &count, NULL), "lo is NULL");
+  REFUSES(mps_particles_select_box(set, lo, hi, 0, NULL, NULL), "count is NULL");
   assert_int_equal(mps_particles_index(set, 5), -1);
   assert_int_equal(mps_particles_index(set, -1), -1);
   const double between[2] = {0.5, 0.0}; /* as near to 0 as to 1: the lower id */
   assert_int_equal(mps_particles_nearest(set, between), 0);
-  mps_particles_destroy(&set);
 }
 
-static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state) {
-  (void)state;
+TEST(a_set_in_use_does_not_grow_and_outlives_its_destruction) {
   mps_particles *set = make_five();
   const double lo[2] = {0, 0}, hi[2] = {1, 1}, triangle[] = {0, 0, 1, 0, 0, 1};
   const int64_t order[] = {1, 0, 2, 3, 4};
   mps_particles *held = set;
   mpsi_holder solver = {.name = "a solver", .kind = MPSI_USE_FIX}, second = solver;
-  mps_assert_ok(context, mpsi_particles_hold(set, __func__, &solver));
+  OK(mpsi_particles_hold(set, __func__, &solver));
   assert_ptr_equal(mpsi_particles_context(set), context);
-  mps_assert_fails(context, mps_particles_append(set, 1, lo), MPS_ERROR_STATE, "held by a solver");
-  mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "held by");
-  mps_assert_fails(context, mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE,
-                   "held by");
-  mps_assert_fails(context, mps_particles_fill_polygon(set, 3, triangle, NULL), MPS_ERROR_STATE,
-                   "held by");
-  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1.0)); /* fields may be added */
-  mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
-  mps_assert_ok(context, mpsi_particles_hold(set, __func__, &second));
-  mps_assert_fails(context, mpsi_particles_permute(set, "mps_x_create", order), MPS_ERROR_STATE,
-                   "2 solvers");
+  FAILS(mps_particles_append(set, 1, lo), MPS_ERROR_STATE, "held by a solver");
+  FAILS(mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "held by");
+  FAILS(mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE, "held by");
+  FAILS(mps_particles_fill_polygon(set, 3, triangle, NULL), MPS_ERROR_STATE, "held by");
+  OK(mps_particles_set(set, "density", 0, 1.0)); /* fields may be added */
+  OK(mpsi_particles_permute(set, __func__, order));
+  OK(mpsi_particles_hold(set, __func__, &second));
+  FAILS(mpsi_particles_permute(set, "mps_x_create", order), MPS_ERROR_STATE, "2 solvers");
   assert_string_equal(mps_context_error(context)->function, "mps_x_create");
   mpsi_particles_release(set, &second);
   mps_particles_destroy(&set);
@@ -371,10 +310,9 @@ static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state
 
 /* All that allocates, once through; stops at the first failure, which must be of memory. */
 static mps_status build_all(mps_context *c, mps_particles **set) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = 1.0);
   const double lo[2] = {0, 0}, hi[2] = {40, 80}, triangle[] = {0, -9, 9, -9, 0, 0};
   int64_t order[3 + 3200 + 40], added;
-  def.spacing = 1.0;
   mps_status status = mps_particles_create(c, &def, set);
   if (status == MPS_OK) status = mps_particles_add_field(*set, "mine", 3);
   if (status == MPS_OK) status = mps_particles_append(*set, 3, triangle);
@@ -389,8 +327,7 @@ static mps_status build_all(mps_context *c, mps_particles **set) {
   return status;
 }
 
-static void every_allocation_failure_is_reported_and_changes_nothing(void **state) {
-  (void)state;
+TEST(every_allocation_failure_is_reported_and_changes_nothing) {
   mps_status status = MPS_ERROR_MEMORY;
   int64_t refuse = 2; /* the first is the context's own */
   for (; status != MPS_OK; refuse++) {
@@ -411,12 +348,12 @@ static void every_allocation_failure_is_reported_and_changes_nothing(void **stat
     memory.refuse_at = 0;
     if (set) { /* the set is whole: the same goes well now, up to the sites already taken */
       mps_view x;
-      mps_assert_ok(c, mps_particles_view(set, "position", &x));
+      OK(mps_particles_view(set, "position", &x));
       for (int64_t i = 0; i < x.shape[0]; i++) assert_true(isfinite(*mps_view_f64(&x, i, 1)));
       const double lo[2] = {0, 0}, hi[2] = {40, 80};
       int64_t added = -1;
       const int64_t before = mps_particles_count(set);
-      mps_assert_ok(c, mps_particles_fill_box(set, lo, hi, &added));
+      OK(mps_particles_fill_box(set, lo, hi, &added));
       assert_int_equal(added, before >= 3203 ? 0 : 3200);
     }
     mps_particles_destroy(&set);
@@ -426,8 +363,7 @@ static void every_allocation_failure_is_reported_and_changes_nothing(void **stat
   assert_true(refuse > 30); /* it did have failures */
 }
 
-static void the_documentation_shows_the_table(void **state) {
-  (void)state;
+TEST(the_documentation_shows_the_table) {
   char line[512], expected[512];
   FILE *file = fopen(TEST_DOCS "/fields.md", "r");
   assert_non_null(file);
@@ -444,25 +380,4 @@ static void the_documentation_shows_the_table(void **state) {
   MPSI_FIELD_TABLE(CHECK)
   assert_true(!fgets(line, sizeof line, file) || line[0] != '|'); /* no row too many */
   fclose(file);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_definitions_are_refused),
-      cmocka_unit_test(a_new_set_is_empty_and_has_id_and_position),
-      cmocka_unit_test(queries_of_no_set_answer_nothing),
-      cmocka_unit_test(appending_keeps_what_was_there_and_zeroes_what_is_new),
-      cmocka_unit_test(bad_positions_append_nothing),
-      cmocka_unit_test(every_component_is_aligned_padded_and_staggered),
-      cmocka_unit_test(fields_of_the_table_get_their_documented_shape),
-      cmocka_unit_test(the_callers_own_fields_follow_their_rules),
-      cmocka_unit_test(an_unknown_field_is_an_error_that_lists_the_known),
-      cmocka_unit_test(setting_adds_a_known_field_and_fills_one_component),
-      cmocka_unit_test(sorting_takes_every_field_along),
-      cmocka_unit_test(selection_takes_the_closed_box),
-      cmocka_unit_test(a_set_in_use_does_not_grow_and_outlives_its_destruction),
-      cmocka_unit_test(every_allocation_failure_is_reported_and_changes_nothing),
-      cmocka_unit_test(the_documentation_shows_the_table),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -6,18 +6,12 @@
 #include "test_allocator.h"
 #include "unchanged.h"
 
-#include <mps/mps.h>
-
-#define OK(call) mps_assert_ok(own, call)
-#define FAILS(call, status, text) mps_assert_fails(own, call, status, text)
-
 SEEN_SOLVER(dynamics)
 
 static mps_particles *block(mps_context *own, double velocity) {
-  mps_particles_def def = mps_particles_defaults();
+  DEF(particles, def, .spacing = 0.1);
   const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
   mps_particles *set = NULL;
-  def.spacing = 0.1;
   OK(mps_particles_create(own, &def, &set));
   OK(mps_particles_fill_box(set, lo, hi, NULL));
   OK(mps_particles_set(set, "density", 0, 1000.0));
@@ -29,10 +23,9 @@ static mps_particles *block(mps_context *own, double velocity) {
 
 /* Its lowest row is held at a place that a signal gives. */
 static mps_dynamics *held_block(mps_context *own, mps_particles *set, bool watch) {
-  mps_dynamics_def def = mps_dynamics_defaults();
+  DEF(dynamics, def, .watch_damping = watch);
   mps_dynamics_boundary_def bottom = mps_dynamics_boundary_defaults();
   mps_dynamics *made = NULL;
-  def.watch_damping = watch;
   if (watch) OK(mps_particles_set(set, "damping", 0, 0.0)); /* there, and of no effect so far */
   bottom.lower[0] = bottom.lower[1] = 0.0, bottom.upper[0] = 0.4, bottom.upper[1] = 0.1;
   bottom.dofs = MPS_DOF_X | MPS_DOF_Y;
@@ -50,8 +43,7 @@ static mps_context *on(test_allocator *allocator) {
 
 /* ---- edits ----------------------------------------------------------------------------------- */
 
-static void a_refused_snapshot_takes_no_edit_in(void **state) {
-  (void)state;
+TEST(a_refused_snapshot_takes_no_edit_in) {
   test_allocator memory = {0};
   mps_context *own = on(&memory);
   mps_particles *set = block(own, 0.0);
@@ -77,12 +69,11 @@ static void a_refused_snapshot_takes_no_edit_in(void **state) {
   assert_int_equal(memory.live, 0);
 }
 
-static void a_refused_file_takes_no_edit_in(void **state) {
-  (void)state;
+TEST(a_refused_file_takes_no_edit_in) {
   test_allocator memory = {0};
-  mps_context *own = on(&memory);
-  mps_particles *set = block(own, 0.0);
-  mps_dynamics *dynamics = held_block(own, set, false);
+  scoped_context *own = on(&memory);
+  scoped_particles *set = block(own, 0.0);
+  scoped_dynamics *dynamics = held_block(own, set, false);
   mps_checkpoint info = mps_checkpoint_defaults();
   OK(mps_particles_set(set, "displacement", 0, 0.19));
   const uint64_t before = seen_dynamics(dynamics, false);
@@ -93,15 +84,12 @@ static void a_refused_file_takes_no_edit_in(void **state) {
   assert_true(seen_dynamics(dynamics, false) == before);
   assert_int_not_equal(mps_dynamics_save(dynamics, NULL, NULL), MPS_OK);
   assert_true(seen_dynamics(dynamics, false) == before);
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
 }
 
 /* ---- materials ------------------------------------------------------------------------------- */
 
 static mps_status to_stiff(mps_dynamics *dynamics, const mps_material *stiff) {
-  return mps_dynamics_set_material(dynamics, stiff, 0, NULL);
+  return mps_dynamics_set_material(dynamics, stiff, NULL, 0);
 }
 
 /* Its field "damping" is zero: only now does the solver need memory to watch what damping takes. */
@@ -137,33 +125,26 @@ static void refuse_memory_within(mps_status (*change)(mps_dynamics *, const mps_
   assert_int_equal(status, MPS_OK);
 }
 
-static void a_material_is_refused_as_a_whole(void **state) {
-  (void)state;
-  refuse_memory_within(to_stiff);
-}
+TEST(a_material_is_refused_as_a_whole) { refuse_memory_within(to_stiff); }
 
-static void damping_is_refused_as_a_whole(void **state) {
-  (void)state;
-  refuse_memory_within(to_damped);
-}
+TEST(damping_is_refused_as_a_whole) { refuse_memory_within(to_damped); }
 
 /* WLS-MPM refuses the density where a volume is not positive: no field has another value then. */
-static void fields_of_a_material_that_is_refused_stay(void **state) {
-  (void)state;
-  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_particles *set = block(own, 0.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_material *law = NULL, *other = NULL;
-  mps_mpm *mpm = NULL;
+TEST(fields_of_a_material_that_is_refused_stay) {
+  scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_particles *set = block(own, 0.0);
+  DEF(mpm, def, .cell = 0.2);
+  scoped_material *law = NULL, *other = NULL;
+  scoped_mpm *mpm = NULL;
   mps_view view;
-  def.cell = 0.2;
   OK(mps_material_create_linear_elastic(own, 1e6, 0.3, &law));
   OK(mps_material_create_linear_elastic(own, 2e6, 0.2, &other));
   OK(mps_mpm_create(own, set, law, &def, &mpm));
   OK(mps_particles_view(set, "volume", &view));
   *(double *)(uintptr_t)mps_view_f64(&view, 2, 0) = -1.0; /* as a run leaves it that has diverged */
-  const uint64_t before = seen_values(own, set);
-  FAILS(mps_particles_set_material(set, other, 1500.0, 0, NULL), MPS_ERROR_ARGUMENT, "volume");
+  const uint64_t before = seen_values(set);
+  FAILS_ON(own, mps_particles_set_material(set, other, 1500.0, NULL, 0), MPS_ERROR_ARGUMENT,
+           "volume");
   OK(mps_particles_view(set, "density", &view));
   for (int64_t i = 0; i < view.shape[0]; i++) assert_true(*mps_view_f64(&view, i, 0) == 1000.0);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
@@ -171,39 +152,29 @@ static void fields_of_a_material_that_is_refused_stay(void **state) {
     OK(mps_particles_get_field_info(set, f, &info));
     assert_string_not_equal(info.name, "young"); /* nor is there a new field */
   }
-  assert_true(seen_values(own, set) == before);
-  mps_mpm_destroy(&mpm);
-  mps_material_destroy(&other);
-  mps_material_destroy(&law);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  assert_true(seen_values(set) == before);
 }
 
 /* ---- states that have diverged --------------------------------------------------------------- */
 
-static void no_motion_begins_at_a_speed_without_an_energy(void **state) {
-  (void)state;
-  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_particles *set = block(own, 0.0);
-  mps_dynamics *dynamics = held_block(own, set, false);
+TEST(no_motion_begins_at_a_speed_without_an_energy) {
+  scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_particles *set = block(own, 0.0);
+  scoped_dynamics *dynamics = held_block(own, set, false);
   mps_view view;
   OK(mps_particles_view(set, "velocity", &view));
   *(double *)(uintptr_t)mps_view_f64(&view, 12, 0) = 1.1e100; /* as a run leaves it */
-  FAILS(mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_ARGUMENT, "beyond 1e+100 m/s");
+  FAILS_ON(own, mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_ARGUMENT, "beyond 1e+100 m/s");
   OK(mps_particles_set(set, "velocity", 0, 1.0));
   OK(mps_dynamics_restart(dynamics, 0.0));
   OK(mps_dynamics_step(dynamics, 1));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
 }
 
 /* A displacement of which the restoring force is no number, as one that has diverged. */
-static void accelerations_that_are_not_finite_are_not_shown(void **state) {
-  (void)state;
-  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_particles *set = block(own, 0.0);
-  mps_dynamics *dynamics = held_block(own, set, false);
+TEST(accelerations_that_are_not_finite_are_not_shown) {
+  scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_particles *set = block(own, 0.0);
+  scoped_dynamics *dynamics = held_block(own, set, false);
   mps_view view;
   OK(mps_dynamics_refresh(dynamics));
   OK(mps_particles_view(set, "displacement", &view));
@@ -211,38 +182,33 @@ static void accelerations_that_are_not_finite_are_not_shown(void **state) {
     *(double *)(uintptr_t)mps_view_f64(&view, i, 0) = i % 2 ? 1e308 : -1e308;
   OK(mps_dynamics_restart(dynamics, 0.0));
   const uint64_t before = seen_dynamics(dynamics, false);
-  FAILS(mps_dynamics_refresh(dynamics), MPS_ERROR_DIVERGED, "must be finite");
+  FAILS_ON(own, mps_dynamics_refresh(dynamics), MPS_ERROR_DIVERGED, "must be finite");
   assert_true(seen_dynamics(dynamics, false) == before);
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
 }
 
 /* ---- ids to come ----------------------------------------------------------------------------- */
 
 /* Ids 5 to 9 are removed: the set that was brought together knows that they were there. */
-static void ids_to_come_follow_those_that_are_gone(void **state) {
-  (void)state;
+TEST(ids_to_come_follow_those_that_are_gone) {
   static const int64_t ids[10] = {5, 6, 7, 8, 9, 0, 1, 2, 3, 4};
   static const char *const names[] = {"id"};
-  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   team t;
   team_begin(&t, 1);
   const mps_domain_def def = team_domain_def(&t, 0);
-  mps_domain *domain = NULL;
+  scoped_domain *domain = NULL;
   OK(mps_domain_create(own, &def, &domain));
   for (int again = 0; again < 2; again++) {
-    mps_particles_def set_def = mps_particles_defaults();
+    DEF(particles, set_def, .spacing = 0.1);
     const double places[20] = {0};
-    mps_particles *set = NULL, *whole = NULL;
-    set_def.spacing = 0.1;
+    scoped_particles *set = NULL, *whole = NULL;
     OK(mps_particles_create(own, &set_def, &set));
     for (int part = 0; part < 2; part++) {
       OK(mps_particles_append(set, 5, places));
       /* `again`: it has the same particles already when more were added and removed */
       if (part == 0 && again) OK(mps_domain_gather_fields(domain, set, 1, names, &whole));
     }
-    OK(mps_particles_remove(set, again ? 5 : 10, ids));
+    OK(mps_particles_remove(set, ids, again ? 5 : 10));
     OK(mps_domain_gather_fields(domain, set, 1, names, &whole));
     const int64_t left = again ? 5 : 0;
     assert_int_equal(mps_particles_count(whole), left);
@@ -253,24 +219,6 @@ static void ids_to_come_follow_those_that_are_gone(void **state) {
       assert_int_equal(mps_particles_index(whole, id), id < left ? id
                                                        : id < 10 ? -1
                                                                  : left + id - 10);
-    mps_particles_destroy(&whole);
-    mps_particles_destroy(&set);
   }
-  mps_domain_destroy(&domain);
   team_end(&t);
-  mps_context_destroy(&own);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_refused_snapshot_takes_no_edit_in),
-      cmocka_unit_test(a_refused_file_takes_no_edit_in),
-      cmocka_unit_test(a_material_is_refused_as_a_whole),
-      cmocka_unit_test(damping_is_refused_as_a_whole),
-      cmocka_unit_test(fields_of_a_material_that_is_refused_stay),
-      cmocka_unit_test(no_motion_begins_at_a_speed_without_an_energy),
-      cmocka_unit_test(accelerations_that_are_not_finite_are_not_shown),
-      cmocka_unit_test(ids_to_come_follow_those_that_are_gone),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

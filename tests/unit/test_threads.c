@@ -4,10 +4,6 @@
 #include "pthread_executor.h"
 #include "test_common.h"
 
-#include <mps/kernel.h>
-
-#include <stdbool.h>
-
 enum { UNITS = 500, THREADS = 4 };
 
 typedef struct sharing {
@@ -22,45 +18,39 @@ static void weigh(void *data, int64_t i, int32_t worker) {
   s->by_worker[worker]++;
 }
 
-static void workers_share_a_kernel_and_have_numbers_of_their_own(void **state) {
-  (void)state;
-  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_kernel *kernel = NULL;
-  mps_assert_ok(serial, mps_kernel_create(serial, MPS_KERNEL_MPS, 1.5, &kernel));
+TEST(workers_share_a_kernel_and_have_numbers_of_their_own) {
+  scoped_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_kernel *kernel = NULL;
+  OK(mps_kernel_create(serial, MPS_KERNEL_MPS, 1.5, &kernel));
   for (int32_t threads = 1; threads <= THREADS; threads++) {
     const mps_context_def def = pthread_executor_def(&threads);
-    mps_context *context = NULL;
+    scoped_context *context = NULL;
     char text[256];
     assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
     assert_int_equal(mps_context_threads(context), threads);
     sharing s = {.kernel = kernel};
-    mps_assert_ok(context, mps_context_parallel_for(context, UNITS, weigh, &s));
+    OK(mps_context_parallel_for(context, UNITS, weigh, &s));
     int64_t units = 0;
     for (int t = 0; t < THREADS; t++) units += s.by_worker[t];
     assert_int_equal(units, UNITS);
     for (int i = 0; i < UNITS; i++)
-      mps_assert_near(s.weight[i], (double)(UNITS + 1) / (i + 1) - 1.0, 1e-12 * UNITS);
-    mps_context_destroy(&context);
+      NEAR(s.weight[i], (double)(UNITS + 1) / (i + 1) - 1.0, 1e-12 * UNITS);
   }
-  mps_kernel_destroy(&kernel);
-  mps_context_destroy(&serial);
 }
 
 /* Makes objects, provokes an error, and reads it back; never asserts: not the test's own thread. */
 static void *use_a_context_of_its_own(void *argument) {
   bool *ok = argument;
   for (int round = 0; round < 50; round++) {
-    mps_context_def def = mps_context_defaults();
-    def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
+    DEF(context, def, .executor = MPS_CONTEXT_EXECUTOR_SERIAL);
     mps_context *context = NULL;
     mps_kernel *kernel = NULL;
-    double n0 = 0.0;
     if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return NULL;
     const bool made = mps_kernel_create(context, MPS_KERNEL_MPS, 1.5, &kernel) == MPS_OK;
-    const bool counted = made && mps_kernel_density(context, kernel, 2, 1.0, &n0) == MPS_OK;
+    const bool counted = made && mps_kernel_weight(kernel, 1.0) == 0.5;
     const bool clean = mps_context_error(context)->status == MPS_OK;
-    const bool refused = made &&
-                         mps_kernel_density(context, kernel, 7, 1.0, &n0) == MPS_ERROR_ARGUMENT &&
+    mps_kernel *none = NULL;
+    const bool refused = mps_kernel_create(context, 7, 1.5, &none) == MPS_ERROR_ARGUMENT &&
                          mps_context_error(context)->status == MPS_ERROR_ARGUMENT;
     mps_kernel_destroy(&kernel);
     mps_context_destroy(&context);
@@ -70,20 +60,11 @@ static void *use_a_context_of_its_own(void *argument) {
   return NULL;
 }
 
-static void distinct_contexts_are_independent(void **state) {
-  (void)state;
+TEST(distinct_contexts_are_independent) {
   pthread_t ids[THREADS];
   bool ok[THREADS] = {false};
   for (int t = 0; t < THREADS; t++)
     assert_int_equal(pthread_create(&ids[t], NULL, use_a_context_of_its_own, &ok[t]), 0);
   for (int t = 0; t < THREADS; t++) assert_int_equal(pthread_join(ids[t], NULL), 0);
   for (int t = 0; t < THREADS; t++) assert_true(ok[t]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(workers_share_a_kernel_and_have_numbers_of_their_own),
-      cmocka_unit_test(distinct_contexts_are_independent),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

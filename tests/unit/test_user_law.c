@@ -1,9 +1,8 @@
 /* test_user_law.c - a law of the caller's own in the WLS-MPM solver: its block, its history, and
  * its failures. SPDX-License-Identifier: BSD-3-Clause */
+#include "material/material_internal.h"
 #include "mpm_scene.h"
 #include "pthread_executor.h"
-
-#include <mps/mpm_settle.h>
 
 #define G 2e4
 #define K 5e4 /* Pa */
@@ -47,13 +46,10 @@ static mps_status elastic(void *user, const mps_material_block *b) {
 
 static mps_material *make_law(mps_context *context, const char *name, int32_t columns,
                               const char *const *names, seen *s) {
-  mps_material_user_def def = mps_material_user_defaults();
+  DEF(material_user, def, .update = elastic, .user = s, .name = name, .history_count = columns,
+      .history = names, .wave_modulus = K + 4.0 / 3.0 * G);
   mps_material *out = NULL;
-  def.update = elastic, def.user = s;
-  def.name = name;
-  def.history_count = columns, def.history = names;
-  def.wave_modulus = K + 4.0 / 3.0 * G;
-  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
+  OK(mps_material_create_user(context, &def, &out));
   return out;
 }
 
@@ -66,40 +62,36 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
   const double v0[] = {0.2, -0.1}, L[] = {0.5, -2.0, 2.0, -0.3};
   mpm_scene_affine(&s, v0, L);
   if (warm) {
-    mps_assert_ok(context, mps_particles_add_field(s.particles, "temperature", 0));
+    OK(mps_particles_add_field(s.particles, "temperature", 0));
     mps_view id = mpm_scene_view(&s, "id");
     mps_edit T = mpm_scene_edit(&s, "temperature");
     for (int64_t k = 0; k < T.view.shape[0]; k++)
       *mps_edit_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
     mpm_scene_commit(&s, &T);
   }
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
+  DEF(mpm, def, .cell = 0.02);
   mpm_scene_solve(&s, &def);
   return s;
 }
 
 /* ---- members of a block ---------------------------------------------------------------------- */
 
-static void a_block_tells_ids_places_time_and_temperature(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_block_tells_ids_places_time_and_temperature) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int warm = 0; warm < 2; warm++) {
     static seen told;
     told = (seen){.bad = -1000};
-    mpm_scene s = begin(context, make_law(context, "spy", 0, NULL, &told), warm);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 30)); /* sorted by now */
+    scoped_mpm_scene s = begin(context, make_law(context, "spy", 0, NULL, &told), warm);
+    OK(mps_mpm_step(s.mpm, 30)); /* sorted by now */
     mps_view x = mpm_scene_view(&s, "position");
     assert_int_equal(x.shape[0], PARTICLES);
     for (int64_t id = 0; id < PARTICLES; id++) {
       const int64_t k = mps_particles_index(s.particles, id);
-      for (int c = 0; c < 2; c++) mps_assert_near(told.x[id][c], *mps_view_f64(&x, k, c), 0.0);
-      mps_assert_near(told.temperature[id], warm ? 280.0 + (double)id : -1.0, 0.0);
-      mps_assert_near(told.time[id], mps_mpm_time(s.mpm), 1e-15);
+      for (int c = 0; c < 2; c++) NEAR(told.x[id][c], *mps_view_f64(&x, k, c), 0.0);
+      NEAR(told.temperature[id], warm ? 280.0 + (double)id : -1.0, 0.0);
+      NEAR(told.time[id], mps_mpm_time(s.mpm), 1e-15);
     }
-    mpm_scene_end(&s);
   }
-  mps_context_destroy(&context);
 }
 
 /* ---- history --------------------------------------------------------------------------------- */
@@ -112,59 +104,50 @@ static void same_column(mpm_scene *a, mpm_scene *b, const char *name) {
 }
 
 /* A column called as a field of the library is neither that field nor disturbs it. */
-static void names_of_the_field_table_do_no_harm(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(names_of_the_field_table_do_no_harm) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const char *const table[] = {"group",  "volume",   "density", "mass",
                                       "stress", "velocity", "id",      "position"};
   static const char *const plain[] = {"a", "b", "c", "d", "e", "f", "g", "h"};
-  mpm_scene x = begin(context, make_law(context, "clay", 8, table, NULL), false);
-  mpm_scene y = begin(context, make_law(context, "clay", 8, plain, NULL), false);
-  mps_assert_ok(context, mps_mpm_step(x.mpm, 50));
-  mps_assert_ok(context, mps_mpm_step(y.mpm, 50));
+  scoped_mpm_scene x = begin(context, make_law(context, "clay", 8, table, NULL), false);
+  scoped_mpm_scene y = begin(context, make_law(context, "clay", 8, plain, NULL), false);
+  OK(mps_mpm_step(x.mpm, 50));
+  OK(mps_mpm_step(y.mpm, 50));
   same_column(&x, &y, "position");
   same_column(&x, &y, "stress");
   same_column(&x, &y, "volume");
   same_column(&x, &y, "mass");
   same_column(&x, &y, "density");
   mps_view group = mpm_scene_view(&x, "clay.group");
-  mps_assert_near(*mps_view_f64(&group, 7, 0), 50.0, 0.0);
-  assert_string_equal(mps_material_history_field(x.material, 3), "clay.mass");
+  NEAR(*mps_view_f64(&group, 7, 0), 50.0, 0.0);
+  assert_string_equal(mpsi_material_history_field(x.material, 3), "clay.mass");
   assert_string_equal(mps_material_history_name(x.material, 3), "mass");
-  assert_null(mps_material_history_field(x.material, 8));
-  assert_null(mps_material_history_field(NULL, 0));
+  assert_null(mpsi_material_history_field(x.material, 8));
+  assert_null(mpsi_material_history_field(NULL, 0));
   mps_view mass = mpm_scene_view(&x, "mass");
-  mps_assert_near(*mps_view_f64(&mass, 0, 0), 1000.0 * 1e-4, 1e-12);
-  mpm_scene_end(&x);
-  mpm_scene_end(&y);
-  mps_context_destroy(&context);
+  NEAR(*mps_view_f64(&mass, 0, 0), 1000.0 * 1e-4, 1e-12);
 }
 
 /* Two laws with a column of the same name, and a caller's field so called. */
-static void laws_do_not_share_columns(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(laws_do_not_share_columns) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const char *const names[] = {"damage"};
-  mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
-  mps_material *silt = make_law(context, "silt", 1, names, NULL);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "damage", 3));
+  scoped_mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
+  scoped_material *silt = make_law(context, "silt", 1, names, NULL);
+  OK(mps_particles_add_field(s.particles, "damage", 3));
   const int64_t ids[] = {5};
-  mps_assert_ok(context, mps_mpm_set_material(s.mpm, silt, 1, ids));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  OK(mps_mpm_set_material(s.mpm, silt, ids, 1));
+  OK(mps_mpm_step(s.mpm, 10));
   mps_view a = mpm_scene_view(&s, "clay.damage"), b = mpm_scene_view(&s, "silt.damage");
   for (int64_t id = 0; id < PARTICLES; id++) {
     const int64_t k = mps_particles_index(s.particles, id);
-    mps_assert_near(*mps_view_f64(&a, k, 0), id == 5 ? 0.0 : 10.0, 0.0);
-    mps_assert_near(*mps_view_f64(&b, k, 0), id == 5 ? 10.0 : 0.0, 0.0);
+    NEAR(*mps_view_f64(&a, k, 0), id == 5 ? 0.0 : 10.0, 0.0);
+    NEAR(*mps_view_f64(&b, k, 0), id == 5 ? 10.0 : 0.0, 0.0);
   }
-  mps_material_destroy(&silt);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
 }
 
-static void histories_may_be_long(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(histories_may_be_long) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static char text[MOST][8];
   const char *names[MOST];
   for (int c = 0; c < MOST; c++) {
@@ -174,32 +157,29 @@ static void histories_may_be_long(void **state) {
   mps_material *law = make_law(context, "long", MOST, names, NULL);
   mps_material_point point;
   const double rest[9] = {0.0};
-  mps_assert_ok(context, mps_material_point_init(context, law, &point));
-  mps_assert_ok(context, mps_material_point_drive(context, law, &point, rest, 1.0, 10));
-  mps_assert_near(point.history[MOST - 1], 400.0, 0.0); /* as in the solver below */
-  mpm_scene s = begin(context, law, false);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  OK(mps_material_point_init(context, law, &point));
+  OK(mps_material_point_drive(context, law, &point, rest, 1.0, 10));
+  NEAR(point.history[MOST - 1], 400.0, 0.0); /* as in the solver below */
+  scoped_mpm_scene s = begin(context, law, false);
+  OK(mps_mpm_step(s.mpm, 10));
   mps_view last = mpm_scene_view(&s, "long.h39");
-  for (int64_t k = 0; k < PARTICLES; k++) mps_assert_near(*mps_view_f64(&last, k, 0), 400.0, 0.0);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
+  for (int64_t k = 0; k < PARTICLES; k++) NEAR(*mps_view_f64(&last, k, 0), 400.0, 0.0);
 }
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
 /* The status, the words and the particle reach the caller, from whichever thread. */
-static void a_refusal_names_the_particle(void **state) {
-  (void)state;
+TEST(a_refusal_names_the_particle) {
   int64_t told_first = -1;
   for (int32_t threads = 1; threads <= 4; threads++) {
     mps_context_def own = pthread_executor_def(&threads);
-    mps_context *context = NULL;
+    scoped_context *context = NULL;
     assert_int_equal(mps_context_create(&own, &context, NULL, 0), MPS_OK);
     static seen told;
     told = (seen){.bad = 30, .from = 0.01}; /* and 180, in another block */
-    mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
-    mps_assert_fails(context, mps_mpm_run(s.mpm, 1.0, 1, NULL, NULL), MPS_ERROR_DIVERGED,
-                     "the law 'touchy' has refused particle ");
+    scoped_mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+    FAILS(mps_mpm_run(s.mpm, 1.0, 1, NULL, NULL), MPS_ERROR_DIVERGED,
+          "the law 'touchy' has refused particle ");
     const mps_error *error = mps_context_error(context);
     assert_non_null(strstr(error->message, ": stretch 1.5"));
     assert_true(error->particle == 30 || error->particle == 180);
@@ -209,87 +189,59 @@ static void a_refusal_names_the_particle(void **state) {
     if (told_first < 0) told_first = error->particle;
     assert_int_equal(error->particle, told_first);
     told.bad = -1000;
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it refuses no more */
-    mpm_scene_end(&s);
-    mps_context_destroy(&context);
+    OK(mps_mpm_step(s.mpm, 1)); /* it refuses no more */
   }
 }
 
 /* Time, steps and shortest remainder of a run whose only step is refused are as before it. */
-static void a_run_that_is_refused_takes_no_time(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_run_that_is_refused_takes_no_time) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = 30, .from = -1.0};
-  mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+  scoped_mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
   const double t_end = 0.5 * mps_mpm_dt(s.mpm);
-  mps_assert_fails(context, mps_mpm_run(s.mpm, t_end, 1, NULL, NULL), MPS_ERROR_DIVERGED,
-                   "has refused particle ");
+  FAILS(mps_mpm_run(s.mpm, t_end, 1, NULL, NULL), MPS_ERROR_DIVERGED, "has refused particle ");
   assert_int_equal(mps_mpm_steps(s.mpm), 0);
-  mps_assert_near(mps_mpm_time(s.mpm), 0.0, 0.0);
+  NEAR(mps_mpm_time(s.mpm), 0.0, 0.0);
   told.bad = -1000;
-  mps_assert_ok(context, mps_mpm_run(s.mpm, t_end, 1, NULL, NULL));
+  OK(mps_mpm_run(s.mpm, t_end, 1, NULL, NULL));
   assert_int_equal(mps_mpm_steps(s.mpm), 1);
-  mps_assert_near(mps_mpm_time(s.mpm), t_end, 0.0);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
+  NEAR(mps_mpm_time(s.mpm), t_end, 0.0);
 }
 
 /* A result of no bytes is refused before anything is settled. */
-static void settling_looks_at_its_result_first(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(settling_looks_at_its_result_first) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = -1000};
-  mpm_scene s = begin(context, make_law(context, "mild", 0, NULL, &told), false);
-  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  scoped_mpm_scene s = begin(context, make_law(context, "mild", 0, NULL, &told), false);
+  DEF(mpm_settle, def, .max_steps = 2);
   mps_mpm_settled out;
-  def.max_steps = 2;
   const double kinetic = mpm_scene_totals(&s).kinetic;
-  mps_assert_fails(context, mps_mpm_settle_sized(s.mpm, &def, &out, 0), MPS_ERROR_ARGUMENT,
-                   "size is 0");
+  REFUSES(mps_mpm_settle_sized(s.mpm, &def, &out, 0), "size is 0");
   assert_int_equal(mps_mpm_steps(s.mpm), 0);
-  mps_assert_near(mpm_scene_totals(&s).kinetic, kinetic, 0.0);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
+  NEAR(mpm_scene_totals(&s).kinetic, kinetic, 0.0);
 }
 
 static int32_t cancel_third(void *user) { return ++*(int *)user >= 3; }
 
 /* Settling that was cut leaves particles that move; a step starts them from rest, if it happens. */
-static void a_refused_step_leaves_settling_as_it_was_cut(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_refused_step_leaves_settling_as_it_was_cut) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = -1000};
-  mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+  scoped_mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
   mps_mpm_settle_def def = mps_mpm_settle_defaults();
   int asked = 0;
-  mps_assert_ok(context, mps_particles_set(mps_mpm_particles(s.mpm), "external_force", 1, -0.1));
+  OK(mps_particles_set(mps_mpm_particles(s.mpm), "external_force", 1, -0.1));
   def.max_steps = 100;
-  mps_context_set_cancel(context, cancel_third, &asked);
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, &def, NULL), MPS_ERROR_CANCELLED, "cancel");
-  mps_context_set_cancel(context, NULL, NULL);
+  mps_context_set_cancel(context, cancel_third, &asked, NULL);
+  FAILS(mps_mpm_settle(s.mpm, &def, NULL), MPS_ERROR_CANCELLED, "cancel");
+  mps_context_set_cancel(context, NULL, NULL, NULL);
   const mps_totals before = mpm_scene_totals(&s);
   assert_true(before.kinetic > 0.0);
   told.bad = 30, told.from = -1.0;
-  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_DIVERGED, "has refused particle ");
+  FAILS(mps_mpm_step(s.mpm, 1), MPS_ERROR_DIVERGED, "has refused particle ");
   const mps_totals after = mpm_scene_totals(&s);
   assert_memory_equal(&after, &before, sizeof after);
-  mpm_scene_end(&s);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_refused_step_leaves_settling_as_it_was_cut),
-      cmocka_unit_test(a_block_tells_ids_places_time_and_temperature),
-      cmocka_unit_test(names_of_the_field_table_do_no_harm),
-      cmocka_unit_test(laws_do_not_share_columns),
-      cmocka_unit_test(histories_may_be_long),
-      cmocka_unit_test(a_refusal_names_the_particle),
-      cmocka_unit_test(a_run_that_is_refused_takes_no_time),
-      cmocka_unit_test(settling_looks_at_its_result_first),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,6 @@
 #include "../../bench/plain_dynamics.h"
 #include "soil_column.h"
 
-#include <mps/neighbours.h>
-
 enum { COLUMNS = 23, ROWS = 31, COUNT = COLUMNS * ROWS, STEPS = 300 };
 
 /* Uniform in [-1, 1), from a fixed seed. */
@@ -51,15 +49,14 @@ static plain_body plain_from(mps_context *context, const sample *s, int integrat
       b.r_old[3 * k + c] = b.r[3 * k + c] - dt * s->v[3 * k + c];
     }
   }
-  mps_neighbours_def def = mps_neighbours_defaults();
+  DEF(neighbours, def, .radius = 1.5);
   mps_neighbours *lists = NULL;
-  def.radius = 1.5;
   const mps_view view = {
       .data = (void *)s->xy, .shape = {COUNT, 2, 1}, .stride = {2, 1, 1}, .dtype = {2, 64, 1}};
   const int64_t *first, *index;
-  mps_assert_ok(context, mps_neighbours_create(context, &def, &lists));
-  mps_assert_ok(context, mps_neighbours_build(lists, &view));
-  mps_assert_ok(context, mps_neighbours_lists(lists, NULL, &first, &index));
+  OK(mps_neighbours_create(context, &def, &lists));
+  OK(mps_neighbours_build(lists, &view));
+  OK(mps_neighbours_lists(lists, NULL, &first, &index));
   b.first = malloc((COUNT + 1) * sizeof *b.first);
   b.neighbour = malloc((size_t)first[COUNT] * sizeof *b.neighbour);
   assert_true(b.first && b.neighbour);
@@ -71,16 +68,15 @@ static plain_body plain_from(mps_context *context, const sample *s, int integrat
 
 static mps_dynamics *solver_from(mps_context *context, const sample *s, int integrator, int removal,
                                  double damping, double dt, mps_particles **particles) {
-  mps_particles_def set = mps_particles_defaults();
-  set.spacing = 1.0;
-  mps_assert_ok(context, mps_particles_create(context, &set, particles));
-  mps_assert_ok(context, mps_particles_append(*particles, COUNT, s->xy));
+  DEF(particles, set, .spacing = 1.0);
+  OK(mps_particles_create(context, &set, particles));
+  OK(mps_particles_append(*particles, COUNT, s->xy));
   const char *const names[] = {"density", "shear_velocity", "pressure_velocity",
                                "damping", "velocity",       "spin"};
   mps_edit view[6];
   for (int f = 0; f < 6; f++) {
-    mps_assert_ok(context, mps_particles_add_field(*particles, names[f], 0));
-    mps_assert_ok(context, mps_particles_edit(*particles, names[f], &view[f]));
+    OK(mps_particles_add_field(*particles, names[f], 0));
+    OK(mps_particles_edit(*particles, names[f], &view[f]));
   }
   for (int64_t k = 0; k < COUNT; k++) {
     *mps_edit_f64(&view[0], k, 0) = s->rho[k];
@@ -91,14 +87,13 @@ static mps_dynamics *solver_from(mps_context *context, const sample *s, int inte
     *mps_edit_f64(&view[4], k, 1) = s->v[3 * k + 1];
     *mps_edit_f64(&view[5], k, 0) = s->v[3 * k + 2];
   }
-  for (int f = 0; f < 6; f++) mps_assert_ok(context, mps_particles_commit(*particles, &view[f]));
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.integrator = integrator;
-  def.rotation =
-      removal == 12 ? MPS_DYNAMICS_ROTATION_MEAN_MATRIX : MPS_DYNAMICS_ROTATION_MEAN_ANGLE;
-  def.dt = dt;
+  for (int f = 0; f < 6; f++) OK(mps_particles_commit(*particles, &view[f]));
+  DEF(dynamics, def, .integrator = integrator,
+      .rotation =
+          removal == 12 ? MPS_DYNAMICS_ROTATION_MEAN_MATRIX : MPS_DYNAMICS_ROTATION_MEAN_ANGLE,
+      .dt = dt);
   mps_dynamics *dynamics = NULL;
-  mps_assert_ok(context, mps_dynamics_create(context, *particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
   return dynamics;
 }
 
@@ -106,44 +101,34 @@ static mps_dynamics *solver_from(mps_context *context, const sample *s, int inte
 static double difference(int integrator, int removal, double damping) {
   static sample s;
   draw(&s);
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double dt = integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? 1e-5 : 2e-3;
-  mps_particles *particles = NULL;
+  scoped_particles *particles = NULL;
   plain_body plain = plain_from(context, &s, integrator, removal, damping, dt);
-  mps_dynamics *dynamics = solver_from(context, &s, integrator, removal, damping, dt, &particles);
+  scoped_dynamics *dynamics =
+      solver_from(context, &s, integrator, removal, damping, dt, &particles);
   for (int k = 0; k < STEPS; k++) plain_step(&plain);
-  mps_assert_ok(context, mps_dynamics_step(dynamics, STEPS));
+  OK(mps_dynamics_step(dynamics, STEPS));
   double worst = 0.0, most = 0.0;
   for (int64_t id = 0; id < COUNT; id++) {
     for (int c = 0; c < 2; c++)
-      worst = fmax(worst,
-                   fabs(soil_value(context, particles, "position", id, c) - plain.r[3 * id + c]));
-    worst =
-        fmax(worst, fabs(soil_value(context, particles, "rotation", id, 0) - plain.r[3 * id + 2]));
+      worst = fmax(worst, fabs(soil_value(particles, "position", id, c) - plain.r[3 * id + c]));
+    worst = fmax(worst, fabs(soil_value(particles, "rotation", id, 0) - plain.r[3 * id + 2]));
     most = fmax(most, fabs(plain.r[3 * id + 2]));
   }
   if (integrator != MPS_DYNAMICS_INTEGRATOR_EULER)
     assert_true(most > 0.3); /* the rotations are finite */
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&particles);
-  mps_context_destroy(&context);
   plain_free(&plain);
   return worst;
 }
 
-static void the_solver_follows_the_plain_equations(void **state) {
-  (void)state;
+TEST(the_solver_follows_the_plain_equations) {
   for (int removal = 11; removal <= 12; removal++)
     for (int integrator = 0; integrator <= 2; integrator++)
       for (int damped = 0; damped <= 1; damped++) {
         const double error = difference(integrator, removal, damped ? 0.03 : 0.0);
         print_message("removal %d, integrator %d, damping %g: %.2g\n", removal, integrator,
                       damped ? 0.03 : 0.0, error);
-        mps_assert_near(error, 0.0, 1e-9);
+        NEAR(error, 0.0, 1e-9);
       }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_solver_follows_the_plain_equations)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,8 +50,8 @@ typedef struct traces {
 static mps_status record(void *user, mps_dynamics *dynamics) {
   traces *t = user;
   (void)dynamics;
-  t->surface[t->count] = soil_value(t->context, t->particles, "acceleration", t->top, 0);
-  t->bottom[t->count++] = soil_value(t->context, t->particles, "acceleration", t->base, 0);
+  t->surface[t->count] = soil_value(t->particles, "acceleration", t->top, 0);
+  t->bottom[t->count++] = soil_value(t->particles, "acceleration", t->base, 0);
   return MPS_OK;
 }
 
@@ -81,36 +81,32 @@ static peaks find_peaks(const double *amplitude) {
 /* The layered column with periodic sides, its base condition set. */
 static mps_dynamics *build(mps_context *context, bool viscous, double spacing, mps_signal *input,
                            mps_particles **particles) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.f1 = f1, def.f2 = f2;
+  DEF(dynamics, def, .f1 = f1, .f2 = f2);
   def.courant = 0.5; /* damping is one-sided in time: its error is of the order of dt */
   def.period_x = 4.0 * spacing;
   mps_dynamics *dynamics = NULL;
   *particles = soil_particles(context, spacing, 4.0 * spacing, height, 3, layers);
-  mps_assert_ok(context, mps_dynamics_create(context, *particles, &def, &dynamics));
+  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
   int64_t count;
-  int64_t *base = soil_select(context, *particles, -1.0, -1.0, 100.0, spacing, &count);
+  int64_t *base = soil_select(*particles, -1.0, -1.0, 100.0, spacing, &count);
   if (viscous) {
-    mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
-    boundary.density = rock_density;
-    boundary.shear_velocity = rock_vs;
-    boundary.pressure_velocity = 2.0 * rock_vs;
-    boundary.signal[0] = input;
-    mps_assert_ok(context, soil_add_viscous(dynamics, &boundary, count, base));
+    DEF(dynamics_boundary, boundary, .density = rock_density, .shear_velocity = rock_vs,
+        .pressure_velocity = 2.0 * rock_vs, .signal[0] = input);
+    OK(soil_add_viscous(dynamics, &boundary, count, base));
   } else {
-    mps_assert_ok(context, soil_add_held(dynamics, MPS_DOF_Y, count, base));
-    mps_assert_ok(context, soil_add_driven(dynamics, 0, input, 1.0, count, base));
+    OK(soil_add_held(dynamics, MPS_DOF_Y, count, base));
+    OK(soil_add_driven(dynamics, 0, input, 1.0, count, base));
   }
   free(base);
   return dynamics;
 }
 
 static void compare(bool viscous, double spacing, double duration) {
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_particles *particles = NULL;
-  mps_signal *input = NULL;
-  mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.5, 1.0, &input));
-  mps_dynamics *dynamics = build(context, viscous, spacing, input, &particles);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_particles *particles = NULL;
+  scoped_signal *input = NULL;
+  OK(mps_signal_create_ricker(context, 4.0, 0.5, 1.0, &input));
+  scoped_dynamics *dynamics = build(context, viscous, spacing, input, &particles);
   const double dt = EVERY * mps_dynamics_dt(dynamics); /* of the samples */
   const int64_t steps = (int64_t)(duration / dt) + 4;
   const double top[2] = {2.0 * spacing, height}, foot[2] = {2.0 * spacing, 0.0};
@@ -120,7 +116,7 @@ static void compare(bool viscous, double spacing, double duration) {
   t.surface = malloc((size_t)steps * sizeof(double));
   t.bottom = malloc((size_t)steps * sizeof(double));
   assert_true(t.surface && t.bottom);
-  mps_assert_ok(context, mps_dynamics_run(dynamics, duration, EVERY, record, &t));
+  OK(mps_dynamics_run(dynamics, duration, EVERY, record, &t));
   if (viscous) /* relative to the outcrop, twice the incoming wave */
     for (int64_t k = 0; k < t.count; k++)
       t.bottom[k] = 2.0 * mps_signal_acceleration(input, (double)k * dt);
@@ -138,28 +134,13 @@ static void compare(bool viscous, double spacing, double duration) {
                   viscous ? "viscous" : "rigid", spacing, k + 1, e.f[k], e.amplitude[k], m.f[k],
                   m.amplitude[k], 100.0 * (m.f[k] / e.f[k] - 1.0),
                   100.0 * (m.amplitude[k] / e.amplitude[k] - 1.0));
-    mps_assert_near(m.amplitude[k] / e.amplitude[k], 1.0, 0.03);
-    mps_assert_near(m.f[k] / e.f[k], 1.0, 0.02);
+    NEAR(m.amplitude[k] / e.amplitude[k], 1.0, 0.03);
+    NEAR(m.f[k] / e.f[k], 1.0, 0.02);
   }
   free(t.surface);
   free(t.bottom);
-  mps_signal_destroy(&input);
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&particles);
-  mps_context_destroy(&context);
 }
 
-static void rigid_base(void **state) {
-  (void)state;
-  compare(false, 0.5, 40.0);
-}
+TEST(rigid_base) { compare(false, 0.5, 40.0); }
 
-static void viscous_base(void **state) {
-  (void)state;
-  compare(true, 0.5, 12.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rigid_base), cmocka_unit_test(viscous_base)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(viscous_base) { compare(true, 0.5, 12.0); }

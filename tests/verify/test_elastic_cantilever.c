@@ -8,12 +8,12 @@
 static const int size_nx[4] = {17, 33, 65, 129}, size_ny[4] = {9, 17, 33, 65};
 
 static double tip_error(const mps_elastic_def *def, double nu, int size, test_method method) {
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   cantilever c = {.nu = nu, .height = 2.0};
-  test_body b = cantilever_make(context, &c, size_nx[size], size_ny[size], def, method);
+  scoped_test_body b = cantilever_make(context, &c, size_nx[size], size_ny[size], def, method);
   const double error = 100.0 * cantilever_solve(&b, &c, method);
   mps_elastic_report report;
-  mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+  OK(mps_elastic_get_report(b.elastic, &report));
   print_message("nu %g method %d re %g N %d: tip error %+.3f %%, residual %.1e, nnz(K)/row %.1f, "
                 "nnz(L) %.3g, assemble %.3f analyse %.3f factor %.3f s\n",
                 nu, (int)method, def->radius_ratio, (int)b.n, error, report.residual,
@@ -22,35 +22,28 @@ static double tip_error(const mps_elastic_def *def, double nu, int size, test_me
                 (double)report.factor_nonzeros, report.seconds_assemble, report.seconds_analyse,
                 report.seconds_factor);
   assert_true(report.residual < 1e-10);
-  test_body_end(&b);
-  mps_context_destroy(&context);
   return error;
 }
 
-static void conservative_tip_errors_are_the_reference_values(void **state) {
-  (void)state;
+TEST(conservative_tip_errors_are_the_reference_values) {
   const double expected[4] = {0.79, 0.34, 0.11, 0.03};
   mps_elastic_def def = mps_elastic_defaults();
-  for (int k = 0; k < 4; k++)
-    mps_assert_near(tip_error(&def, 0.3, k, TEST_CONSERVATIVE), expected[k], 0.05);
+  for (int k = 0; k < 4; k++) NEAR(tip_error(&def, 0.3, k, TEST_CONSERVATIVE), expected[k], 0.05);
 }
 
-static void published_tip_errors_are_the_reference_values(void **state) {
-  (void)state;
+TEST(published_tip_errors_are_the_reference_values) {
   const double wide[4] = {3.6, 3.0, 1.9, 1.05}, narrow[4] = {-1.26, -0.09, 0.14, 0.13};
   mps_elastic_def def = mps_elastic_defaults();
   for (int k = 0; k < 4; k++) {
     def.radius_ratio = 3.0;
-    mps_assert_near(tip_error(&def, 0.3, k, TEST_PUBLISHED), wide[k], 0.05);
+    NEAR(tip_error(&def, 0.3, k, TEST_PUBLISHED), wide[k], 0.05);
     def.radius_ratio = 2.1;
-    mps_assert_near(tip_error(&def, 0.3, k, TEST_PUBLISHED), narrow[k], 0.05);
+    NEAR(tip_error(&def, 0.3, k, TEST_PUBLISHED), narrow[k], 0.05);
   }
 }
 
-static void a_nearly_incompressible_cantilever_does_not_lock(void **state) {
-  (void)state;
-  mps_elastic_def def = mps_elastic_defaults();
-  def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
+TEST(a_nearly_incompressible_cantilever_does_not_lock) {
+  DEF(elastic, def, .state = MPS_ELASTIC_STATE_PLANE_STRAIN);
   assert_true(fabs(tip_error(&def, 0.4999, 0, TEST_CONSERVATIVE)) < 2.0);
 }
 
@@ -91,8 +84,7 @@ static void four_unknown_rows(const test_body *b, const cantilever *c, double ra
 }
 
 static double four_unknown_difference(mps_context *context, double ratio, test_method method) {
-  mps_elastic_def def = mps_elastic_defaults();
-  def.radius_ratio = ratio;
+  DEF(elastic, def, .radius_ratio = ratio);
   cantilever c = {.nu = 0.3, .height = 2.0};
   test_body b = cantilever_make(context, &c, 17, 9, &def, method);
   (void)cantilever_solve(&b, &c, method);
@@ -131,41 +123,36 @@ static double four_unknown_difference(mps_context *context, double ratio, test_m
   return worst / largest;
 }
 
-static void the_condensed_form_is_the_papers_four_unknown_form(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(the_condensed_form_is_the_papers_four_unknown_form) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int k = 0; k < 2; k++) {
     const double difference = four_unknown_difference(context, k ? 2.1 : 3.0, TEST_PUBLISHED);
     print_message("condensed and four-unknown form differ by %.1e\n", difference);
-    mps_assert_near(difference, 0.0, 1e-11);
+    NEAR(difference, 0.0, 1e-11);
   }
-  mps_assert_near(four_unknown_difference(context, 3.0, TEST_CONSTANT), 0.0, 1e-11);
-  mps_context_destroy(&context);
+  NEAR(four_unknown_difference(context, 3.0, TEST_CONSTANT), 0.0, 1e-11);
 }
 
 /* ---- sections and stresses ------------------------------------------------------------------- */
 
-static void sections_carry_shear_and_moment(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(sections_carry_shear_and_moment) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (test_method method = TEST_CONSERVATIVE; method <= TEST_PUBLISHED; method++) {
     mps_elastic_def def = mps_elastic_defaults();
     cantilever c = {.nu = 0.3, .height = 2.0};
-    test_body b = cantilever_make(context, &c, 33, 17, &def, method);
+    scoped_test_body b = cantilever_make(context, &c, 33, 17, &def, method);
     (void)cantilever_solve(&b, &c, method);
     for (double x = 0.4; x < c.length; x += 0.5) {
       const double at[3] = {x, 0.0, 0.0};
       double force[3], moment[3];
-      mps_assert_ok(context, mps_elastic_get_section(b.elastic, 0, x, at, force, moment));
-      mps_assert_near(force[0], 0.0, 1e-10);
-      mps_assert_near(force[1], 1.0, 1e-10); /* the far side carries the load P = 1 up */
+      OK(mps_elastic_get_section(b.elastic, 0, x, at, force, moment));
+      NEAR(force[0], 0.0, 1e-10);
+      NEAR(force[1], 1.0, 1e-10); /* the far side carries the load P = 1 up */
       /* Nodal loads sit at the first particles where there is no first moment. */
       const double arm = x - (method ? 0.5 * c.height / 17 : 0.0);
-      mps_assert_near(moment[2], -arm, 1e-9);
+      NEAR(moment[2], -arm, 1e-9);
     }
-    test_body_end(&b);
   }
-  mps_context_destroy(&context);
 }
 
 /* L2 error of the stress over the body, in %: the wall's cells are half cells. */
@@ -174,7 +161,7 @@ static double stress_error(mps_context *context, int size) {
   cantilever c = {.nu = 0.3, .height = 2.0};
   test_body b = cantilever_make(context, &c, size_nx[size], size_ny[size], &def, TEST_CONSERVATIVE);
   (void)cantilever_solve(&b, &c, TEST_CONSERVATIVE);
-  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
+  OK(mps_elastic_update_stress(b.elastic));
   double wrong = 0, all = 0;
   for (int64_t i = 0; i < b.n; i++) {
     const double x = test_value(&b, "position", i, 0), y = test_value(&b, "position", i, 1);
@@ -191,16 +178,14 @@ static double stress_error(mps_context *context, int size) {
   return 100 * sqrt(wrong / all);
 }
 
-static void stress_errors_are_the_reference_values(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(stress_errors_are_the_reference_values) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double expected[4] = {4.3, 1.6, 0.59, 0.21};
   for (int k = 0; k < 4; k++) {
     const double error = stress_error(context, k);
     print_message("N %d: stress error %.2f %%\n", size_nx[k] * size_ny[k], error);
-    mps_assert_near(error, expected[k], 0.05);
+    NEAR(error, expected[k], 0.05);
   }
-  mps_context_destroy(&context);
 }
 
 /* ---- three dimensions ------------------------------------------------------------------------ */
@@ -215,19 +200,17 @@ static double bar(mps_context *context, int cells, int direction) {
   int64_t count, *wall = test_select(&b, 0, length - 0.1 * spacing, INFINITY, &count);
   double traction[3] = {0, 0, 0};
   traction[direction] = 1.0;
-  mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, 1, count, wall));
-  for (int c = 0; c < 3; c++)
-    mps_assert_ok(context, test_prescribe(b.elastic, c, count, wall, NULL));
+  OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_UPPER, wall, count));
+  for (int c = 0; c < 3; c++) OK(test_prescribe(b.elastic, c, count, wall, NULL));
   int64_t *facets = test_facets(&b, 0, -1, &count);
-  mps_assert_ok(context, test_traction(b.elastic, count, facets, traction));
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  OK(test_traction(b.elastic, count, facets, traction));
+  OK(mps_elastic_solve(b.elastic));
   double force[3], moment[3];
   const double at[3] = {3.0, 0.5, 0.5};
-  mps_assert_ok(context,
-                mps_elastic_get_section(b.elastic, 0, 3.0 - 0.25 * spacing, at, force, moment));
-  mps_assert_near(force[direction], -1.0, 1e-9); /* the wall's side holds the load */
-  mps_assert_near(fabs(moment[direction == 1 ? 2 : 1]), 3.0, 1e-8);
-  mps_assert_near(moment[0], 0.0, 1e-9);
+  OK(mps_elastic_get_section(b.elastic, 0, 3.0 - 0.25 * spacing, at, force, moment));
+  NEAR(force[direction], -1.0, 1e-9); /* the wall's side holds the load */
+  NEAR(fabs(moment[direction == 1 ? 2 : 1]), 3.0, 1e-8);
+  NEAR(moment[0], 0.0, 1e-9);
   double tip = 0.0, layer = 0.0;
   for (int64_t i = 0; i < b.n; i++)
     if (test_value(&b, "position", i, 0) < spacing) {
@@ -244,25 +227,10 @@ static double bar(mps_context *context, int cells, int direction) {
   return tip / layer / theory;
 }
 
-static void a_bar_bends_as_beam_theory_says(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_bar_bends_as_beam_theory_says) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double coarse = bar(context, 4, 1), fine = bar(context, 8, 1), across = bar(context, 4, 2);
   print_message("3D bar, 4 and 8 cells across: deflection / theory %.4f, %.4f\n", coarse, fine);
-  mps_assert_near(across / coarse, 1.0, 1e-9);
-  mps_assert_near(fine, 1.0, 0.02);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(conservative_tip_errors_are_the_reference_values),
-      cmocka_unit_test(published_tip_errors_are_the_reference_values),
-      cmocka_unit_test(a_nearly_incompressible_cantilever_does_not_lock),
-      cmocka_unit_test(the_condensed_form_is_the_papers_four_unknown_form),
-      cmocka_unit_test(sections_carry_shear_and_moment),
-      cmocka_unit_test(a_bar_bends_as_beam_theory_says),
-      cmocka_unit_test(stress_errors_are_the_reference_values),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  NEAR(across / coarse, 1.0, 1e-9);
+  NEAR(fine, 1.0, 0.02);
 }

@@ -9,9 +9,8 @@
 /* 17 x 17 cells; the left layer is the wall, free to contract. Largest relative error. */
 static double tension_error(mps_context *context, int32_t state) {
   const double nu = 0.3, load = 0.01;
-  mps_elastic_def def = mps_elastic_defaults();
-  def.state = state;
-  test_body b = test_body_begin(context, 2, 1.0 / 17);
+  DEF(elastic, def, .state = state);
+  scoped_test_body b = test_body_begin(context, 2, 1.0 / 17);
   test_body_box(&b, 0, 0, 0, 1, 1, 0);
   assert_int_equal(mps_particles_count(b.particles), 289);
   test_body_finish(&b, 1.0, nu, &def);
@@ -19,12 +18,12 @@ static double tension_error(mps_context *context, int32_t state) {
   int64_t *wall = test_select(&b, 0, -1, 0.5 / 17 + 1e-9, &count);
   int64_t *facets = test_facets(&b, 0, 1, &facet_count);
   const double traction[2] = {load, 0.0};
-  mps_assert_ok(context, test_prescribe(b.elastic, 0, count, wall, NULL));
-  mps_assert_ok(context, test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
-  mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, wall));
-  mps_assert_ok(context, test_traction(b.elastic, facet_count, facets, traction));
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
+  OK(test_prescribe(b.elastic, 0, count, wall, NULL));
+  OK(test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
+  OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_LOWER, wall, count));
+  OK(test_traction(b.elastic, facet_count, facets, traction));
+  OK(mps_elastic_solve(b.elastic));
+  OK(mps_elastic_update_stress(b.elastic));
   const double x0 = 0.5 / 17, y0 = test_value(&b, "position", wall[count / 2], 1);
   const int strain = state == MPS_ELASTIC_STATE_PLANE_STRAIN;
   const double ex = load * (strain ? 1 - nu * nu : 1), ey = -nu * load * (strain ? 1 + nu : 1);
@@ -43,57 +42,51 @@ static double tension_error(mps_context *context, int32_t state) {
   /* The force through any section is the load, without a moment about the middle. */
   const double middle[3] = {0.0, 0.5, 0.0};
   double force[3], moment[3];
-  mps_assert_ok(context, mps_elastic_get_section(b.elastic, 0, 0.4, middle, force, moment));
-  mps_assert_near(force[0] / load, 1.0, 1e-10);
-  mps_assert_near(force[1] / load, 0.0, 1e-10);
-  mps_assert_near(moment[2] / load, 0.0, 1e-10);
+  OK(mps_elastic_get_section(b.elastic, 0, 0.4, middle, force, moment));
+  NEAR(force[0] / load, 1.0, 1e-10);
+  NEAR(force[1] / load, 0.0, 1e-10);
+  NEAR(moment[2] / load, 0.0, 1e-10);
   free(wall);
   free(facets);
-  test_body_end(&b);
   return worst;
 }
 
-static void a_plate_in_tension_is_exact(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_plate_in_tension_is_exact) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t s = 0; s < 2; s++) {
     const double error = tension_error(context, s);
     print_message("plate in tension, 289 particles, state %d: largest error %.1e\n", s, error);
-    mps_assert_near(error, 0.0, 1e-10);
+    NEAR(error, 0.0, 1e-10);
   }
-  mps_context_destroy(&context);
 }
 
 /* The published method with the paper's particles on the boundary: nodal forces at the end. */
-static void the_published_plate_is_the_reference_value(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(the_published_plate_is_the_reference_value) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double l0 = 1.0 / 16;
-  test_body b = test_body_begin(context, 2, l0);
+  scoped_test_body b = test_body_begin(context, 2, l0);
   test_body_box(&b, 0, 0, 0, 17 * l0, 17 * l0, 0);
   test_body_finish_by(&b, 1.0, 0.3, NULL, TEST_PUBLISHED);
   int64_t count, ends;
   int64_t *wall = test_select(&b, 0, -1, 0.6 * l0, &count);
   int64_t *end = test_select(&b, 0, 16.4 * l0, 99, &ends);
-  mps_assert_ok(context, test_prescribe(b.elastic, 0, count, wall, NULL));
-  mps_assert_ok(context, test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
+  OK(test_prescribe(b.elastic, 0, count, wall, NULL));
+  OK(test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
   for (int64_t k = 0; k < ends; k++) {
     const double y = test_value(&b, "position", end[k], 1);
     const double force[2] = {y < l0 || y > 16 * l0 ? 0.5 * l0 : l0, 0.0};
-    mps_assert_ok(context, test_forces(b.elastic, 1, end + k, force));
+    OK(test_forces(b.elastic, 1, end + k, force));
   }
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  OK(mps_elastic_solve(b.elastic));
   double mean = 0.0;
   for (int64_t k = 0; k < ends; k++)
     mean += test_value(&b, "displacement", end[k], 0) / (double)ends;
   const double middle = test_value(&b, "displacement", end[ends / 2], 0);
   print_message("published plate: end displacement %+.2f %% (mean), %+.2f %% (middle)\n",
                 100 * (mean - 1), 100 * (middle - 1));
-  mps_assert_near(100 * (middle - 1), 0.7, 0.05);
+  NEAR(100 * (middle - 1), 0.7, 0.05);
   free(wall);
   free(end);
-  test_body_end(&b);
-  mps_context_destroy(&context);
 }
 
 /* ---- Kirsch ---------------------------------------------------------------------------------- */
@@ -146,54 +139,40 @@ static double kirsch_concentration(mps_context *context, int m) {
   double a = 1.0;
   const double l0 = a / (m + 0.5), side = 4.0;
   const int cells = (int)(side / l0);
-  mps_particles_def set = mps_particles_defaults();
-  set.spacing = l0;
+  DEF(particles, set, .spacing = l0);
   set.origin[0] = set.origin[1] = -0.5 * l0; /* particles on both planes of symmetry */
-  test_body b = {.context = context, .dim = 2};
-  mps_assert_ok(context, mps_particles_create(context, &set, &b.particles));
+  scoped_test_body b = {.context = context, .dim = 2};
+  OK(mps_particles_create(context, &set, &b.particles));
   const double lo[2] = {-0.5 * l0, -0.5 * l0}, hi[2] = {cells * l0, cells * l0};
-  mps_assert_ok(context, mps_particles_fill_where(b.particles, lo, hi, outside, &a, NULL));
+  OK(mps_particles_fill_where(b.particles, lo, hi, outside, &a, NULL));
   test_body_finish(&b, 1.0, 0.3, NULL);
   for (int axis = 0; axis < 2; axis++) {
     int64_t count, *plane = test_select(&b, axis, -1, 0.1 * l0, &count);
-    mps_assert_ok(context, test_prescribe(b.elastic, axis, count, plane, NULL));
-    mps_assert_ok(context, mps_elastic_cut(b.elastic, axis, -1, count, plane));
+    OK(test_prescribe(b.elastic, axis, count, plane, NULL));
+    OK(mps_elastic_cut(b.elastic, mps_side_of(axis, 0), plane, count));
     free(plane);
     int64_t all = mps_elastic_facet_count(b.elastic), *facets = malloc((size_t)all * 8);
     double from[2] = {-INFINITY, -INFINITY};
     from[axis] = (cells - 1) * l0;
-    mps_assert_ok(context,
-                  mps_elastic_select_facets(b.elastic, axis, 1, from, NULL, all, &count, facets));
-    mps_assert_ok(context, test_traction_fn(b.elastic, count, facets, kirsch_traction, &a));
+    OK(mps_elastic_select_facets(b.elastic, mps_side_of(axis, 1), from, NULL, all, &count, facets));
+    OK(test_traction_fn(b.elastic, count, facets, kirsch_traction, &a));
     free(facets);
   }
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
+  OK(mps_elastic_solve(b.elastic));
+  OK(mps_elastic_update_stress(b.elastic));
   int64_t count, *axis = test_select(&b, 0, -1, 0.1 * l0, &count);
   const double concentration = fit_at_edge(&b, axis, count, a + 4 * l0, 3 * a);
   print_message("hole of radius %.1f spacings, %d particles: concentration %.3f\n", m + 0.5,
                 (int)b.n, concentration);
   free(axis);
-  test_body_end(&b);
   return concentration;
 }
 
-static void the_hole_concentrates_stress_three_times(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(the_hole_concentrates_stress_three_times) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double coarse = kirsch_concentration(context, 10);
   const double middle = kirsch_concentration(context, 20);
   const double fine = kirsch_concentration(context, 40);
-  mps_assert_near(fine / 3.0, 1.0, 0.03);
+  NEAR(fine / 3.0, 1.0, 0.03);
   assert_true(fabs(fine - 3.0) < fabs(middle - 3.0) && fabs(middle - 3.0) < fabs(coarse - 3.0));
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_plate_in_tension_is_exact),
-      cmocka_unit_test(the_published_plate_is_the_reference_value),
-      cmocka_unit_test(the_hole_concentrates_stress_three_times),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_elastic_vibration.c - Newmark's method and eigenmodes: period of a slender cantilever
  * against beam theory, energy, agreement of the two, static limit, a uniaxial bar.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "implicit/operator/budget.h"
 #include "elastic_common.h"
 
 #define PI 3.14159265358979323846
@@ -11,11 +12,10 @@ static test_body slender(mps_context *context, int nx, int ny, double *length) {
   test_body b = test_body_begin(context, 2, spacing);
   test_body_box(&b, 0, 0, 0, nx * spacing, 1, 0);
   test_body_finish(&b, 1.0, 0.3, NULL);
-  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
+  OK(mps_particles_set(b.particles, "density", 0, 1.0));
   int64_t count, *wall = test_select(&b, 0, (nx - 0.6) * spacing, INFINITY, &count);
-  mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, 1, count, wall));
-  for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, test_prescribe(b.elastic, c, count, wall, NULL));
+  OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_UPPER, wall, count));
+  for (int c = 0; c < 2; c++) OK(test_prescribe(b.elastic, c, count, wall, NULL));
   free(wall);
   *length = (nx - 0.5) * spacing;
   return b;
@@ -50,7 +50,7 @@ static double timoshenko(double l) {
 static double first_mode(mps_context *context, int nx, int ny, double *expected) {
   double length, omega[3];
   test_body b = slender(context, nx, ny, &length);
-  mps_assert_ok(context, mps_elastic_modes(b.elastic, 3, omega, NULL));
+  OK(mps_elastic_modes(b.elastic, 3, omega, NULL));
   const double euler = 1.875104068711961 * 1.875104068711961 * sqrt(1.0 / 12) / length / length;
   *expected = timoshenko(length);
   print_message("l/h %.2f, %d x %d: omega %.6g, Timoshenko %.6g (%+.2f %%), Euler-Bernoulli %.6g "
@@ -62,47 +62,43 @@ static double first_mode(mps_context *context, int nx, int ny, double *expected)
   return omega[0];
 }
 
-static void the_period_of_a_slender_cantilever_is_that_of_beam_theory(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(the_period_of_a_slender_cantilever_is_that_of_beam_theory) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double expected;
   const double omega = first_mode(context, 160, 8, &expected);
-  mps_assert_near(omega / expected, 1.0, 0.01);
-  mps_context_destroy(&context);
+  NEAR(omega / expected, 1.0, 0.01);
 }
 
 /* Released from its first mode it oscillates with that mode's period; total energy stays. */
-static void a_released_mode_keeps_its_period_and_energy(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(a_released_mode_keeps_its_period_and_energy) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double length, omega[1], strain, kinetic;
-  test_body b = slender(context, 80, 8, &length);
+  scoped_test_body b = slender(context, 80, 8, &length);
   double *shape = malloc((size_t)b.n * 3 * sizeof *shape);
-  mps_assert_ok(context, mps_elastic_modes(b.elastic, 1, omega, shape));
-  mps_assert_ok(context, mps_particles_add_field(b.particles, "displacement", 0));
+  OK(mps_elastic_modes(b.elastic, 1, omega, shape));
+  OK(mps_particles_add_field(b.particles, "displacement", 0));
   mps_edit u;
-  mps_assert_ok(context, mps_particles_edit(b.particles, "displacement", &u));
+  OK(mps_particles_edit(b.particles, "displacement", &u));
   double modal_mass = 0.0;
   for (int64_t i = 0; i < b.n; i++)
     for (int c = 0; c < 2; c++) *mps_edit_f64(&u, i, c) = shape[3 * i + c];
-  mps_assert_ok(context, mps_particles_commit(b.particles, &u));
+  OK(mps_particles_commit(b.particles, &u));
   for (int64_t i = 0; i < b.n * 3; i++)
     modal_mass += shape[i] * shape[i] / 64.0; /* wall particles do not move */
-  mps_assert_near(modal_mass, 1.0, 1e-10);
+  NEAR(modal_mass, 1.0, 1e-10);
   const double period = 2 * PI / omega[0];
-  mps_elastic_motion_def def = mps_elastic_motion_defaults();
-  def.dt = period / 200;
-  mps_assert_ok(context, mps_elastic_start(b.elastic, &def));
-  mps_assert_ok(context, mps_elastic_get_energy(b.elastic, &strain, NULL));
-  mps_assert_near(strain / (0.5 * omega[0] * omega[0]), 1.0, 1e-8);
+  DEF(elastic_motion, def, .dt = period / 200);
+  OK(mps_elastic_start(b.elastic, &def));
+  OK(mpsi_elastic_strain_energy(b.elastic, __func__, &strain));
+  NEAR(strain / (0.5 * omega[0] * omega[0]), 1.0, 1e-8);
   const double start = test_value(&b, "displacement", 0, 1);
   double before = 1.0, crossed = 0.0, drift = 0.0;
   for (int k = 1; k <= 400; k++) {
     double now_strain;
-    mps_assert_ok(context, mps_elastic_step(b.elastic, 1));
-    mps_assert_ok(context, mps_elastic_get_energy(b.elastic, &now_strain, NULL));
+    OK(mps_elastic_step(b.elastic, 1));
+    OK(mpsi_elastic_strain_energy(b.elastic, __func__, &now_strain));
     mps_totals totals;
-    mps_assert_ok(context, mps_elastic_get_totals(b.elastic, &totals));
+    OK(mps_elastic_get_totals(b.elastic, &totals));
     kinetic = totals.kinetic;
     drift = fmax(drift, fabs((now_strain + kinetic) / strain - 1.0));
     const double now = test_value(&b, "displacement", 0, 1) / start;
@@ -114,75 +110,53 @@ static void a_released_mode_keeps_its_period_and_energy(void **state) {
   const double stretched = 1.0 + pow(omega[0] * def.dt, 2) / 12;
   print_message("period / mode's period %.8f, theory of the step %.8f; energy drift %.1e\n",
                 crossed / period, stretched, drift);
-  mps_assert_near(crossed / period, stretched, 1e-5);
-  mps_assert_near(drift, 0.0, 1e-9);
-  mps_assert_near(mps_elastic_time(b.elastic), 400 * def.dt, 1e-9);
+  NEAR(crossed / period, stretched, 1e-5);
+  NEAR(drift, 0.0, 1e-9);
+  NEAR(mps_elastic_time(b.elastic), 400 * def.dt, 1e-9);
   free(shape);
-  test_body_end(&b);
-  mps_context_destroy(&context);
 }
 
 /* gamma > 1/2 takes energy until the structure rests at the static solution. */
-static void damped_steps_end_at_the_static_solution(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(damped_steps_end_at_the_static_solution) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double length;
-  test_body b = slender(context, 24, 6, &length);
+  scoped_test_body b = slender(context, 24, 6, &length);
   const double load[2] = {0.0, -1e-3};
-  mps_assert_ok(context, test_body_force(b.elastic, load));
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  OK(test_body_force(b.elastic, load));
+  OK(mps_elastic_solve(b.elastic));
   const double still = test_value(&b, "displacement", 0, 1);
-  mps_elastic_motion_def def = mps_elastic_motion_defaults();
-  def.dt = 50.0;
+  DEF(elastic_motion, def, .dt = 50.0);
   /* From rest at the static solution nothing moves. */
-  mps_assert_ok(context, mps_elastic_start(b.elastic, &def));
-  mps_assert_ok(context, mps_elastic_step(b.elastic, 20));
-  mps_assert_near(test_value(&b, "displacement", 0, 1) / still, 1.0, 1e-9);
-  mps_assert_ok(context, mps_particles_set(b.particles, "displacement", 1, 0.0));
-  mps_assert_ok(context, mps_particles_set(b.particles, "displacement", 0, 0.0));
+  OK(mps_elastic_start(b.elastic, &def));
+  OK(mps_elastic_step(b.elastic, 20));
+  NEAR(test_value(&b, "displacement", 0, 1) / still, 1.0, 1e-9);
+  OK(mps_particles_set(b.particles, "displacement", 1, 0.0));
+  OK(mps_particles_set(b.particles, "displacement", 0, 0.0));
   def.gamma = 0.9;
   def.beta = 0.25 * 1.4 * 1.4;
-  mps_assert_ok(context, mps_elastic_start(b.elastic, &def));
-  mps_assert_ok(context, mps_elastic_step(b.elastic, 400));
-  mps_assert_near(test_value(&b, "displacement", 0, 1) / still, 1.0, 1e-6);
+  OK(mps_elastic_start(b.elastic, &def));
+  OK(mps_elastic_step(b.elastic, 400));
+  NEAR(test_value(&b, "displacement", 0, 1) / still, 1.0, 1e-6);
   double force[3];
-  mps_assert_ok(context, test_reactions(b.elastic, NULL, force, NULL));
-  mps_assert_near(force[1] / (1e-3 * length), 1.0, 1e-6);
-  test_body_end(&b);
-  mps_context_destroy(&context);
+  OK(test_reactions(b.elastic, NULL, force, NULL));
+  NEAR(force[1] / (1e-3 * length), 1.0, 1e-6);
 }
 
-static void bad_steps_are_refused(void **state) {
-  (void)state;
-  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST(bad_steps_are_refused) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double length, omega[4];
-  test_body b = slender(context, 6, 3, &length);
+  scoped_test_body b = slender(context, 6, 3, &length);
   mps_elastic_motion_def def = mps_elastic_motion_defaults();
-  mps_assert_fails(context, mps_elastic_start(b.elastic, &def), MPS_ERROR_ARGUMENT, "dt is 0");
+  REFUSES(mps_elastic_start(b.elastic, &def), "dt is 0");
   def.dt = 1.0;
   def.beta = 0.1;
-  mps_assert_fails(context, mps_elastic_start(b.elastic, &def), MPS_ERROR_ARGUMENT, "beta is 0.1");
+  REFUSES(mps_elastic_start(b.elastic, &def), "beta is 0.1");
   def = mps_elastic_motion_defaults();
   def.dt = 1.0;
-  mps_assert_fails(context, mps_elastic_step(b.elastic, 1), MPS_ERROR_STATE, "mps_elastic_start");
-  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 0.0));
-  mps_assert_fails(context, mps_elastic_start(b.elastic, &def), MPS_ERROR_ARGUMENT,
-                   "density of particle 0 is 0");
-  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
-  mps_assert_fails(context, mps_elastic_modes(b.elastic, 0, omega, NULL), MPS_ERROR_ARGUMENT,
-                   "count is 0");
-  mps_assert_fails(context, mps_elastic_modes(b.elastic, 30, omega, NULL), MPS_ERROR_ARGUMENT,
-                   "count is 30");
-  test_body_end(&b);
-  mps_context_destroy(&context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_period_of_a_slender_cantilever_is_that_of_beam_theory),
-      cmocka_unit_test(a_released_mode_keeps_its_period_and_energy),
-      cmocka_unit_test(damped_steps_end_at_the_static_solution),
-      cmocka_unit_test(bad_steps_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  FAILS(mps_elastic_step(b.elastic, 1), MPS_ERROR_STATE, "mps_elastic_start");
+  OK(mps_particles_set(b.particles, "density", 0, 0.0));
+  REFUSES(mps_elastic_start(b.elastic, &def), "density of particle 0 is 0");
+  OK(mps_particles_set(b.particles, "density", 0, 1.0));
+  REFUSES(mps_elastic_modes(b.elastic, 0, omega, NULL), "count is 0");
+  REFUSES(mps_elastic_modes(b.elastic, 30, omega, NULL), "count is 30");
 }

@@ -1,29 +1,24 @@
 /* test_fluid.c - the fluid against theory: water at rest, sloshing, the elliptic drop, waves of a
- * piston in a closed tank against nonlinear potential flow. docs/verification/fluid/tests.md has the
- * tables; finer resolutions run in test_fluid_long.c.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * piston in a closed tank against nonlinear potential flow. docs/verification/fluid/tests.md has
+ * the tables; finer resolutions run in test_fluid_long.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_tank.h"
 
-#include <mps/experimental.h>
-
 static double force_right(const tank *t) {
   mps_reaction r;
-  mps_assert_ok(context, mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
+  OK(mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
   return -r.force[0];
 }
 
 /* The lattice is exactly at rest: q = 0. */
-static void water_on_a_lattice_stays_at_rest(void **state) {
-  (void)state;
-  tank t = tank_make(context, 0.6, 0.3, 0.02, NULL, 2e-3);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 200));
+TEST(water_on_a_lattice_stays_at_rest) {
+  scoped_tank t = tank_make(context, 0.6, 0.3, 0.02, NULL, 2e-3);
+  OK(mps_fluid_step(t.fluid, 200));
   mps_totals sum;
-  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  OK(mps_fluid_get_totals(t.fluid, &sum));
   assert_true(sum.kinetic < 1e-12);
-  mps_assert_near(force_right(&t), 0.5 * 1000.0 * TANK_G * 0.09, 1e-3);
-  tank_free(&t);
+  NEAR(force_right(&t), 0.5 * 1000.0 * TANK_G * 0.09, 1e-3);
 }
 
 static void disturb(void *user, double *x, double *u) {
@@ -36,23 +31,21 @@ static void disturb(void *user, double *x, double *u) {
 }
 
 /* Particles displaced by up to .1 l0 settle; the force stays within .3 %. */
-static void disturbed_water_settles(void **state) {
-  (void)state;
+TEST(disturbed_water_settles) {
   uint64_t seed = 3;
-  tank t = tank_of(context, 0.6, 0.3, 0.02, 2e-3, NULL, disturb, &seed);
-  mps_assert_ok(context, mps_fluid_step(t.fluid, 1000));
+  scoped_tank t = tank_of(context, 0.6, 0.3, 0.02, 2e-3, NULL, disturb, &seed);
+  OK(mps_fluid_step(t.fluid, 1000));
   double mean = 0.0, square = 0.0;
   const double still = 0.5 * 1000.0 * TANK_G * 0.09;
   for (int k = 0; k < 250; k++) {
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 4));
+    OK(mps_fluid_step(t.fluid, 4));
     const double f = force_right(&t) / still - 1.0;
     mean += f / 250.0, square += f * f / 250.0;
   }
   print_message("force %+.3f %%, standard deviation %.3f %%\n", 100.0 * mean,
                 100.0 * sqrt(square - mean * mean));
-  mps_assert_near(mean, 0.0, 0.003);
+  NEAR(mean, 0.0, 0.003);
   assert_true(sqrt(square - mean * mean) < 0.0015);
-  tank_free(&t);
 }
 
 /* First mode of a tank of length .7 and depth .3, amplitude a at the walls: particles where linear
@@ -64,17 +57,16 @@ static void slosh(void *user, double *x, double *u) {
   x[1] += a * cos(k * at) * sinh(k * y) / sinh(k * 0.3);
 }
 
-static void sloshing_has_the_period_of_theory(void **state) {
-  (void)state;
+TEST(sloshing_has_the_period_of_theory) {
   double a = 0.01;
   const double k = TANK_PI / 0.7, exact = 2.0 * TANK_PI / sqrt(TANK_G * k * tanh(k * 0.3));
-  tank t = tank_of(context, 0.7, 0.3, 0.02, 2e-3, NULL, slosh, &a);
+  scoped_tank t = tank_of(context, 0.7, 0.3, 0.02, 2e-3, NULL, slosh, &a);
   /* the force on the right wall less its mean over the run: zeros going up */
   enum { SAMPLES = 2600 };
   static double force[SAMPLES];
   double mean = 0.0;
   for (int n = 0; n < SAMPLES; n++) {
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_step(t.fluid, 1));
     force[n] = force_right(&t);
     mean += force[n] / SAMPLES;
   }
@@ -91,8 +83,7 @@ static void sloshing_has_the_period_of_theory(void **state) {
   const double period = (last - first) / (crossings - 1);
   print_message("period %.5f s, exact %.5f s, %+.2f %%\n", period, exact,
                 100.0 * (period / exact - 1.0));
-  mps_assert_near(period, exact, 0.005 * exact);
-  tank_free(&t);
+  NEAR(period, exact, 0.005 * exact);
 }
 
 /* ---- elliptic drop --------------------------------------------------------------------------- */
@@ -118,37 +109,33 @@ static void drop_axes(double *a, double *b) {
   }
 }
 
-static void a_drop_becomes_the_ellipse_of_theory(void **state) {
-  (void)state;
+TEST(a_drop_becomes_the_ellipse_of_theory) {
   const double l0 = 1.0 / 20.0, lo[2] = {-1.0, -1.0}, hi[2] = {1.0, 1.0};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
-  mps_particles *p = NULL;
-  mps_fluid *f = NULL;
-  set.spacing = l0;
-  def.gravity[1] = 0.0;
-  def.dt = 2.5e-3;
-  mps_assert_ok(context, mps_particles_create(context, &set, &p));
-  mps_assert_ok(context, mps_particles_fill_where(p, lo, hi, in_circle, NULL, NULL));
-  mps_assert_ok(context, mps_particles_add_field(p, "velocity", 0));
+  DEF(particles, set, .spacing = l0);
+  DEF(fluid, def, .gravity[1] = 0.0, .dt = 2.5e-3);
+  scoped_particles *p = NULL;
+  scoped_fluid *f = NULL;
+  OK(mps_particles_create(context, &set, &p));
+  OK(mps_particles_fill_where(p, lo, hi, in_circle, NULL, NULL));
+  OK(mps_particles_add_field(p, "velocity", 0));
   mps_view x;
   mps_edit u;
-  mps_assert_ok(context, mps_particles_view(p, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(p, "velocity", &u));
+  OK(mps_particles_view(p, "position", &x));
+  OK(mps_particles_edit(p, "velocity", &u));
   for (int64_t i = 0; i < mps_particles_count(p); i++) {
     *mps_edit_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
     *mps_edit_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
   }
-  mps_assert_ok(context, mps_particles_commit(p, &u));
-  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  OK(mps_particles_commit(p, &u));
+  OK(mps_fluid_create(context, p, &def, &f));
   mps_totals before, after;
-  mps_assert_ok(context, mps_fluid_get_totals(f, &before));
-  mps_assert_ok(context, mps_fluid_run(f, 1.0, 1000, NULL, NULL));
-  mps_assert_ok(context, mps_fluid_get_totals(f, &after));
+  OK(mps_fluid_get_totals(f, &before));
+  OK(mps_fluid_run(f, 1.0, 1000, NULL, NULL));
+  OK(mps_fluid_get_totals(f, &after));
   /* semi-axes from the second moments */
   double a, b, sum[2] = {0.0, 0.0};
   const double n = (double)mps_particles_count(p);
-  mps_assert_ok(context, mps_particles_view(p, "position", &x));
+  OK(mps_particles_view(p, "position", &x));
   for (int64_t i = 0; i < mps_particles_count(p); i++)
     for (int c = 0; c < 2; c++) sum[c] += *mps_view_f64(&x, i, c) * *mps_view_f64(&x, i, c);
   drop_axes(&a, &b);
@@ -156,13 +143,11 @@ static void a_drop_becomes_the_ellipse_of_theory(void **state) {
   print_message("semi-axes %.4f (%+.2f %%), %.4f (%+.2f %%); kinetic energy %.4f\n", got[0],
                 100.0 * (got[0] / a - 1.0), got[1], 100.0 * (got[1] / b - 1.0),
                 after.kinetic / before.kinetic);
-  mps_assert_near(b, 2.2755, 1e-3);
-  mps_assert_near(got[0], a, 0.015 * a);
-  mps_assert_near(got[1], b, 0.005 * b);
-  mps_assert_near(after.linear[0], 0.0, 1e-2 * before.mass);
+  NEAR(b, 2.2755, 1e-3);
+  NEAR(got[0], a, 0.015 * a);
+  NEAR(got[1], b, 0.005 * b);
+  NEAR(after.linear[0], 0.0, 1e-2 * before.mass);
   assert_true(after.kinetic > 0.99 * before.kinetic);
-  mps_fluid_destroy(&f);
-  mps_particles_destroy(&p);
 }
 
 /* ---- waves of a piston ----------------------------------------------------------------------- */
@@ -184,76 +169,58 @@ static mps_status piston(void *user, double t, double *motion) {
  * (one of 4th differences lowers the waves: a trough of 335.6 N with 64 modes): 28 modes without it
  * 528.2, 548.6, 333.5, 532.8 N, 40 and 48 with it 527.9, 548.4, 334.1, 532.4 and 527.8, 548.2,
  * 334.1, 532.4 N. */
-static void waves_press_on_the_wall_as_potential_flow_does(void **state) {
-  (void)state;
+TEST(waves_press_on_the_wall_as_potential_flow_does) {
   const struct {
     double time, force;
   } exact[] = {{3.142, 527.8}, {4.170, 548.2}, {4.698, 334.1}, {5.235, 532.4}};
-  mps_signal *motion = NULL;
-  mps_assert_ok(context, mps_signal_create_user(context, piston, NULL, &motion));
-  tank t = tank_make(context, 1.6, 0.3, 0.02, motion, 2e-3);
+  scoped_signal *motion = NULL;
+  OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, piston, NULL, NULL,
+                            &motion));
+  scoped_tank t = tank_make(context, 1.6, 0.3, 0.02, motion, 2e-3);
   size_t at = 0;
   while (at < sizeof exact / sizeof *exact) {
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_step(t.fluid, 1));
     if (mps_fluid_time(t.fluid) < exact[at].time - 1e-3) continue;
     const double force = force_right(&t);
     print_message("%.3f s: %.1f N, reference %.1f N (%+.2f %%)\n", mps_fluid_time(t.fluid), force,
                   exact[at].force, 100.0 * (force / exact[at].force - 1.0));
-    mps_assert_near(force, exact[at].force, 0.005 * exact[at].force);
+    NEAR(force, exact[at].force, 0.005 * exact[at].force);
     at++;
   }
   mps_totals sum;
   mps_reaction left, right;
-  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
-  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
-  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
+  OK(mps_fluid_get_totals(t.fluid, &sum));
+  OK(mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
+  OK(mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
   const double impulse = left.impulse[0] + right.impulse[0];
   print_message("momentum %.3f N s, impulse of the walls %.3f N s\n", sum.linear[0], impulse);
-  mps_assert_near(sum.linear[0], impulse, 0.01 * 0.5 * 1000.0 * TANK_G * 0.09 * 1.0);
+  NEAR(sum.linear[0], impulse, 0.01 * 0.5 * 1000.0 * TANK_G * 0.09 * 1.0);
   mps_fluid_report report;
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_get_report(t.fluid, &report));
   assert_int_equal(report.collisions, 0);
   assert_int_equal(report.limited, 0);
-  tank_free(&t);
-  mps_signal_destroy(&motion);
 }
 
 /* The classical scheme stays as noisy as it is known to be; its mean force is right. */
-static void the_classical_scheme_has_the_mean_force(void **state) {
-  (void)state;
+TEST(the_classical_scheme_has_the_mean_force) {
   const double gamma[2] = {1.0, 0.2}, still = 0.5 * 1000.0 * TANK_G * 0.09;
   for (int k = 0; k < 2; k++) {
-    tank t = tank_make(context, 0.6, 0.3, 0.015, NULL, 1e-3);
+    scoped_tank t = tank_make(context, 0.6, 0.3, 0.015, NULL, 1e-3);
     mps_fluid_report report;
-    mps_assert_fails(context, mps_experimental_fluid_classical(t.fluid, 1.5), MPS_ERROR_ARGUMENT,
-                     "gamma is 1.5");
-    mps_assert_ok(context, mps_experimental_fluid_classical(t.fluid, gamma[k]));
-    mps_assert_fails(context, mps_fluid_begin_step(t.fluid, NAN), MPS_ERROR_STATE, "in parts");
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 300));
+    REFUSES(mps_experimental_fluid_classical(t.fluid, 1.5), "gamma is 1.5");
+    OK(mps_experimental_fluid_classical(t.fluid, gamma[k]));
+    FAILS(mps_fluid_begin_step(t.fluid, NAN), MPS_ERROR_STATE, "in parts");
+    OK(mps_fluid_step(t.fluid, 300));
     double mean = 0.0, square = 0.0;
     for (int n = 0; n < 500; n++) {
-      mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+      OK(mps_fluid_step(t.fluid, 1));
       const double f = force_right(&t) / still;
       mean += f / 500.0, square += f * f / 500.0;
     }
-    mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+    OK(mps_fluid_get_report(t.fluid, &report));
     print_message("classical, gamma %.1f: force %+.2f %%, standard deviation %.0f %%\n", gamma[k],
                   100.0 * (mean - 1.0), 100.0 * sqrt(square - mean * mean));
-    mps_assert_near(mean, 1.0, 0.10);
-    mps_assert_fails(context, mps_experimental_fluid_classical(t.fluid, 1.0), MPS_ERROR_STATE,
-                     "has made");
-    tank_free(&t);
+    NEAR(mean, 1.0, 0.10);
+    FAILS(mps_experimental_fluid_classical(t.fluid, 1.0), MPS_ERROR_STATE, "has made");
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(water_on_a_lattice_stays_at_rest),
-      cmocka_unit_test(disturbed_water_settles),
-      cmocka_unit_test(the_classical_scheme_has_the_mean_force),
-      cmocka_unit_test(sloshing_has_the_period_of_theory),
-      cmocka_unit_test(a_drop_becomes_the_ellipse_of_theory),
-      cmocka_unit_test(waves_press_on_the_wall_as_potential_flow_does),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -9,8 +9,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/fluid.h>
-
 #define H 0.3
 #define G 9.81
 #define LENGTH 1.61
@@ -28,10 +26,8 @@ static const struct {
                      {0.08, 2.728, 0.5423, 0.346}};
 
 static void add_wall(mps_fluid *fluid, int axis, double at, double side) {
-  mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
-  wall.kind = MPS_BOUNDARY_ROLLER;
-  wall.point[axis] = at, wall.normal[axis] = side;
-  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &wall, NULL));
+  DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .point[axis] = at, .normal[axis] = side);
+  OK(mps_fluid_add_boundary(fluid, &wall, NULL));
 }
 
 static mps_fluid *make(mps_particles **water) {
@@ -40,10 +36,10 @@ static mps_fluid *make(mps_particles **water) {
   mps_fluid *fluid = NULL;
   const double lower[2] = {0.0, 0.0}, upper[2] = {2.0 * H, H};
   set.spacing = H / ROWS;
-  mps_assert_ok(context, mps_particles_create(context, &set, water));
-  mps_assert_ok(context, mps_particles_fill_box(*water, lower, upper, NULL));
+  OK(mps_particles_create(context, &set, water));
+  OK(mps_particles_fill_box(*water, lower, upper, NULL));
   def.level = H;
-  mps_assert_ok(context, mps_fluid_create(context, *water, &def, &fluid));
+  OK(mps_fluid_create(context, *water, &def, &fluid));
   add_wall(fluid, 1, 0.0, 1.0);
   add_wall(fluid, 0, 0.0, 1.0);
   add_wall(fluid, 0, LENGTH, -1.0);
@@ -52,17 +48,16 @@ static mps_fluid *make(mps_particles **water) {
 
 /* Pressures of the record are lower at the bed and higher above it:
  * docs/verification/fluid/impact.md. */
-static void water_arrives_as_recorded(void **state) {
-  (void)state;
+TEST(water_arrives_as_recorded) {
   const double unit = 1000.0 * G * H, clock = sqrt(G / H);
-  mps_particles *water = NULL;
-  mps_fluid *fluid = make(&water);
+  scoped_particles *water = NULL;
+  scoped_fluid *fluid = make(&water);
   double at[3 * SENSORS] = {0.0}, p[SENSORS], sum[SENSORS] = {0.0}, arrival[SENSORS] = {0.0};
   double before = 0.0, span = 0.0;
   for (int k = 0; k < SENSORS; k++) at[3 * k] = LENGTH, at[3 * k + 1] = record[k].height;
   while (mps_fluid_time(fluid) * clock < 4.9) {
-    mps_assert_ok(context, mps_fluid_step(fluid, 1));
-    mps_assert_ok(context, mps_fluid_get_pressure(fluid, WALL, SENSORS, at, p));
+    OK(mps_fluid_step(fluid, 1));
+    OK(mps_fluid_get_pressure(fluid, WALL, SENSORS, at, p));
     const double t = mps_fluid_time(fluid) * clock;
     for (int k = 0; k < SENSORS; k++) {
       assert_true(isfinite(p[k]) && p[k] >= 0.0);
@@ -82,14 +77,7 @@ static void water_arrives_as_recorded(void **state) {
     print_message("without friction at %.0f mm: mean pressure %.3f, interFoam %.3f (%+.1f %%)\n",
                   1e3 * record[k].height, mean, record[k].smooth,
                   100.0 * (mean / record[k].smooth - 1.0));
-    mps_assert_near(arrival[k], record[k].arrival, 0.05 * record[k].arrival);
-    mps_assert_near(mean, record[k].smooth, 0.15 * record[k].smooth);
+    NEAR(arrival[k], record[k].arrival, 0.05 * record[k].arrival);
+    NEAR(mean, record[k].smooth, 0.15 * record[k].smooth);
   }
-  mps_fluid_destroy(&fluid);
-  mps_particles_destroy(&water);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(water_arrives_as_recorded)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

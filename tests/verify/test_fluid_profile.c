@@ -3,8 +3,6 @@
  * against hydrostatics. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/fluid.h>
-
 #define DEPTH 0.4 /* m */
 #define L0 0.025
 
@@ -38,25 +36,21 @@ static double distance(const profile *p, double x, double y) {
 }
 
 static mps_particles *fill(const profile *p) {
-  mps_particles_def set = mps_particles_defaults();
+  DEF(particles, set, .spacing = L0);
   mps_particles *water = NULL;
   const double end = p->x[p->count - 1][0];
-  set.spacing = L0;
-  mps_assert_ok(context, mps_particles_create(context, &set, &water));
+  OK(mps_particles_create(context, &set, &water));
   for (double y = 0.5 * L0; y < DEPTH; y += L0)
     for (double x = 0.5 * L0; x < end && ground(p, x) < y; x += L0) {
       const double at[2] = {x, y};
-      if (distance(p, x, y) >= 0.45 * L0)
-        mps_assert_ok(context, mps_particles_append(water, 1, at));
+      if (distance(p, x, y) >= 0.45 * L0) OK(mps_particles_append(water, 1, at));
     }
   return water;
 }
 
 static void wall(mps_fluid *fluid, double nx, double ny) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER;
-  def.normal[0] = nx, def.normal[1] = ny;
-  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &def, NULL));
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .normal[0] = nx, .normal[1] = ny);
+  OK(mps_fluid_add_boundary(fluid, &def, NULL));
 }
 
 /* A body below each part of the face that is not upright. */
@@ -66,52 +60,46 @@ static int add_parts(mps_fluid *fluid, const profile *p, mps_contact **contact) 
     const double *a = p->x[k], *b = p->x[k + 1];
     const double xy[8] = {a[0], 0.0, b[0], 0.0, b[0], b[1], a[0], a[1]};
     mps_body_def body_def = mps_body_defaults();
-    mps_fluid_contact_def def = mps_fluid_contact_defaults();
-    mps_body *body = NULL;
-    def.kind = MPS_BOUNDARY_ROLLER;
+    DEF(fluid_contact, def, .kind = MPS_BOUNDARY_ROLLER);
+    scoped_body *body = NULL;
     if (!(b[0] > a[0])) continue;
-    mps_assert_ok(context,
-                  mps_body_create_polygon(context, &body_def, a[1] > 0.0 ? 4 : 3, xy, &body));
-    mps_assert_ok(context, mps_fluid_add_contact(fluid, body, &def, &contact[count++]));
-    mps_body_destroy(&body);
+    OK(mps_body_create_polygon(context, &body_def, a[1] > 0.0 ? 4 : 3, xy, &body));
+    OK(mps_fluid_add_contact(fluid, body, &def, &contact[count++]));
   }
   return count;
 }
 
 static void still_water_stays_still(const profile *p) {
   mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid *fluid = NULL;
+  scoped_fluid *fluid = NULL;
   mps_contact *contact[4] = {NULL};
-  mps_particles *water = fill(p);
+  scoped_particles *water = fill(p);
   double mean = 0.0, whole = 0.5 * 9810.0 * DEPTH * DEPTH;
   def.level = DEPTH;
-  mps_assert_ok(context, mps_fluid_create(context, water, &def, &fluid));
+  OK(mps_fluid_create(context, water, &def, &fluid));
   wall(fluid, 0.0, 1.0);
   wall(fluid, 1.0, 0.0);
   const int parts = add_parts(fluid, p, contact);
-  mps_assert_ok(context, mps_fluid_run(fluid, 1.0, 100000, NULL, NULL));
+  OK(mps_fluid_run(fluid, 1.0, 100000, NULL, NULL));
   enum { STEPS = 40 };
   for (int n = 0; n < STEPS; n++) {
-    mps_assert_ok(context, mps_fluid_step(fluid, 1));
+    OK(mps_fluid_step(fluid, 1));
     for (int k = 0; k < parts; k++) {
       mps_reaction r;
-      mps_assert_ok(context, mps_contact_get_reaction(contact[k], -1, &r));
+      OK(mps_contact_get_reaction(contact[k], -1, &r));
       mean += r.force[0] / STEPS;
     }
   }
   mps_totals sum;
-  mps_assert_ok(context, mps_fluid_get_totals(fluid, &sum));
+  OK(mps_fluid_get_totals(fluid, &sum));
   printf("%s: force %.1f N, at rest %.1f N (%+.2f %%), kinetic energy %.2g J\n", p->name, mean,
          whole, 100.0 * (mean / whole - 1.0), sum.kinetic);
-  mps_assert_near(mean / whole, 1.0, 0.025); /* a lattice fills slopes by steps */
-  assert_true(sum.kinetic < 0.3);            /* J, of some hundred in waves of .1 m */
+  NEAR(mean / whole, 1.0, 0.025); /* a lattice fills slopes by steps */
+  assert_true(sum.kinetic < 0.3); /* J, of some hundred in waves of .1 m */
   for (int k = 0; k < 4; k++) mps_contact_destroy(&contact[k]);
-  mps_fluid_destroy(&fluid);
-  mps_particles_destroy(&water);
 }
 
-static void a_face_of_several_parts_holds_still_water(void **state) {
-  (void)state;
+TEST(a_face_of_several_parts_holds_still_water) {
   static const profile profiles[] = {
       {"slope 1:2", 2, {{1.0, 0.0}, {2.2, 0.6}}},
       {"slopes 1:2 with a berm", 4, {{1.0, 0.0}, {1.4, 0.2}, {1.8, 0.2}, {2.6, 0.6}}},
@@ -121,11 +109,4 @@ static void a_face_of_several_parts_holds_still_water(void **state) {
       {"beach and crest", 4, {{1.0, 0.0}, {1.4, 0.1067}, {1.8, 0.4}, {2.0, 0.6}}}};
   for (size_t k = 0; k < sizeof profiles / sizeof *profiles; k++)
     still_water_stays_still(&profiles[k]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_face_of_several_parts_holds_still_water),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -4,20 +4,17 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/fluid_rock.h>
-
 static mps_particles *water;
 static mps_fluid *fluid;
 
 static void add(double x, double y) {
   const double at[2] = {x, y};
-  mps_assert_ok(context, mps_particles_append(water, 1, at));
+  OK(mps_particles_append(water, 1, at));
 }
 
 static void start(double spacing) {
-  mps_particles_def set = mps_particles_defaults();
-  set.spacing = spacing;
-  mps_assert_ok(context, mps_particles_create(context, &set, &water));
+  DEF(particles, set, .spacing = spacing);
+  OK(mps_particles_create(context, &set, &water));
 }
 
 /* Bed and the ends at 0 and `length`; rock between two stations. */
@@ -25,17 +22,15 @@ static void close_tank(double length, double level, const double *rock, mps_flui
   const double normal[3][3] = {{0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, length}};
   const double corner[4][3] = {
       {rock[0], -0.1, 0.0}, {rock[1], -0.1, 0.0}, {rock[1], 1.0, 0.0}, {rock[0], 1.0, 0.0}};
-  mps_fluid_def set = mps_fluid_defaults();
-  set.level = level;
-  mps_assert_ok(context, mps_fluid_create(context, water, &set, &fluid));
+  DEF(fluid, set, .level = level);
+  OK(mps_fluid_create(context, water, &set, &fluid));
   for (int k = 0; k < 3; k++) {
-    mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
-    wall.kind = MPS_BOUNDARY_ROLLER;
-    wall.normal[0] = normal[k][0], wall.normal[1] = normal[k][1], wall.point[0] = normal[k][2];
-    mps_assert_ok(context, mps_fluid_add_boundary(fluid, &wall, NULL));
+    DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .normal[0] = normal[k][0],
+        .normal[1] = normal[k][1], .point[0] = normal[k][2]);
+    OK(mps_fluid_add_boundary(fluid, &wall, NULL));
   }
   def->corners = corner[0], def->corner_count = 4;
-  mps_assert_ok(context, mps_fluid_add_rock(fluid, def, NULL));
+  OK(mps_fluid_add_rock(fluid, def, NULL));
 }
 
 static void end(void) {
@@ -47,18 +42,16 @@ static double level_of(double from, double to) {
   enum { STATIONS = 9 };
   double x[STATIONS], level[STATIONS], mean = 0.0;
   for (int k = 0; k < STATIONS; k++) x[k] = from + (to - from) * (k + 0.5) / STATIONS;
-  mps_assert_ok(context, mps_fluid_get_levels(fluid, STATIONS, x, level));
+  OK(mps_fluid_get_levels(fluid, STATIONS, x, level));
   for (int k = 0; k < STATIONS; k++) mean += level[k] / STATIONS;
   return mean;
 }
 
 /* Basins of .3 m, levels .32 and .28 m, a dam of .2 m with K = g/a: the difference of levels falls
  * at the rate K (h1 + h2)/(B L). */
-static void basins_drain_as_dupuit_says(void **state) {
-  (void)state;
+TEST(basins_drain_as_dupuit_says) {
   const double l0 = 0.01, basin = 0.3, dam = 0.2, e = 0.5, at[2] = {basin, basin + dam};
-  mps_fluid_rock_def rock = mps_fluid_rock_defaults();
-  rock.porosity = e, rock.diameter = 0.01, rock.alpha = 4900.0, rock.beta = 0.0;
+  DEF(fluid_rock, rock, .porosity = e, .diameter = 0.01, .alpha = 4900.0, .beta = 0.0);
   const double a = rock.alpha * (1.0 - e) * (1.0 - e) / (e * e * e) * 1e-6 / 1e-4;
   const double rate = 9.81 / a * 0.6 / (basin * dam);
   start(l0);
@@ -72,7 +65,7 @@ static void basins_drain_as_dupuit_says(void **state) {
   close_tank(2.0 * basin + dam, 0.3, at, &rock);
   double t[2], d[2], sum[2];
   for (int n = 0; n < 2; n++) {
-    mps_assert_ok(context, mps_fluid_run(fluid, n ? 1.2 : 0.2, 1000000, NULL, NULL));
+    OK(mps_fluid_run(fluid, n ? 1.2 : 0.2, 1000000, NULL, NULL));
     const double left = level_of(0.02, 0.28), right = level_of(0.52, 0.78);
     t[n] = mps_fluid_time(fluid), d[n] = left - right, sum[n] = left + right;
   }
@@ -80,8 +73,8 @@ static void basins_drain_as_dupuit_says(void **state) {
   printf("difference of levels %.4f, %.4f m, rate %.3f /s, Dupuit %.3f /s (%+.1f %%), mean level "
          "%.4f, %.4f m\n",
          d[0], d[1], measured, rate, 100.0 * (measured / rate - 1.0), 0.5 * sum[0], 0.5 * sum[1]);
-  mps_assert_near(measured / rate, 1.0, 0.08);
-  for (int n = 0; n < 2; n++) mps_assert_near(0.5 * sum[n], 0.3, 0.002);
+  NEAR(measured / rate, 1.0, 0.08);
+  for (int n = 0; n < 2; n++) NEAR(0.5 * sum[n], 0.3, 0.002);
   end();
 }
 
@@ -168,11 +161,11 @@ static double break_dam(double alpha, double beta) {
   rock.porosity = e, rock.diameter = 0.0159, rock.alpha = alpha, rock.beta = beta;
   close_tank(length, 0.35, stone, &rock);
   for (int n = 0; n < TIMES; n++) {
-    mps_assert_ok(context, mps_fluid_run(fluid, time[n], 1000000, NULL, NULL));
+    OK(mps_fluid_run(fluid, time[n], 1000000, NULL, NULL));
     for (int k = 0; k < POINTS; k++) {
       double level;
       if (laboratory[n][k][0] < 0.0) continue;
-      mps_assert_ok(context, mps_fluid_get_levels(fluid, 1, laboratory[n][k], &level));
+      OK(mps_fluid_get_levels(fluid, 1, laboratory[n][k], &level));
       if (!isfinite(level)) continue;
       square += (level - laboratory[n][k][1]) * (level - laboratory[n][k][1]), count++;
     }
@@ -182,19 +175,10 @@ static double break_dam(double alpha, double beta) {
   return sqrt(square / count);
 }
 
-static void a_dam_breaks_through_rock_as_measured(void **state) {
-  (void)state;
+TEST(a_dam_breaks_through_rock_as_measured) {
   const double gent = break_dam(1000.0, 1.1), jensen = break_dam(500.0, 2.0);
   printf("levels within %.1f mm (alpha 1000, beta 1.1), %.1f mm (500, 2), root mean square\n",
          1e3 * gent, 1e3 * jensen);
   assert_true(gent < 0.015);
   assert_true(jensen < 0.015);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(basins_drain_as_dupuit_says),
-      cmocka_unit_test(a_dam_breaks_through_rock_as_measured),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -23,22 +23,20 @@
  * back, `wall` at the wall. */
 static void climb(double e, double l0, double *passing, double *wall) {
   const solitary w = solitary_of(DEPTH, e * DEPTH);
-  mps_signal *signal = goring_piston(context, &w);
-  tank t = tank_make(context, LENGTH, DEPTH, l0, signal, 0.1 * l0);
+  scoped_signal *signal = goring_piston(context, &w);
+  scoped_tank t = tank_make(context, LENGTH, DEPTH, l0, signal, 0.1 * l0);
   const double station[] = {LENGTH - 1.5, LENGTH - 0.5 * l0};
   const double end = 3.8 / (w.number * w.speed) + LENGTH / w.speed + 0.8;
   *passing = *wall = 0.0;
   while (mps_fluid_time(t.fluid) < end) {
     double level[2];
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
-    mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 2, station, level));
+    OK(mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_get_levels(t.fluid, 2, station, level));
     *wall = fmax(*wall, level[1] / DEPTH - 1.0);
     if (level[1] < DEPTH * (1.0 + 0.1 * e)) /* the crest is yet to arrive at the wall */
       *passing = fmax(*passing, level[0] / DEPTH - 1.0);
   }
   printf("H/d %.4f, run-up/d %.4f\n", *passing, *wall);
-  mps_signal_destroy(&signal);
-  tank_free(&t);
 }
 
 static void a_solitary_wave_climbs_a_wall(void **state) {
@@ -47,8 +45,8 @@ static void a_solitary_wave_climbs_a_wall(void **state) {
   climb(0.3, 0.025, &e, &run_up);
   const double theory = 2.0 * e + 0.5 * e * e + 0.75 * e * e * e;
   printf("theory %.4f (%+.2f %%)\n", theory, 100.0 * (run_up / theory - 1.0));
-  mps_assert_near(e, 0.3, 0.03 * 0.3);
-  mps_assert_near(run_up, theory, 0.03 * theory);
+  NEAR(e, 0.3, 0.03 * 0.3);
+  NEAR(run_up, theory, 0.03 * theory);
 }
 
 /* ---- a slope, for the table ------------------------------------------------------------------ */
@@ -64,21 +62,19 @@ static double off_slope(const slope *s, const double *x) {
 /* Water from the piston to the slope, whose foot is LENGTH from the piston. */
 static tank before_a_slope(const slope *s, double l0, mps_signal *piston_motion) {
   tank t = {NULL, NULL};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
-  set.spacing = l0;
-  def.level = DEPTH, def.dt = 0.1 * l0;
-  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  DEF(particles, set, .spacing = l0);
+  DEF(fluid, def, .level = DEPTH, .dt = 0.1 * l0);
+  OK(mps_particles_create(context, &set, &t.water));
   const int rows = (int)lround(DEPTH / l0), columns = 100 * rows;
   for (int i = 0; i < columns; i++)
     for (int j = 0; j < rows; j++) {
       const double x[2] = {(i + 0.5) * l0, (j + 0.5) * l0};
-      if (off_slope(s, x) > 0.45 * l0) mps_assert_ok(context, mps_particles_append(t.water, 1, x));
+      if (off_slope(s, x) > 0.45 * l0) OK(mps_particles_append(t.water, 1, x));
     }
-  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston_motion);
-  tank_wall(context, t.fluid, s->foot, 0.0, -sin(s->angle), cos(s->angle), NULL);
+  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston_motion);
+  tank_wall(t.fluid, s->foot, 0.0, -sin(s->angle), cos(s->angle), NULL);
   return t;
 }
 
@@ -108,8 +104,8 @@ static climbing climb_slope(double e, double l0, double angle) {
   const double station = LENGTH - 1.5, start = 3.8 / (w.number * w.speed);
   while (mps_fluid_time(t.fluid) < start + LENGTH / w.speed + 0.5 + 0.6 / tan(s.angle)) {
     double level, resolved;
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
-    mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 1, &station, &level));
+    OK(mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_get_levels(t.fluid, 1, &station, &level));
     if (mps_fluid_time(t.fluid) < start + LENGTH / w.speed)
       r.passing = fmax(r.passing, level / DEPTH - 1.0);
     if (mps_fluid_time(t.fluid) < start || mps_fluid_steps(t.fluid) % 10 != 0) continue;
@@ -130,9 +126,9 @@ static climbing climb_slope(double e, double l0, double angle) {
 static void a_solitary_wave_climbs_a_slope(void **state) {
   (void)state;
   const climbing r = climb_slope(0.2, 0.03, 20.0);
-  mps_assert_near(r.passing, 0.2, 0.05 * 0.2);
+  NEAR(r.passing, 0.2, 0.05 * 0.2);
   assert_true(r.resolved > 0.0 && r.resolved < r.continued);
-  mps_assert_near(r.continued, r.theory, 0.1 * r.theory);
+  NEAR(r.continued, r.theory, 0.1 * r.theory);
 }
 
 /* ---- the table's rows by hand ---------------------------------------------------------------- */

@@ -2,16 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_toe.h"
 
-static void water_rests_before_faces_of_every_slope(void **state) {
-  (void)state;
+TEST(water_rests_before_faces_of_every_slope) {
   for (double angle = 15.0; angle <= 165.0; angle += 15.0) {
     const toe s = {.angle = angle, .rows = 12};
     toe_check(&s, 2.0, angle < 45.0 ? 0.06 : 0.03, 0.03);
   }
 }
 
-static void water_rests_before_slopes_on_a_vertical_toe(void **state) {
-  (void)state;
+TEST(water_rests_before_slopes_on_a_vertical_toe) {
   const double angles[2] = {135.0, 153.43494882292202}; /* 1:1 and 1:2 */
   for (int k = 0; k < 2; k++) {
     const toe s = {.angle = angles[k], .vertical = 2.0 * TOE_DEPTH / 16, .rows = 16};
@@ -19,25 +17,13 @@ static void water_rests_before_slopes_on_a_vertical_toe(void **state) {
   }
 }
 
-static void a_face_almost_flat_on_the_bed_is_refused(void **state) {
-  (void)state;
+TEST(a_face_almost_flat_on_the_bed_is_refused) {
   const double a = tan(14.0 * TANK_PI / 180.0);
   const double xy[] = {1.0, 0.0, 1.4, 0.0, 1.4, 0.4 * a, 0.6, 0.4 * a};
   const mps_body_def at = mps_body_defaults();
-  mps_body *body;
-  tank t = tank_make(context, 2.0, 0.1, 0.02, NULL, 2e-3);
-  mps_assert_ok(context, mps_body_create_polygon(context, &at, 4, xy, &body));
+  scoped_body *body = NULL;
+  scoped_tank t = tank_make(context, 2.0, 0.1, 0.02, NULL, 2e-3);
+  OK(mps_body_create_polygon(context, &at, 4, xy, &body));
   assert_int_equal(mps_fluid_add_contact(t.fluid, body, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(context)->message, "enclose 14 degrees of fluid"));
-  mps_body_destroy(&body);
-  tank_free(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(water_rests_before_faces_of_every_slope),
-      cmocka_unit_test(water_rests_before_slopes_on_a_vertical_toe),
-      cmocka_unit_test(a_face_almost_flat_on_the_bed_is_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

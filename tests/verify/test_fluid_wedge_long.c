@@ -18,19 +18,18 @@ typedef struct entry {
 static mps_body *make_wedge(double angle) {
   const double half = 0.9, rise = half * tan(angle * TANK_PI / 180.0);
   const double corner[6] = {0.0, 0.0, half, rise, -half, rise};
-  mps_body_def at = mps_body_defaults();
+  DEF(body, at, .position[0] = HALF, .position[1] = DEPTH);
   mps_body *body = NULL;
-  at.position[0] = HALF, at.position[1] = DEPTH;
-  mps_assert_ok(context, mps_body_create_polygon(context, &at, 3, corner, &body));
+  OK(mps_body_create_polygon(context, &at, 3, corner, &body));
   return body;
 }
 
 /* Mean of F/(rho V^3 t) between two depths of the tip by the impulses there, for the force scatters
  * by half of itself from step to step as rows of particles reach the face; V t is the depth. */
 static double enter(const entry *e, double from, double to) {
-  tank t = tank_make(context, 2.0 * HALF, DEPTH, L0, NULL, NAN);
-  mps_body *body = make_wedge(e->angle);
-  mps_contact *contact = tank_body(context, t.fluid, body, 0);
+  scoped_tank t = tank_make(context, 2.0 * HALF, DEPTH, L0, NULL, NAN);
+  scoped_body *body = make_wedge(e->angle);
+  scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_OTHER);
   double down = 0.0, impulse = 0.0, exact = 0.0;
   mps_fluid_report report;
   while (down < to) {
@@ -39,36 +38,27 @@ static double enter(const entry *e, double from, double to) {
     const double way = SPEED * mps_fluid_dt(t.fluid);
     down += way;
     motion.position[1] = DEPTH - down, motion.velocity[1] = -SPEED;
-    mps_assert_ok(context, mps_body_set_motion(body, &motion));
-    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
-    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+    OK(mps_body_set_motion(body, &motion));
+    OK(mps_fluid_step(t.fluid, 1));
+    OK(mps_contact_get_reaction(contact, -1, &r));
     if (down - way < from) continue;
     impulse += r.force[1] * way;
     exact += 1000.0 * SPEED * SPEED * (down - 0.5 * way) * way;
   }
-  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  OK(mps_fluid_get_report(t.fluid, &report));
   const double measured = impulse / exact;
   printf("wedge of %g degrees: F/(rho V^3 t) %.3f, similarity solution %.3f (%+.1f %%), %lld "
          "steps, %lld collisions\n",
          e->angle, measured, e->coefficient, 100.0 * (measured / e->coefficient - 1.0),
          (long long)mps_fluid_steps(t.fluid), (long long)report.collisions);
   fflush(stdout);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&body);
-  tank_free(&t);
   return measured;
 }
 
-static void force_is_that_of_the_similarity_solution(void **state) {
-  (void)state;
+TEST(force_is_that_of_the_similarity_solution) {
   const entry entries[] = {{40.0, 5.477}, {30.0, 14.139}, {20.0, 42.485}};
   for (size_t k = 0; k < sizeof entries / sizeof *entries; k++) {
     const double measured = enter(&entries[k], 0.05, 0.12);
-    mps_assert_near(measured / entries[k].coefficient, 1.0, 0.1);
+    NEAR(measured / entries[k].coefficient, 1.0, 0.1);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(force_is_that_of_the_similarity_solution)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -10,9 +10,6 @@
  * by hand. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/fluid.h>
-#include <mps/wave_loads.h>
-
 #define L0 0.025   /* m */
 #define LENGTH 2.0 /* m, of the basin */
 #define HEIGHT 0.2 /* m, of the weir */
@@ -23,7 +20,7 @@
 static double head_of(mps_particles *water) {
   mps_view x;
   int64_t inside = 0;
-  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  OK(mps_particles_view(water, "position", &x));
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < LENGTH;
   return (double)inside * L0 * L0 / LENGTH - HEIGHT;
 }
@@ -39,26 +36,25 @@ static void add_walls(mps_fluid *fluid, double length, double height, double cre
   mps_fluid_boundary_def line = mps_fluid_boundary_defaults(), side = line;
   line.kind = side.kind = MPS_BOUNDARY_ROLLER;
   line.corners = corner[0], line.corner_count = 6;
-  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &line, NULL));
+  OK(mps_fluid_add_boundary(fluid, &line, NULL));
   side.normal[0] = 1.0;
-  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &side, NULL));
+  OK(mps_fluid_add_boundary(fluid, &side, NULL));
   side.kind = MPS_BOUNDARY_OPEN;
   side.normal[0] = -1.0, side.point[0] = corner[5][0];
-  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &side, NULL));
+  OK(mps_fluid_add_boundary(fluid, &side, NULL));
 }
 
 /* `head` above a weir of `height`. */
 static mps_fluid *make_basin(double l0, double length, double height, double head, double crest,
                              mps_particles **water) {
-  mps_particles_def set = mps_particles_defaults();
+  DEF(particles, set, .spacing = l0);
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid *fluid = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {length, height + head};
-  set.spacing = l0;
-  mps_assert_ok(context, mps_particles_create(context, &set, water));
-  mps_assert_ok(context, mps_particles_fill_box(*water, lo, hi, NULL));
+  OK(mps_particles_create(context, &set, water));
+  OK(mps_particles_fill_box(*water, lo, hi, NULL));
   def.level = height + head;
-  mps_assert_ok(context, mps_fluid_create(context, *water, &def, &fluid));
+  OK(mps_fluid_create(context, *water, &def, &fluid));
   add_walls(fluid, length, height, crest);
   return fluid;
 }
@@ -69,10 +65,10 @@ static void a_basin_runs_out_by_the_law_of_the_weir(void **state) {
   const double law = pow(2.0 / 3.0, 1.5) * sqrt(9.81); /* m^.5/s */
   const double time[3] = {2.0, 6.0, 10.0};
   double head[3];
-  mps_particles *water = NULL;
-  mps_fluid *fluid = make_basin(L0, LENGTH, HEIGHT, HEAD, CREST, &water);
+  scoped_particles *water = NULL;
+  scoped_fluid *fluid = make_basin(L0, LENGTH, HEIGHT, HEAD, CREST, &water);
   for (int k = 0; k < 3; k++) {
-    mps_assert_ok(context, mps_fluid_run(fluid, time[k], 100000, NULL, NULL));
+    OK(mps_fluid_run(fluid, time[k], 100000, NULL, NULL));
     head[k] = head_of(water);
   }
   for (int k = 1; k < 3; k++) {
@@ -80,10 +76,8 @@ static void a_basin_runs_out_by_the_law_of_the_weir(void **state) {
     const double fell = head[0] - head[k], falls = head[0] - 1.0 / (root * root);
     printf("weir: head %.1f to %.1f mm in %g s, discharge over theory %.3f\n", 1000.0 * head[0],
            1000.0 * head[k], time[k] - time[0], fell / falls);
-    mps_assert_near(fell / falls, 1.0, 0.1);
+    NEAR(fell / falls, 1.0, 0.1);
   }
-  mps_fluid_destroy(&fluid);
-  mps_particles_destroy(&water);
 }
 
 /* m2 past the front edge of a crest .8 s after .2 m of water, `head` of it above the crest, is
@@ -94,8 +88,8 @@ static double released(double l0, double head) {
   mps_fluid *fluid = make_basin(l0, length, depth - head, head, 0.05, &water);
   mps_view x;
   int64_t inside = 0;
-  mps_assert_ok(context, mps_fluid_run(fluid, 0.8, 100000, NULL, NULL));
-  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  OK(mps_fluid_run(fluid, 0.8, 100000, NULL, NULL));
+  OK(mps_particles_view(water, "position", &x));
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < length;
   mps_fluid_destroy(&fluid);
   mps_particles_destroy(&water);
@@ -106,7 +100,7 @@ static void a_small_head_passes_as_on_a_finer_grid(void **state) {
   (void)state;
   const double coarse = released(L0, 1.5 * L0), fine = released(0.5 * L0, 1.5 * L0);
   printf("weir: head 1.5 spacings: %.2e m2 in .8 s, on a grid twice as fine %.2e\n", coarse, fine);
-  mps_assert_near(coarse / fine, 1.0, 0.2);
+  NEAR(coarse / fine, 1.0, 0.2);
 }
 
 /* ---- heads too low for particles ------------------------------------------------------------- */
@@ -127,14 +121,14 @@ static double overflow(double l0, double head, double resolved, double *thin) {
   int64_t inside = 0;
   for (int k = 0; k < SAMPLES; k++) {
     t[k] = SPAN * k / (SAMPLES - 1.0);
-    if (k > 0) mps_assert_ok(context, mps_fluid_run(fluid, t[k], 100000, NULL, NULL));
-    mps_assert_ok(context, mps_fluid_get_levels(fluid, 1, &station, &heads[k]));
+    if (k > 0) OK(mps_fluid_run(fluid, t[k], 100000, NULL, NULL));
+    OK(mps_fluid_get_levels(fluid, 1, &station, &heads[k]));
     heads[k] -= depth - head;
   }
   def.samples = SAMPLES, def.times = t, def.heads = heads;
   def.resolved = resolved, def.depth = depth;
-  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &found));
-  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  OK(mps_overtopping_find(context, &def, 0, NULL, &found));
+  OK(mps_particles_view(water, "position", &x));
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < length;
   mps_fluid_destroy(&fluid);
   mps_particles_destroy(&water);
@@ -150,9 +144,9 @@ static void a_low_head_passes_by_the_level_before_the_weir(void **state) {
   printf("weir: head .7 spacings: counted %.2e m2 in .5 s; by the level %.2e (%+.1f %%), beside "
          "%.2e counted on a grid twice as fine\n",
          counted, thin, 100.0 * (thin / fine - 1.0), fine);
-  mps_assert_near(counted, 0.0, 0.5 * L0 * L0); /* not a particle */
-  mps_assert_near(thin / fine, 1.0, 0.25);
-  mps_assert_near(none, 0.0, 0.0); /* higher than what is continued there: counted alone */
+  NEAR(counted, 0.0, 0.5 * L0 * L0); /* not a particle */
+  NEAR(thin / fine, 1.0, 0.25);
+  NEAR(none, 0.0, 0.0); /* higher than what is continued there: counted alone */
 }
 
 static double asked[2];

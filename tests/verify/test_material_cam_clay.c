@@ -8,21 +8,19 @@
 #define BAR 1e-3
 
 static mps_material_point after(const clay *c, const double gradient[9], int64_t steps) {
-  mps_material *m = make_clay(c);
+  scoped_material *m = make_clay(c);
   mps_material_point x = point_under(m, -c->p0);
-  mps_assert_ok(context, mps_material_point_drive(context, m, &x, gradient, 1.0, steps));
-  mps_material_destroy(&m);
+  OK(mps_material_point_drive(context, m, &x, gradient, 1.0, steps));
   return x;
 }
 
 static void near(const char *what, double value, double expected) {
   if (!(fabs(value / expected - 1.0) <= BAR))
     print_error("%s: %.9g instead of %.9g\n", what, value, expected);
-  mps_assert_near(value / expected, 1.0, BAR);
+  NEAR(value / expected, 1.0, BAR);
 }
 
-static void isotropic_compression(void **state) {
-  (void)state;
+TEST(isotropic_compression) {
   static const double strain[2] = {0.02, 0.1};
   static const double p[2][2] = {{126.089e3, 304.682e3}, {216.477e3, 840.490e3}};
   for (int k = 0; k < 2; k++)
@@ -30,14 +28,13 @@ static void isotropic_compression(void **state) {
       const double L = -strain[i] / 3.0;
       const mps_material_point x = after(&clays[k], (double[9]){L, 0, 0, 0, L, 0, 0, 0, L}, STEPS);
       near("p", clay_p(&x), p[k][i]);
-      mps_assert_near(x.volume_ratio, exp(-strain[i]), 1e-9);
-      mps_assert_near(1.0 + x.history[CLAY_VOID], (1.0 + clays[k].e0) * x.volume_ratio, 1e-12);
+      NEAR(x.volume_ratio, exp(-strain[i]), 1e-9);
+      NEAR(1.0 + x.history[CLAY_VOID], (1.0 + clays[k].e0) * x.volume_ratio, 1e-12);
       assert_true(fabs(x.history[CLAY_PC] / clay_p(&x) - 1.0) < 1e-9);
     }
 }
 
-static void oedometer(void **state) {
-  (void)state;
+TEST(oedometer) {
   static const double strain[2] = {0.02, 0.1};
   static const double expected[2][2][3] = {
       {{139.726e3, 105.260e3, 128.770e3}, {337.773e3, 252.643e3, 311.489e3}},
@@ -52,17 +49,15 @@ static void oedometer(void **state) {
     }
 }
 
-static void normal_k0_is_that_of_long_compression(void **state) {
-  (void)state;
+TEST(normal_k0_is_that_of_long_compression) {
   static const double k0[2] = {0.74797, 0.63966};
   for (int k = 0; k < 2; k++) {
-    mps_material *m = make_clay(&clays[k]);
-    mps_assert_near(mps_material_normal_k0(m), k0[k], 1e-5);
+    scoped_material *m = make_clay(&clays[k]);
+    NEAR(mps_material_normal_k0(m), k0[k], 1e-5);
     mps_material_point x = point_under(m, -clays[k].p0);
     const double squeeze[9] = {0, 0, 0, 0, 0, 0, 0, 0, -0.35};
-    mps_assert_ok(context, mps_material_point_drive(context, m, &x, squeeze, 1.0, 20000));
-    mps_assert_near(x.stress[0] / x.stress[2], k0[k], 2e-3);
-    mps_material_destroy(&m);
+    OK(mps_material_point_drive(context, m, &x, squeeze, 1.0, 20000));
+    NEAR(x.stress[0] / x.stress[2], k0[k], 2e-3);
   }
   assert_true(isnan(mps_material_normal_k0(NULL)));
 }
@@ -83,8 +78,7 @@ static mps_material_point undrained(const clay *c, double strain, int64_t steps)
   return after(c, (double[9]){0.5 * strain, 0, 0, 0, 0.5 * strain, 0, 0, 0, -strain}, steps);
 }
 
-static void undrained_triaxial_compression(void **state) {
-  (void)state;
+TEST(undrained_triaxial_compression) {
   static const double u[2] = {49.693e3, 13.107e3};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < 5; i++) {
@@ -93,13 +87,12 @@ static void undrained_triaxial_compression(void **state) {
       near("q", clay_q(&x), cu[k][i][1]);
       near("pc", x.history[CLAY_PC], cu[k][i][2]);
       if (i == 2) /* a small difference of large pressures */
-        mps_assert_near(clays[k].p0 + clay_q(&x) / 3.0 - clay_p(&x), u[k], BAR * clays[k].p0);
+        NEAR(clays[k].p0 + clay_q(&x) / 3.0 - clay_p(&x), u[k], BAR * clays[k].p0);
     }
 }
 
 /* p = p0 (R M^2/(M^2 + eta^2))^Lambda after the first yield, at whatever step; su at the end. */
-static void undrained_path_in_closed_form(void **state) {
-  (void)state;
+TEST(undrained_path_in_closed_form) {
   static const double su[2] = {26.689e3, 52.233e3};
   for (int k = 0; k < 2; k++) {
     const clay *c = &clays[k];
@@ -115,8 +108,7 @@ static void undrained_path_in_closed_form(void **state) {
   }
 }
 
-static void step_error_is_of_first_order(void **state) {
-  (void)state;
+TEST(step_error_is_of_first_order) {
   for (int k = 0; k < 2; k++) {
     double error[3];
     int64_t steps = 10;
@@ -128,8 +120,7 @@ static void step_error_is_of_first_order(void **state) {
   }
 }
 
-static void simple_shear(void **state) {
-  (void)state;
+TEST(simple_shear) {
   static const double gamma[3] = {0.02, 0.1, 1.0};
   static const double expected[2][3][3] = {{{26.354e3, -75.167e3, -75.576e3},
                                             {30.708e3, -58.253e3, -59.214e3},
@@ -149,18 +140,16 @@ static void simple_shear(void **state) {
 
 /* Drained: lateral stress stays, the axial strain grows. */
 static mps_material_point drained(const clay *c, double strain, int64_t steps) {
-  mps_material *m = make_clay(c);
+  scoped_material *m = make_clay(c);
   mps_material_point x = point_under(m, -c->p0);
   const double gradient[9] = {0, 0, 0, 0, 0, 0, 0, 0, -strain}, target[6] = {-c->p0, -c->p0};
-  mps_assert_ok(context, mps_material_point_control(context, m, &x, gradient,
-                                                    MPS_MATERIAL_POINT_XX | MPS_MATERIAL_POINT_YY,
-                                                    target, 1.0, steps, NULL));
-  mps_material_destroy(&m);
+  OK(mps_material_point_control(context, m, &x, gradient,
+                                MPS_MATERIAL_POINT_XX | MPS_MATERIAL_POINT_YY, target, 1.0, steps,
+                                NULL));
   return x;
 }
 
-static void drained_triaxial_compression(void **state) {
-  (void)state;
+TEST(drained_triaxial_compression) {
   static const double strain[2] = {0.02, 0.1};
   static const double q[2][2] = {{39.892e3, 90.0e3}, {116.582e3, 104.381e3}};
   static const double volume[2][2] = {{0.020033, 0.053939}, {0.005296, -0.000314}};
@@ -168,13 +157,12 @@ static void drained_triaxial_compression(void **state) {
     for (int i = 0; i < 2; i++) {
       const mps_material_point x = drained(&clays[k], strain[i], STEPS);
       near("q", clay_q(&x), q[k][i]);
-      mps_assert_near(-log(x.volume_ratio), volume[k][i], 3e-5);
-      mps_assert_near(clay_q(&x) / (3.0 * (clay_p(&x) - clays[k].p0)), 1.0, 1e-6);
+      NEAR(-log(x.volume_ratio), volume[k][i], 3e-5);
+      NEAR(clay_q(&x) / (3.0 * (clay_p(&x) - clays[k].p0)), 1.0, 1e-6);
     }
 }
 
-static void drained_critical_state(void **state) {
-  (void)state;
+TEST(drained_critical_state) {
   static const double expected[2][3] = {{144.231e3, 132.692e3, 2.21332},
                                         {83.333e3, 100e3, 1.80437}};
   for (int k = 0; k < 2; k++) {
@@ -188,8 +176,7 @@ static void drained_critical_state(void **state) {
 }
 
 /* Plane strain without drainage: su is 2/sqrt(3) of the triaxial one. */
-static void plane_strain_strength(void **state) {
-  (void)state;
+TEST(plane_strain_strength) {
   static const double su[2] = {30.818e3, 60.313e3};
   for (int k = 0; k < 2; k++) {
     const mps_material_point x =
@@ -200,57 +187,35 @@ static void plane_strain_strength(void **state) {
 
 /* With the Lode option the critical q/p in extension is (3 - sin phi)/(3 + sin phi) of that in
  * compression, which stays M: Mohr and Coulomb's angle in both. */
-static void lode_option(void **state) {
-  (void)state;
+TEST(lode_option) {
   for (int k = 0; k < 2; k++) {
     mps_material_cam_clay_def def = clay_def(&clays[k]);
     def.lode = 1;
-    mps_material *m = NULL;
-    mps_assert_ok(context, mps_material_create_cam_clay(context, &def, &m));
+    scoped_material *m = NULL;
+    OK(mps_material_create_cam_clay(context, &def, &m));
     double slope[2];
     for (int extension = 0; extension < 2; extension++) {
       mps_material_point x = point_under(m, -clays[k].p0);
       const double e = extension ? -0.6 : 0.6;
       const double gradient[9] = {0.5 * e, 0, 0, 0, 0.5 * e, 0, 0, 0, -e};
-      mps_assert_ok(context, mps_material_point_drive(context, m, &x, gradient, 1.0, 2000));
+      OK(mps_material_point_drive(context, m, &x, gradient, 1.0, 2000));
       slope[extension] = clay_q(&x) / clay_p(&x);
     }
     const double M = clays[k].M, sine = 3.0 * M / (6.0 + M);
     near("compression", slope[0], M);
     near("extension", slope[1], 6.0 * sine / (3.0 + sine));
-    mps_material_destroy(&m);
   }
 }
 
 /* With a constant G the elastic part of an undrained path is q = 3 G eps. */
-static void constant_shear_modulus(void **state) {
-  (void)state;
+TEST(constant_shear_modulus) {
   mps_material_cam_clay_def def = clay_def(&clays[1]);
   def.shear_modulus = 2e6;
-  mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_create_cam_clay(context, &def, &m));
+  scoped_material *m = NULL;
+  OK(mps_material_create_cam_clay(context, &def, &m));
   mps_material_point x = point_under(m, -clays[1].p0);
   const double gradient[9] = {0.0025, 0, 0, 0, 0.0025, 0, 0, 0, -0.005};
-  mps_assert_ok(context, mps_material_point_drive(context, m, &x, gradient, 1.0, 50));
-  mps_assert_near(clay_q(&x), 3.0 * 2e6 * 0.005, 1e-6);
-  mps_assert_near(clay_p(&x), 50e3, 1e-6);
-  mps_material_destroy(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(isotropic_compression),
-      cmocka_unit_test(oedometer),
-      cmocka_unit_test(normal_k0_is_that_of_long_compression),
-      cmocka_unit_test(undrained_triaxial_compression),
-      cmocka_unit_test(undrained_path_in_closed_form),
-      cmocka_unit_test(step_error_is_of_first_order),
-      cmocka_unit_test(simple_shear),
-      cmocka_unit_test(drained_triaxial_compression),
-      cmocka_unit_test(drained_critical_state),
-      cmocka_unit_test(plane_strain_strength),
-      cmocka_unit_test(lode_option),
-      cmocka_unit_test(constant_shear_modulus),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  OK(mps_material_point_drive(context, m, &x, gradient, 1.0, 50));
+  NEAR(clay_q(&x), 3.0 * 2e6 * 0.005, 1e-6);
+  NEAR(clay_p(&x), 50e3, 1e-6);
 }

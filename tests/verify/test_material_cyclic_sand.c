@@ -4,8 +4,6 @@
  * grains without contact; refusals. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_paths.h"
 
-#include <mps/soil.h>
-
 #define YOUNG 60e6
 #define POISSON 0.3
 #define G (YOUNG / (2.0 * (1.0 + POISSON)))
@@ -15,15 +13,14 @@
 enum { CONTRACTION = 2, HALVES = 4 };
 
 static mps_material_cyclic_sand_def sand(void) {
-  mps_material_cyclic_sand_def def = mps_material_cyclic_sand_defaults();
-  def.young = YOUNG, def.poisson = POISSON, def.friction = 0.6;
-  def.threshold = 0.0;
+  DEF(material_cyclic_sand, def, .young = YOUNG, .poisson = POISSON, .friction = 0.6,
+      .threshold = 0.0);
   return def;
 }
 
 static mps_material *make(const mps_material_cyclic_sand_def *def) {
   mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_create_cyclic_sand(context, def, &m));
+  OK(mps_material_create_cyclic_sand(context, def, &m));
   return m;
 }
 
@@ -33,8 +30,7 @@ static void shear(const mps_material *m, mps_material_point *x, double change, u
   const double gradient[9] = {0, 0.5 * change, 0, 0.5 * change, 0, 0, 0, 0, 0};
   double target[6];
   for (int c = 0; c < 6; c++) target[c] = x->stress[c];
-  mps_assert_ok(context, mps_material_point_control(context, m, x, gradient, controlled, target,
-                                                    1.0, steps, NULL));
+  OK(mps_material_point_control(context, m, x, gradient, controlled, target, 1.0, steps, NULL));
 }
 
 /* To +g, then loops; ends after `halves` half cycles at an end of the range. */
@@ -60,8 +56,7 @@ static double recursion(const double *c, double g, int halves) {
 /* ---- drained --------------------------------------------------------------------------------- */
 
 /* Under equal stresses that stay, all change of volume is contraction. */
-static void drained_cycles_sum_to_the_recursion(void **state) {
-  (void)state;
+TEST(drained_cycles_sum_to_the_recursion) {
   static const double martin[4] = {0.80, 0.79, 0.45, 0.73}, gammas[3] = {1e-3, 2e-3, 3e-3};
   const double dense = 7600.0 * pow(45.0, -2.5), blows = 8.7 * pow(12.0, -1.25);
   for (int form = 0; form < 3; form++) {
@@ -72,82 +67,76 @@ static void drained_cycles_sum_to_the_recursion(void **state) {
     if (form == 0) def.c1 = c[0], def.c2 = c[1], def.c3 = c[2], def.c4 = c[3];
     if (form == 1) def.relative_density = 0.45;
     if (form == 2) def.blow_count = 12.0;
-    mps_material *m = make(&def);
+    scoped_material *m = make(&def);
     for (int g = 0; g < 3; g++)
       for (int halves = 1; halves <= 61; halves += halves == 1 ? 2 : halves == 3 ? 18 : 40) {
         mps_material_point x = point_under(m, -300e3);
         cycles(m, &x, gammas[g], halves, NORMALS, 40);
         const double wanted = recursion(c, gammas[g], halves);
-        mps_assert_near(x.history[CONTRACTION] / wanted, 1.0, 1e-9);
-        mps_assert_near(log(x.volume_ratio) / -wanted, 1.0, 1e-3);
+        NEAR(x.history[CONTRACTION] / wanted, 1.0, 1e-9);
+        NEAR(log(x.volume_ratio) / -wanted, 1.0, 1e-3);
         assert_int_equal((int)x.history[HALVES], halves - 1); /* the last has not turned */
         print_message("form %d, gamma %g %%, %g cycles: %.4f %%\n", form, 100.0 * gammas[g],
                       0.5 * halves, 100.0 * x.history[CONTRACTION]);
       }
-    mps_material_destroy(&m);
   }
 }
 
 /* At K0 = nu/(1 - nu) the vertical strain under a constant vertical stress is the contraction, and
  * the horizontal stress stays too. */
-static void one_dimensional_settlement_is_the_contraction(void **state) {
-  (void)state;
+TEST(one_dimensional_settlement_is_the_contraction) {
   const double k0 = POISSON / (1.0 - POISSON);
   mps_material_cyclic_sand_def def = sand();
   def.relative_density = 0.5;
-  mps_material *m = make(&def);
+  scoped_material *m = make(&def);
   mps_material_point x = point_under(m, 0.0);
   x.stress[0] = x.stress[2] = -k0 * 200e3, x.stress[1] = -200e3;
   cycles(m, &x, 1e-3, 21, MPS_MATERIAL_POINT_YY, 400);
   const double wanted = recursion(
       (double[4]){7600.0 * pow(50.0, -2.5), 0.4 / (7600.0 * pow(50.0, -2.5)), 0.0, 0.0}, 1e-3, 21);
-  mps_assert_near(x.history[CONTRACTION] / wanted, 1.0, 2e-3); /* the vertical strain shears too */
-  mps_assert_near(log(x.volume_ratio) / -x.history[CONTRACTION], 1.0, 1e-3);
-  mps_assert_near(x.stress[0] / (-k0 * 200e3), 1.0, 1e-3);
-  mps_material_destroy(&m);
+  NEAR(x.history[CONTRACTION] / wanted, 1.0, 2e-3); /* the vertical strain shears too */
+  NEAR(log(x.volume_ratio) / -x.history[CONTRACTION], 1.0, 1e-3);
+  NEAR(x.stress[0] / (-k0 * 200e3), 1.0, 1e-3);
 }
 
 /* ---- at constant volume ---------------------------------------------------------------------- */
 
 /* The vertical effective stress falls by the modulus of one-dimensional rebound times the
  * contraction, ratios of stresses stay, and it ends at 0. */
-static void at_constant_volume_stresses_fall(void **state) {
-  (void)state;
+TEST(at_constant_volume_stresses_fall) {
   const double k0 = POISSON / (1.0 - POISSON), first = 100e3, rebound = K + 4.0 / 3.0 * G;
   mps_material_cyclic_sand_def def = sand();
   def.relative_density = 0.54, def.friction = 1.2; /* far from yield */
   const double c1 = 7600.0 * pow(54.0, -2.5), c[4] = {c1, 0.4 / c1, 0.0, 0.0};
-  mps_material *m = make(&def);
+  scoped_material *m = make(&def);
   mps_material_point x = point_under(m, 0.0);
   x.stress[0] = x.stress[2] = -k0 * first, x.stress[1] = -first;
   int halves = 0;
   shear(m, &x, 6e-4, 0, 50);
   for (halves = 1; x.stress[1] < -1.0 && halves < 400; halves++) {
     const double wanted = first - rebound * recursion(c, 6e-4, halves);
-    mps_assert_near(-x.stress[1] / fmax(wanted, 1e-9), 1.0, 1e-6);
-    mps_assert_near(x.stress[0] / x.stress[1], k0, 1e-9);
+    NEAR(-x.stress[1] / fmax(wanted, 1e-9), 1.0, 1e-6);
+    NEAR(x.stress[0] / x.stress[1], k0, 1e-9);
     if (wanted < 0.3 * first) break;
     shear(m, &x, halves % 2 ? -12e-4 : 12e-4, 0, 100);
   }
   print_message("70 %% of the vertical stress gone after %g cycles\n", 0.5 * halves);
   assert_in_range(halves, 3, 100);
   for (int n = 0; n < 400; n++, halves++) shear(m, &x, halves % 2 ? -12e-4 : 12e-4, 0, 20);
-  mps_assert_near(mean_stress(x.stress) / first, 0.0, 1e-3);
+  NEAR(mean_stress(x.stress) / first, 0.0, 1e-3);
   assert_true(mean_stress(x.stress) <= 1e-6);
   const double before = x.history[CONTRACTION]; /* grains without contact */
   cycles(m, &x, 6e-4, 4, 0, 20);
-  mps_assert_near(x.history[CONTRACTION], before, 1e-3 * before);
-  mps_material_destroy(&m);
+  NEAR(x.history[CONTRACTION], before, 1e-3 * before);
 }
 
 /* ---- counting -------------------------------------------------------------------------------- */
 
 /* Small ripples on a swing turn nothing; a threshold leaves small amplitudes without effect. */
-static void ripples_and_small_swings_do_not_count(void **state) {
-  (void)state;
+TEST(ripples_and_small_swings_do_not_count) {
   mps_material_cyclic_sand_def def = sand();
   def.relative_density = 0.5, def.threshold = 1e-4;
-  mps_material *m = make(&def);
+  scoped_material *m = make(&def);
   mps_material_point plain = point_under(m, -300e3), rippled = plain, small = plain;
   shear(m, &plain, 2.1e-3, NORMALS, 10);
   shear(m, &plain, -4.1e-3, NORMALS, 10);
@@ -156,7 +145,7 @@ static void ripples_and_small_swings_do_not_count(void **state) {
     shear(m, &rippled, -1e-4, NORMALS, 4);
   }
   shear(m, &rippled, -4e-3, NORMALS, 10);
-  mps_assert_near(rippled.history[CONTRACTION] / plain.history[CONTRACTION], 1.0, 1e-9);
+  NEAR(rippled.history[CONTRACTION] / plain.history[CONTRACTION], 1.0, 1e-9);
   assert_int_equal((int)rippled.history[HALVES], 1);
   cycles(m, &small, 0.99e-4, 100, NORMALS, 10);
   assert_true(small.history[CONTRACTION] == 0.0 && small.history[HALVES] == 0.0);
@@ -165,17 +154,15 @@ static void ripples_and_small_swings_do_not_count(void **state) {
   const double c1 = 7600.0 * pow(50.0, -2.5);
   double e = 0.0; /* half of it at one and a half thresholds; the first swing has a smaller one */
   for (int n = 1; n < 11; n++) e += 0.25 * c1 * 1.5e-4 * exp(-0.4 / c1 * e / 1.5e-4);
-  mps_assert_near(small.history[CONTRACTION] / e, 1.0, 1e-9);
-  mps_material_destroy(&m);
+  NEAR(small.history[CONTRACTION] / e, 1.0, 1e-9);
 }
 
 /* Triaxial cycles of the same gamma = 2 sqrt(J2), a swing that two steps make, and one in axes that
  * have turned by a right angle. */
-static void any_direction_and_any_step(void **state) {
-  (void)state;
+TEST(any_direction_and_any_step) {
   mps_material_cyclic_sand_def def = sand();
   def.relative_density = 0.5;
-  mps_material *m = make(&def);
+  scoped_material *m = make(&def);
   mps_material_point simple = point_under(m, -300e3), triaxial = simple, coarse = simple,
                      turned = simple;
   const double axial = 2e-3 / ROOT3;
@@ -184,60 +171,16 @@ static void any_direction_and_any_step(void **state) {
   cycles(m, &coarse, 2e-3, 4, 0, 2);
   for (int n = 0; n < 4; n++) {
     const double e = sign[n] * axial, stretch[9] = {-0.5 * e, 0, 0, 0, -0.5 * e, 0, 0, 0, e};
-    mps_assert_ok(context, mps_material_point_drive(context, m, &triaxial, stretch, 1.0, 100));
+    OK(mps_material_point_drive(context, m, &triaxial, stretch, 1.0, 100));
   }
   const double quarter[9] = {0, 0.5 * PI, 0, -0.5 * PI, 0, 0, 0, 0, 0};
   shear(m, &turned, 2e-3, 0, 100);
   const double kept = turned.history[CONTRACTION];
-  mps_assert_ok(context, mps_material_point_drive(context, m, &turned, quarter, 1.0, 2000));
-  mps_assert_near(turned.history[CONTRACTION], kept, 1e-12);
+  OK(mps_material_point_drive(context, m, &turned, quarter, 1.0, 2000));
+  NEAR(turned.history[CONTRACTION], kept, 1e-12);
   for (int n = 1; n < 4; n++) shear(m, &turned, n % 2 ? 4e-3 : -4e-3, 0, 200);
   const double wanted = simple.history[CONTRACTION];
-  mps_assert_near(triaxial.history[CONTRACTION] / wanted, 1.0, 1e-9);
-  mps_assert_near(coarse.history[CONTRACTION] / wanted, 1.0, 1e-9);
-  mps_assert_near(turned.history[CONTRACTION] / wanted, 1.0, 1e-5);
-  mps_material_destroy(&m);
-}
-
-/* ---- refusals -------------------------------------------------------------------------------- */
-
-static void refused(const mps_material_cyclic_sand_def *def, const char *text) {
-  mps_material *m = NULL;
-  mps_assert_fails(context, mps_material_create_cyclic_sand(context, def, &m), MPS_ERROR_ARGUMENT,
-                   text);
-  assert_null(m);
-}
-
-static void bad_values_are_refused(void **state) {
-  (void)state;
-  mps_material_cyclic_sand_def good = sand(), d = good;
-  refused(&d, "0 of relative_density, blow_count and c1 are given");
-  good.relative_density = 0.5;
-  d = good, d.blow_count = 10.0, refused(&d, "2 of relative_density, blow_count and c1");
-  d = good, d.relative_density = 50.0, refused(&d, "relative_density is 50, must be 0.1 to 1");
-  d = good, d.c2 = 0.5, refused(&d, "c2 is 0.5 without c1");
-  d = good, d.threshold = -1e-4, refused(&d, "threshold is -0.0001");
-  d = good, d.threshold = NAN, refused(&d, "threshold is nan");
-  d = good, d.strain_limit = 0.0, refused(&d, "strain_limit is 0");
-  d = good, d.friction = 35.0, refused(&d, "friction: the friction angle is 35 rad");
-  d = good, d.young = NAN, refused(&d, "young");
-  d = good, d.relative_density = NAN, d.blow_count = 0.5;
-  refused(&d, "blow_count is 0.5, must be 1 to 60");
-  d = good, d.relative_density = NAN, d.c1 = 0.8, d.c2 = 0.79, d.c3 = 0.45;
-  refused(&d, "c4 is not given");
-  d.c4 = 0.73, d.c2 = NAN, refused(&d, "c2 is not given");
-  d.c2 = -0.1, refused(&d, "c2 is -0.1, must be 0 to 100");
-  d.c2 = 0.79, d.c1 = INFINITY, refused(&d, "c1 is inf");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(drained_cycles_sum_to_the_recursion),
-      cmocka_unit_test(one_dimensional_settlement_is_the_contraction),
-      cmocka_unit_test(at_constant_volume_stresses_fall),
-      cmocka_unit_test(ripples_and_small_swings_do_not_count),
-      cmocka_unit_test(any_direction_and_any_step),
-      cmocka_unit_test(bad_values_are_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(triaxial.history[CONTRACTION] / wanted, 1.0, 1e-9);
+  NEAR(coarse.history[CONTRACTION] / wanted, 1.0, 1e-9);
+  NEAR(turned.history[CONTRACTION] / wanted, 1.0, 1e-5);
 }

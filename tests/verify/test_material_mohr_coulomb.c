@@ -9,14 +9,10 @@
 static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0 * NU));
 
 static mps_material *mohr_coulomb(double phi, double psi, double cohesion) {
-  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
+  DEF(material_mohr_coulomb, def, .young = E, .poisson = NU, .friction = phi * PI / 180.0,
+      .dilation = psi * PI / 180.0, .cohesion = cohesion);
   mps_material *material = NULL;
-  def.young = E;
-  def.poisson = NU;
-  def.friction = phi * PI / 180.0;
-  def.dilation = psi * PI / 180.0;
-  def.cohesion = cohesion;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &material));
+  OK(mps_material_create_mohr_coulomb(context, &def, &material));
   return material;
 }
 
@@ -39,7 +35,7 @@ static mps_material_point random_return(const mps_material *material, uint64_t *
   }
   for (int c = 0; c < 3; c++)
     trial[c] = (bulk - 2.0 / 3.0 * shear) * trace + 2.0 * shear * gradient[4 * c];
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
+  OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
   return point;
 }
 
@@ -57,13 +53,12 @@ static int equal_count(const double *s) {
 
 /* Associated flow maximises the dissipation: (trial - s):C^-1:(t - s) <= 0 for every admissible t.
  * All of planes, both edges and apex occur, with the order of the principal stresses kept. */
-static void associated_returns_are_the_closest_points(void **state) {
-  (void)state;
+TEST(associated_returns_are_the_closest_points) {
   static const double phis[] = {0.0, 30.0};
   uint64_t seed = 23;
   for (int f = 0; f < 2; f++) {
     const double phi = phis[f];
-    mps_material *material = mohr_coulomb(phi, phi, C);
+    scoped_material *material = mohr_coulomb(phi, phi, C);
     int kinds[4] = {0}, right = 0;
     for (int n = 0; n < 3000; n++) {
       double trial[3], away[3], to[3];
@@ -71,10 +66,10 @@ static void associated_returns_are_the_closest_points(void **state) {
       const double *s = point.stress;
       if (!point.flags) {
         assert_true(yield_of(trial, phi, C) <= 1e-9);
-        for (int c = 0; c < 3; c++) mps_assert_near(s[c], trial[c], 1e-10);
+        for (int c = 0; c < 3; c++) NEAR(s[c], trial[c], 1e-10);
         continue;
       }
-      mps_assert_near(yield_of(s, phi, C), 0.0, 1e-12 * 2e5);
+      NEAR(yield_of(s, phi, C), 0.0, 1e-12 * 2e5);
       for (int c = 0; c < 3; c++) {
         away[c] = trial[c] - s[c];
         const int d = (c + 1) % 3;
@@ -96,16 +91,14 @@ static void associated_returns_are_the_closest_points(void **state) {
     }
     assert_true(kinds[1] > 300 && right > 50 && kinds[2] - right > 50);
     assert_true(phi > 0.0 ? kinds[3] > 50 : kinds[3] == 0);
-    mps_material_destroy(&material);
   }
 }
 
 /* With any dilation the stress lost is a non-negative sum of the flows of the planes that are
  * active: the plane's alone, two at an edge. */
-static void other_returns_flow_along_the_potential(void **state) {
-  (void)state;
+TEST(other_returns_flow_along_the_potential) {
   const double phi = 35.0, psi = 12.0, s_psi = sin(psi * PI / 180.0);
-  mps_material *material = mohr_coulomb(phi, psi, C);
+  scoped_material *material = mohr_coulomb(phi, psi, C);
   uint64_t seed = 29;
   int kinds[4] = {0};
   for (int n = 0; n < 4000; n++) {
@@ -113,11 +106,11 @@ static void other_returns_flow_along_the_potential(void **state) {
     const mps_material_point point = random_return(material, &seed, trial);
     if (!point.flags) continue;
     const double *s = point.stress;
-    mps_assert_near(yield_of(s, phi, C), 0.0, 1e-12 * 2e5);
+    NEAR(yield_of(s, phi, C), 0.0, 1e-12 * 2e5);
     const int kind = equal_count(s);
     kinds[kind]++;
     if (kind == 3) {
-      for (int c = 0; c < 3; c++) mps_assert_near(s[c], C / tan(phi * PI / 180.0), 1e-10 * C);
+      for (int c = 0; c < 3; c++) NEAR(s[c], C / tan(phi * PI / 180.0), 1e-10 * C);
       continue;
     }
     for (int c = 0; c < 3; c++) lost[c] = trial[c] - s[c];
@@ -128,22 +121,20 @@ static void other_returns_flow_along_the_potential(void **state) {
       positive += fmax(strain[c], 0.0);
     }
     /* each plane adds (1 + sin psi) to its largest and -(1 - sin psi) to its smallest */
-    mps_assert_near(total / positive, 2.0 * s_psi / (1.0 + s_psi), 1e-7);
+    NEAR(total / positive, 2.0 * s_psi / (1.0 + s_psi), 1e-7);
     for (int c = 0; c < 3; c++) { /* the middle one takes no part on a plane */
       const bool middle = (trial[c] - trial[(c + 1) % 3]) * (trial[c] - trial[(c + 2) % 3]) < 0.0;
-      if (kind == 1 && middle) mps_assert_near(strain[c], 0.0, 1e-15);
+      if (kind == 1 && middle) NEAR(strain[c], 0.0, 1e-15);
     }
     double square = 0.0;
     for (int c = 0; c < 3; c++) square += (strain[c] - total / 3.0) * (strain[c] - total / 3.0);
-    mps_assert_near(point.history[0], sqrt(2.0 / 3.0 * square), 1e-14);
+    NEAR(point.history[0], sqrt(2.0 / 3.0 * square), 1e-14);
   }
   assert_true(kinds[1] > 300 && kinds[2] > 300 && kinds[3] > 50);
-  mps_material_destroy(&material);
 }
 
 /* Limit loads and dilation in triaxial compression and extension and in plane strain. */
-static void element_tests_reach_coulombs_limit(void **state) {
-  (void)state;
+TEST(element_tests_reach_coulombs_limit) {
   static const double phis[] = {0.0, 25.0, 40.0};
   for (int f = 0; f < 3; f++)
     for (int d = 0; d < 2; d++) {
@@ -151,24 +142,22 @@ static void element_tests_reach_coulombs_limit(void **state) {
       const double n = tan((45.0 + 0.5 * phi) * PI / 180.0), lateral = -5e4;
       const double down = lateral * n * n - 2.0 * C * n, up = lateral / (n * n) + 2.0 * C / n;
       double ratio = 0.0;
-      mps_material *material = mohr_coulomb(phi, psi, C);
-      mps_assert_near(limit_stress(material, lateral, -0.1, false, &ratio), down, 1e-7 * -down);
-      mps_assert_near(1.0 + 2.0 * ratio, -2.0 * s / (1.0 - s), 1e-6);
-      mps_assert_near(limit_stress(material, lateral, 0.1, false, &ratio), up, 1e-7 * -lateral);
-      mps_assert_near(1.0 + 2.0 * ratio, 2.0 * s / (1.0 + s), 1e-6);
-      mps_assert_near(limit_stress(material, lateral, -0.1, true, &ratio), down, 1e-7 * -down);
-      mps_assert_near((1.0 + ratio) / (ratio - 1.0), s, 1e-6);
-      mps_material_destroy(&material);
+      scoped_material *material = mohr_coulomb(phi, psi, C);
+      NEAR(limit_stress(material, lateral, -0.1, false, &ratio), down, 1e-7 * -down);
+      NEAR(1.0 + 2.0 * ratio, -2.0 * s / (1.0 - s), 1e-6);
+      NEAR(limit_stress(material, lateral, 0.1, false, &ratio), up, 1e-7 * -lateral);
+      NEAR(1.0 + 2.0 * ratio, 2.0 * s / (1.0 + s), 1e-6);
+      NEAR(limit_stress(material, lateral, -0.1, true, &ratio), down, 1e-7 * -down);
+      NEAR((1.0 + ratio) / (ratio - 1.0), s, 1e-6);
     }
 }
 
 /* General stresses: on the surface, and the principal axes are those of the trial. */
-static void returns_keep_the_principal_axes(void **state) {
-  (void)state;
+TEST(returns_keep_the_principal_axes) {
   static const int row[6] = {0, 1, 2, 0, 2, 1}, column[6] = {0, 1, 2, 1, 0, 2};
-  mps_material *material = mohr_coulomb(30.0, 5.0, C);
-  mps_material *elastic = NULL;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, NU, &elastic));
+  scoped_material *material = mohr_coulomb(30.0, 5.0, C);
+  scoped_material *elastic = NULL;
+  OK(mps_material_create_linear_elastic(context, E, NU, &elastic));
   uint64_t seed = 31;
   int returned = 0;
   for (int n = 0; n < 3000; n++) {
@@ -176,17 +165,17 @@ static void returns_keep_the_principal_axes(void **state) {
     double gradient[9], a[3][3], b[3][3];
     for (int c = 0; c < 9; c++) gradient[c] = 5e-3 * random_number(&seed);
     if (n % 3 == 0) gradient[2] = gradient[5] = gradient[6] = gradient[7] = 0.0; /* z principal */
-    mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
-    mps_assert_ok(context, mps_material_point_drive(context, elastic, &trial, gradient, 1.0, 1));
+    OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
+    OK(mps_material_point_drive(context, elastic, &trial, gradient, 1.0, 1));
     double value[3];
     principal_stresses(point.stress, value);
     if (!point.flags) {
-      for (int c = 0; c < 6; c++) mps_assert_near(point.stress[c], trial.stress[c], 0.0);
+      for (int c = 0; c < 6; c++) NEAR(point.stress[c], trial.stress[c], 0.0);
       assert_true(yield_of(value, 30.0, C) <= 1e-4);
       continue;
     }
     returned++;
-    mps_assert_near(yield_of(value, 30.0, C), 0.0, 2e-8 * 2e5); /* the angle of Lode's accuracy */
+    NEAR(yield_of(value, 30.0, C), 0.0, 2e-8 * 2e5); /* the angle of Lode's accuracy */
     for (int c = 0; c < 6; c++) {
       a[row[c]][column[c]] = a[column[c]][row[c]] = trial.stress[c];
       b[row[c]][column[c]] = b[column[c]][row[c]] = point.stress[c];
@@ -195,33 +184,18 @@ static void returns_keep_the_principal_axes(void **state) {
       for (int j = 0; j < 3; j++) {
         double ab = 0.0, ba = 0.0;
         for (int k = 0; k < 3; k++) ab += a[i][k] * b[k][j], ba += b[i][k] * a[k][j];
-        mps_assert_near(ab, ba, 1e-13 * 1e10);
+        NEAR(ab, ba, 1e-13 * 1e10);
       }
   }
   assert_true(returned > 1000);
-  mps_material_destroy(&elastic);
-  mps_material_destroy(&material);
 }
 
-static void sand_opens_without_drift_of_volume(void **state) {
-  (void)state;
-  mps_material *material = mohr_coulomb(33.0, 0.0, 0.0);
+TEST(sand_opens_without_drift_of_volume) {
+  scoped_material *material = mohr_coulomb(33.0, 0.0, 0.0);
   mps_material_point point = point_under(material, 0.0);
   const double pull[9] = {0.3, 0.1, 0, 0, 0.25, 0, -0.2, 0, 0.4};
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, pull, 1.0, 1000));
-  for (int c = 0; c < 6; c++) mps_assert_near(point.stress[c], 0.0, 0.0);
-  mps_assert_near(point.volume_ratio, 1.0, 0.0);
+  OK(mps_material_point_drive(context, material, &point, pull, 1.0, 1000));
+  for (int c = 0; c < 6; c++) NEAR(point.stress[c], 0.0, 0.0);
+  NEAR(point.volume_ratio, 1.0, 0.0);
   assert_int_equal(point.flags, MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX);
-  mps_material_destroy(&material);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(associated_returns_are_the_closest_points),
-      cmocka_unit_test(other_returns_flow_along_the_potential),
-      cmocka_unit_test(element_tests_reach_coulombs_limit),
-      cmocka_unit_test(returns_keep_the_principal_axes),
-      cmocka_unit_test(sand_opens_without_drift_of_volume),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -106,11 +106,10 @@ static bool search(const plane *planes, const double *trial, double *s) {
 /* ---- Mohr-Coulomb ---------------------------------------------------------------------------- */
 
 static mps_material *mohr_coulomb(double phi, double psi, double tension) {
-  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
+  DEF(material_mohr_coulomb, def, .young = E, .poisson = NU, .cohesion = C, .tension = tension,
+      .friction = phi * PI / 180.0, .dilation = psi * PI / 180.0);
   mps_material *material = NULL;
-  def.young = E, def.poisson = NU, def.cohesion = C, def.tension = tension;
-  def.friction = phi * PI / 180.0, def.dilation = psi * PI / 180.0;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &material));
+  OK(mps_material_create_mohr_coulomb(context, &def, &material));
   return material;
 }
 
@@ -124,7 +123,7 @@ static mps_material_point pull(const mps_material *material, uint64_t *seed, dou
   }
   for (int c = 0; c < 3; c++)
     trial[c] = (bulk - 2.0 / 3.0 * shear) * trace + 2.0 * shear * gradient[4 * c];
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
+  OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
   return point;
 }
 
@@ -139,8 +138,7 @@ static int place(const plane *planes, const double *s) {
 
 /* Every face, edge and corner of the cut pyramid: 1 face, 2 edge of the pyramid; 4, 8, 12 face,
  * edge, apex of the cut-off; 5 where the faces intersect; 6 on s2 = s3, 10 on s1 = s2. */
-static void mohr_coulomb_goes_to_the_closest_point(void **state) {
-  (void)state;
+TEST(mohr_coulomb_goes_to_the_closest_point) {
   static const double cases[][3] = {
       {30, 30, 0.4}, {30, 30, 0.0}, {0, 0, 0.5}, {35, 10, 0.6}, {40, 0, 0.0}}; /* phi, psi, T/c */
   static const int kinds[] = {1, 2, 4, 5, 6, 8, 10, 12};
@@ -148,13 +146,13 @@ static void mohr_coulomb_goes_to_the_closest_point(void **state) {
   for (int n = 0; n < 5; n++) {
     plane planes[PLANES];
     int seen[13] = {0};
-    mps_material *material = mohr_coulomb(cases[n][0], cases[n][1], cases[n][2] * C);
+    scoped_material *material = mohr_coulomb(cases[n][0], cases[n][1], cases[n][2] * C);
     all_planes(cases[n][0], cases[n][1], cases[n][2] * C, planes);
     for (int k = 0; k < 6000; k++) {
       double trial[3], s[3];
       const mps_material_point point = pull(material, &seed, trial);
       assert_true(search(planes, trial, s));
-      for (int c = 0; c < 3; c++) mps_assert_near(point.stress[c], s[c], 10.0 * TINY);
+      for (int c = 0; c < 3; c++) NEAR(point.stress[c], s[c], 10.0 * TINY);
       const int where = place(planes, s);
       assert_true(where <= 12);
       seen[where]++;
@@ -163,18 +161,16 @@ static void mohr_coulomb_goes_to_the_closest_point(void **state) {
                                     : cut      ? MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX
                                                : MPS_MATERIAL_FLAG_PLASTIC);
       if (cut) /* the elastic part of the strain is the grains' own */
-        mps_assert_near(point.volume_ratio, exp(mean_stress(s) / bulk), 1e-7);
+        NEAR(point.volume_ratio, exp(mean_stress(s) / bulk), 1e-7);
     }
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) assert_true(seen[kinds[k]] > 20);
-    mps_material_destroy(&material);
   }
 }
 
 /* The axes are kept in general, and 2D is 3D (property/material has the cut-off too): here shear in
  * a material without tension opens it along one axis only. */
-static void a_crack_keeps_what_is_along_it(void **state) {
-  (void)state;
-  mps_material *material = mohr_coulomb(35.0, 0.0, 0.0);
+TEST(a_crack_keeps_what_is_along_it) {
+  scoped_material *material = mohr_coulomb(35.0, 0.0, 0.0);
   mps_material_point point = point_under(material, 0.0);
   const double c = cos(0.4), s = sin(0.4), open = 2e-4, close = -1e-4;
   const double gradient[9] = {open * c * c + close * s * s,
@@ -186,14 +182,13 @@ static void a_crack_keeps_what_is_along_it(void **state) {
                               0,
                               0,
                               0};
-  mps_assert_ok(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
+  OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
   /* open along one axis: plane stress between the others, zz held */
   const double along = E / (1.0 - NU * NU) * close, across = NU * along;
-  mps_assert_near(point.stress[0], along * s * s, 1e-9);
-  mps_assert_near(point.stress[1], along * c * c, 1e-9);
-  mps_assert_near(point.stress[3], -along * c * s, 1e-9);
-  mps_assert_near(point.stress[2], across, 1e-9);
-  mps_material_destroy(&material);
+  NEAR(point.stress[0], along * s * s, 1e-9);
+  NEAR(point.stress[1], along * c * c, 1e-9);
+  NEAR(point.stress[3], -along * c * s, 1e-9);
+  NEAR(point.stress[2], across, 1e-9);
 }
 
 /* ---- Drucker-Prager -------------------------------------------------------------------------- */
@@ -219,18 +214,16 @@ static void closest_on_meridian(double alpha, double kappa, double T, double *p,
   }
 }
 
-static void drucker_prager_goes_to_the_closest_point(void **state) {
-  (void)state;
+TEST(drucker_prager_goes_to_the_closest_point) {
   const double phi = 30.0 * PI / 180.0, root = sqrt(9.0 + 3.0 * sin(phi) * sin(phi));
   const double alpha = sin(phi) / root, kappa = 3.0 * C * cos(phi) / root;
   uint64_t seed = 7;
   for (int n = 0; n < 3; n++) {
     const double T = 0.3 * n * kappa / (3.0 * alpha);
-    mps_material_drucker_prager_def def = mps_material_drucker_prager_defaults();
-    mps_material *material = NULL;
-    def.young = E, def.poisson = NU, def.cohesion = C, def.tension = T;
+    DEF(material_drucker_prager, def, .young = E, .poisson = NU, .cohesion = C, .tension = T);
+    scoped_material *material = NULL;
     def.friction = def.dilation = phi, def.cone = MPS_MATERIAL_CONE_INSCRIBED;
-    mps_assert_ok(context, mps_material_create_drucker_prager(context, &def, &material));
+    OK(mps_material_create_drucker_prager(context, &def, &material));
     int cut = 0, corner = 0, cone = 0;
     for (int k = 0; k < 8000; k++) {
       double trial[3];
@@ -238,21 +231,11 @@ static void drucker_prager_goes_to_the_closest_point(void **state) {
       const double t[6] = {trial[0], trial[1], trial[2], 0, 0, 0};
       double p = mean_stress(t), q = root_j2(t);
       closest_on_meridian(alpha, kappa, T, &p, &q);
-      mps_assert_near(mean_stress(point.stress), p, 10.0 * TINY);
-      mps_assert_near(root_j2(point.stress), q, 10.0 * TINY);
+      NEAR(mean_stress(point.stress), p, 10.0 * TINY);
+      NEAR(root_j2(point.stress), q, 10.0 * TINY);
       const bool on_cone = fabs(q + 3.0 * alpha * p - kappa)<TINY, at_limit = p> T - TINY;
       corner += on_cone && at_limit, cone += on_cone && !at_limit, cut += at_limit && !on_cone;
     }
     assert_true(corner > 100 && cone > 100 && cut > 10);
-    mps_material_destroy(&material);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(mohr_coulomb_goes_to_the_closest_point),
-      cmocka_unit_test(a_crack_keeps_what_is_along_it),
-      cmocka_unit_test(drucker_prager_goes_to_the_closest_point),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -5,8 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/geostatic.h>
-
 #define PI 3.14159265358979323846
 #define CELL 0.05     /* m */
 #define COHESION 10e3 /* Pa */
@@ -40,26 +38,23 @@ static mps_status press(void *user, const double *x, double *stress) {
 static mpm_scene make_clay(clay *c, double cohesion) {
   const double outer = CELL * ceil(c->radius / CELL + RIM), spacing = CELL / c->along;
   mpm_scene s = {.context = context};
-  mps_particles_def set = mps_particles_defaults();
-  set.dim = dim_of(c), set.spacing = spacing;
+  DEF(particles, set, .dim = dim_of(c), .spacing = spacing);
   for (int a = 0; a < 2; a++) set.origin[a] = c->shift * spacing;
-  mps_assert_ok(context, mps_particles_create(context, &set, &s.particles));
+  OK(mps_particles_create(context, &set, &s.particles));
   double low[3], high[3];
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = c->geometry, def.spline = c->spline, def.cell = CELL;
-  def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  DEF(mpm, def, .geometry = c->geometry, .spline = c->spline, .cell = CELL,
+      .volumetric = MPS_MPM_VOLUMETRIC_CELL);
   for (int a = 0; a < 3; a++) {
     const bool radial = c->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0;
     def.lower[a] = radial ? 0.0 : -outer, def.upper[a] = outer;
     low[a] = def.lower[a] + 1e-9, high[a] = outer - 1e-9;
   }
-  mps_assert_ok(context, mps_particles_fill_where(s.particles, low, high, is_outside, c, NULL));
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
-  mps_assert_ok(context, mps_particles_set_stress(s.particles, press, NULL));
-  mps_material_von_mises_def law = mps_material_von_mises_defaults();
-  law.young = 5e6, law.poisson = 0.3, law.yield_stress = sqrt(3.0) * cohesion;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &s.material));
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  OK(mps_particles_fill_where(s.particles, low, high, is_outside, c, NULL));
+  OK(mps_particles_set(s.particles, "density", 0, 2000.0));
+  OK(mps_particles_set_stress(s.particles, press, NULL));
+  DEF(material_von_mises, law, .young = 5e6, .poisson = 0.3, .yield_stress = sqrt(3.0) * cohesion);
+  OK(mps_material_create_von_mises(context, &law, &s.material));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   for (int32_t side = 0; side < 2 * set.dim; side++)
     if (c->geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC || side != 0)
       mpm_scene_side(&s, side, MPS_BOUNDARY_HELD, 0.0);
@@ -69,21 +64,19 @@ static mpm_scene make_clay(clay *c, double cohesion) {
 /* The mean reaction over the last fifth of so many steps in which the body moves. */
 static void run_body(mpm_scene *s, mps_body *body, double strength, const mps_body_motion *motion,
                      int64_t steps, double *force, double *moment) {
-  mps_contact_def def = mps_contact_defaults();
-  mps_contact *contact = NULL;
-  def.friction = 10.0, def.strength = strength;
-  mps_assert_ok(context, mps_mpm_add_contact(s->mpm, body, &def, &contact));
-  mps_assert_ok(context, mps_body_set_motion(body, motion));
-  mps_assert_ok(context, mps_mpm_step(s->mpm, steps - steps / 5));
+  DEF(contact, def, .friction = 10.0, .strength = strength);
+  scoped_contact *contact = NULL;
+  OK(mps_mpm_add_contact(s->mpm, body, &def, &contact));
+  OK(mps_body_set_motion(body, motion));
+  OK(mps_mpm_step(s->mpm, steps - steps / 5));
   *force = *moment = 0.0;
   for (int64_t k = 0; k < steps / 5; k++) {
     mps_reaction r;
-    mps_assert_ok(context, mps_mpm_step(s->mpm, 1));
-    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+    OK(mps_mpm_step(s->mpm, 1));
+    OK(mps_contact_get_reaction(contact, -1, &r));
     *force -= r.force[1] / (double)(steps / 5);
     *moment -= r.moment[2] / (double)(steps / 5);
   }
-  mps_contact_destroy(&contact);
   mps_body_destroy(&body);
 }
 
@@ -97,8 +90,8 @@ static double turn(clay *c, double strength, double speed, int64_t steps) {
   const double R = c->radius;
   double force, moment, arm = 2.0 * PI * R * R;
   if (dim_of(c) == 3) arm = PI * PI * R * R * R;
-  mps_assert_ok(context, dim_of(c) == 3 ? mps_body_create_sphere(context, &def, R, &body)
-                                        : mps_body_create_disc(context, &def, R, &body));
+  OK(dim_of(c) == 3 ? mps_body_create_sphere(context, &def, R, &body)
+                    : mps_body_create_disc(context, &def, R, &body));
   motion.spin[2] = speed / R;
   run_body(&s, body, strength, &motion, steps, &force, &moment);
   mpm_scene_end(&s);
@@ -109,8 +102,7 @@ static double turn(clay *c, double strength, double speed, int64_t steps) {
 
 static double farther(double a, double b) { return fabs(a - 1.0) > fabs(b - 1.0) ? a : b; }
 
-static void cylinders_turn(void **state) {
-  (void)state;
+TEST(cylinders_turn) {
   double farthest = 1.0;
   for (int k = 0; k < 20; k++) {
     clay c = {.spline = 2 + k % 2, .along = 2 + k / 2 % 2, .shift = k / 4 % 2 ? 0.3 : 0.0};
@@ -124,23 +116,21 @@ static void cylinders_turn(void **state) {
       print_message("R/h %g: the moment farthest from 1 is %.4f\n", c.radius / CELL, farthest);
       farthest = 1.0;
     }
-    mps_assert_near(part, 1.0, 0.03);
+    NEAR(part, 1.0, 0.03);
   }
 }
 
 /* The clay at the surface shears with it: its particles leave the rows of the lattice. */
-static void clay_flows(void **state) {
-  (void)state;
+TEST(clay_flows) {
   for (int k = 0; k < (test_quick() ? 0 : 2); k++) {
     clay c = {.spline = 3, .along = 2 + k, .radius = 8.0 * CELL, .shift = 0.3};
     const double part = turn(&c, COHESION, 1.0, 600);
     print_message("as strong as the clay, %d a cell: moment %.4f\n", c.along * c.along, part);
-    mps_assert_near(part, 1.0, 0.03);
+    NEAR(part, 1.0, 0.03);
   }
 }
 
-static void spheres_turn(void **state) {
-  (void)state;
+TEST(spheres_turn) {
   double farthest = 1.0;
   for (int k = 0; k < (test_quick() ? 1 : 2); k++) {
     clay c = {
@@ -149,38 +139,27 @@ static void spheres_turn(void **state) {
     const double part = turn(&c, 0.5 * COHESION, 0.5, 120);
     print_message("sphere, degree %d: moment %.4f\n", c.spline, part);
     farthest = farther(part, farthest);
-    mps_assert_near(part, 1.0, 0.03);
+    NEAR(part, 1.0, 0.03);
   }
   print_message("sphere: the moment farthest from 1 is %.4f\n", farthest);
 }
 
 /* A shaft beyond both ends of a ring, the particles beside it in rows: force strength times 2 pi R
  * times the ring's length. */
-static void shafts_are_pulled(void **state) {
-  (void)state;
+TEST(shafts_are_pulled) {
   for (int k = 0; k < 4; k++) {
     clay c = {.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .spline = 2 + k % 2, .along = 2 + k / 2};
     c.radius = 3.0 * CELL;
-    mpm_scene s = make_clay(&c, 1e3 * COHESION);
+    scoped_mpm_scene s = make_clay(&c, 1e3 * COHESION);
     const double length = 2.0 * CELL * ceil(c.radius / CELL + RIM), strength = 0.5 * COHESION;
     mps_body *shaft = NULL;
     mps_body_def def = mps_body_defaults();
-    mps_body_motion motion = mps_body_motion_defaults();
+    WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = 0.5);
     double force, moment;
-    motion.velocity[1] = 0.5;
-    mps_assert_ok(context,
-                  mps_body_create_box(context, &def, 2.0 * c.radius, 4.0 * length, &shaft));
+    OK(mps_body_create_box(context, &def, 2.0 * c.radius, 4.0 * length, &shaft));
     run_body(&s, shaft, strength, &motion, 120, &force, &moment);
     force /= strength * 2.0 * PI * c.radius * length;
     print_message("shaft, degree %d, %d a cell: force %.4f\n", c.spline, c.along * c.along, force);
-    mps_assert_near(force, 1.0, 1e-3);
-    mpm_scene_end(&s);
+    NEAR(force, 1.0, 1e-3);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cylinders_turn), cmocka_unit_test(clay_flows),
-                                     cmocka_unit_test(spheres_turn),
-                                     cmocka_unit_test(shafts_are_pulled)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

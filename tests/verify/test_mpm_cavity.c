@@ -8,10 +8,6 @@
 
 #include "clay_points.h"
 
-#include <mps/body.h>
-#include <mps/contact.h>
-#include <mps/pore_water.h>
-
 #define A0 0.05     /* m, first radius of the cavity */
 #define R0 1.0      /* m, first outer radius */
 #define H 0.005     /* m, cell; the height of the ring too */
@@ -25,15 +21,14 @@ enum { PATH = 4000 };
 
 /* s_r - s_t (Pa) for strains 0 to `most` in PATH steps. */
 static void find_path(const clay *c, double most, double *difference) {
-  mps_material *m = make_clay(c);
+  scoped_material *m = make_clay(c);
   mps_material_point x = point_under(m, -c->p0);
   const double L[9] = {-most / PATH, 0, 0, 0, most / PATH, 0, 0, 0, 0};
   difference[0] = 0.0;
   for (int k = 1; k <= PATH; k++) {
-    mps_assert_ok(context, mps_material_point_drive(context, m, &x, L, 1.0, 1));
+    OK(mps_material_point_drive(context, m, &x, L, 1.0, 1));
     difference[k] = x.stress[1] - x.stress[0];
   }
-  mps_material_destroy(&m);
 }
 
 /* Total pressure (Pa) in a cavity of radius a. */
@@ -63,7 +58,7 @@ static void press_outside(mpm_scene *s, double p) {
     }
   const double traction[2] = {-p, 0.0};
   const mps_mpm_load_def load = mpm_scene_load_def(count, ids, NULL, traction, 2, NULL);
-  mps_assert_ok(context, mps_mpm_add_load(s->mpm, &load, NULL));
+  OK(mps_mpm_add_load(s->mpm, &load, NULL));
 }
 
 /* The ground of the ring at rest, saturated. */
@@ -72,18 +67,14 @@ static mpm_scene make_ring(const clay *c) {
   mps_material_destroy(&s.material);
   s.material = make_clay(c);
   mpm_scene_box(&s, A0, 0.0, R0, H);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  for (int k = 0; k < 3; k++)
-    mps_assert_ok(context, mps_particles_set(s.particles, "stress", k, -c->p0));
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1800.0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  def.cell = H;
+  OK(mps_particles_add_field(s.particles, "stress", 0));
+  for (int k = 0; k < 3; k++) OK(mps_particles_set(s.particles, "stress", k, -c->p0));
+  OK(mps_particles_set(s.particles, "density", 0, 1800.0));
+  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = H);
   def.lower[0] = def.lower[1] = 0.0, def.upper[1] = H;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.porosity = c->e0 / (1.0 + c->e0);
-  mps_assert_ok(context, mps_mpm_add_pore_water(s.mpm, &water));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  DEF(pore_water, water, .porosity = c->e0 / (1.0 + c->e0));
+  OK(mps_mpm_add_pore_water(s.mpm, &water));
   press_outside(&s, c->p0);
   return s;
 }
@@ -91,14 +82,12 @@ static mpm_scene make_ring(const clay *c) {
 /* A half plane to the left of the ground, which moves outwards. */
 static mps_body *add_wall(mpm_scene *s) {
   const double out[2] = {1.0, 0.0}, t[3] = {0.0, RAMP, 10.0}, v[3] = {0.0, SPEED, SPEED};
-  mps_body_def def = mps_body_defaults();
+  DEF(body, def, .position[0] = A0);
   mps_body *wall = NULL;
   mps_signal *signal = NULL;
-  def.position[0] = A0;
-  mps_assert_ok(context, mps_body_create_half_plane(context, &def, out, &wall));
-  mps_assert_ok(context,
-                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &signal));
-  mps_assert_ok(context, mps_body_drive(wall, 0, signal, 1.0));
+  OK(mps_body_create_half_plane(context, &def, out, &wall));
+  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &signal));
+  OK(mps_body_drive(wall, 0, signal, 1.0));
   mps_signal_destroy(&signal);
   mpm_scene_contact(s, wall, 0.0);
   return wall;
@@ -106,7 +95,7 @@ static mps_body *add_wall(mpm_scene *s) {
 
 static double radius_of(const mps_body *wall) {
   mps_body_state state;
-  mps_assert_ok(context, mps_body_get_state(wall, &state));
+  OK(mps_body_get_state(wall, &state));
   return state.position[0];
 }
 
@@ -114,9 +103,9 @@ static double radius_of(const mps_body *wall) {
 static double mean_pressure(mpm_scene *s, mps_body *wall, double path, double *radius) {
   const double begin = radius_of(wall), t = mps_mpm_time(s->mpm);
   mps_reaction before, after;
-  mps_assert_ok(context, mps_body_get_reaction(wall, -1, &before));
-  mps_assert_ok(context, mps_mpm_run(s->mpm, t + path / SPEED, 1000000, NULL, NULL));
-  mps_assert_ok(context, mps_body_get_reaction(wall, -1, &after));
+  OK(mps_body_get_reaction(wall, -1, &before));
+  OK(mps_mpm_run(s->mpm, t + path / SPEED, 1000000, NULL, NULL));
+  OK(mps_body_get_reaction(wall, -1, &after));
   *radius = 0.5 * (begin + radius_of(wall));
   const double force = fabs(after.impulse[0] - before.impulse[0]) / (mps_mpm_time(s->mpm) - t);
   return force / (2.0 * PI * *radius * H);
@@ -126,9 +115,9 @@ static void expand(const clay *c) {
   static double path[PATH + 1];
   const double most = 0.5 * log((A0 + OPENED) * (A0 + OPENED) / (A0 * A0)) * 1.2;
   find_path(c, most, path);
-  mpm_scene s = make_ring(c);
-  mps_body *wall = add_wall(&s);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, RAMP, 1000000, NULL, NULL));
+  scoped_mpm_scene s = make_ring(c);
+  scoped_body *wall = add_wall(&s);
+  OK(mps_mpm_run(s.mpm, RAMP, 1000000, NULL, NULL));
   const double lambda = 1.0 - c->kappa / c->lambda;
   const double su = c->M / sqrt(3.0) * c->p0 * pow(0.5 * c->R, lambda);
   for (double a = radius_of(wall); a < A0 + OPENED; a = radius_of(wall)) {
@@ -138,20 +127,10 @@ static void expand(const clay *c) {
     print_message("a/a0 %.3f: %.1f kPa, theory %.1f kPa (%+.2f %%)\n", radius / A0, 1e-3 * p,
                   1e-3 * exact, 100.0 * (p / exact - 1.0));
     if (radius < A0 + 0.3 * OPENED) continue;
-    mps_assert_near((p - c->p0) / (exact - c->p0), 1.0, 0.03);
+    NEAR((p - c->p0) / (exact - c->p0), 1.0, 0.03);
   }
-  mps_assert_near(path[PATH] / (2.0 * su), 1.0, 0.01);
-  mps_body_destroy(&wall);
-  mpm_scene_end(&s);
+  NEAR(path[PATH] / (2.0 * su), 1.0, 0.01);
 }
 
-static void normally_consolidated(void **state) { (void)state, expand(&clays[0]); }
-static void overconsolidated(void **state) { (void)state, expand(&clays[1]); }
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(normally_consolidated),
-      cmocka_unit_test(overconsolidated),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
-}
+TEST(normally_consolidated) { expand(&clays[0]); }
+TEST(overconsolidated) { expand(&clays[1]); }

@@ -13,27 +13,23 @@ static void column_at_rest(int32_t geometry) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {dim == 3 ? 0.12 : 0.2, 1.0, 0.08};
-  mpm_scene s = mpm_scene_begin_in(context, dim, 0.02, 0.0, 0.0, 1e7);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.02, 0.0, 0.0, 1e7);
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_weigh(&s, rho * g, K0, 1.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.cell = 0.04;
+  DEF(mpm, def, .geometry = geometry, .cell = 0.04);
   for (int c = 0; c < dim; c++) {
     def.lower[c] = 0.0;
     if (c != 1) def.upper[c] = hi[c];
   }
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
+  OK(mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
   const double worst = mpm_scene_weight_error(&s, rho * g, 1.0);
   print_message("geometry %d: stress within %.2g\n", geometry, worst);
   assert_true(worst < 0.03);
-  mpm_scene_end(&s);
 }
 
-static void own_weight(void **state) {
-  (void)state;
+TEST(own_weight) {
   column_at_rest(MPS_MPM_GEOMETRY_PLANE_STRAIN);
   column_at_rest(MPS_MPM_GEOMETRY_AXISYMMETRIC);
   column_at_rest(MPS_MPM_GEOMETRY_SPACE);
@@ -46,23 +42,21 @@ static mpm_scene thrown(int dim, int32_t volumetric) {
   const double plane[] = {1.0, -9.0, 7.0, -3.0};
   const double space[] = {1.0, -9.0, 0.0, 7.0, -3.0, 0.0, 0.0, 0.0, 0.0};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.0, 1e5);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
-  def.volumetric = volumetric;
-  def.cell = 0.02;
+  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
+      .volumetric = volumetric, .cell = 0.02);
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
   def.upper[2] = 0.02;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 300));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  OK(mps_mpm_step(s.mpm, 300));
   return s;
 }
 
 static void compare_slab(int32_t volumetric) {
-  mpm_scene plane = thrown(2, volumetric), slab = thrown(3, volumetric);
+  scoped_mpm_scene plane = thrown(2, volumetric), slab = thrown(3, volumetric);
   mps_view x = mpm_scene_view(&plane, "position"), X = mpm_scene_view(&slab, "position");
   mps_view stress = mpm_scene_view(&plane, "stress"), S = mpm_scene_view(&slab, "stress");
   const int64_t count = x.shape[0];
@@ -75,36 +69,31 @@ static void compare_slab(int32_t volumetric) {
       moved = fmax(moved, fabs(*mps_view_f64(&X, K, c) - *mps_view_f64(&x, k, c)));
     for (int c = 0; c < 4; c++)
       strained = fmax(strained, fabs(*mps_view_f64(&S, K, c) - *mps_view_f64(&stress, k, c)));
-    mps_assert_near(*mps_view_f64(&X, K, 2), id < count ? 0.005 : 0.015, 1e-14);
+    NEAR(*mps_view_f64(&X, K, 2), id < count ? 0.005 : 0.015, 1e-14);
   }
   print_message("slab against plane strain: %.2g m, %.2g Pa\n", moved, strained);
   assert_true(moved < 1e-12);
   assert_true(strained < 1e-6);
-  mpm_scene_end(&plane);
-  mpm_scene_end(&slab);
 }
 
-static void slab_is_plane_strain(void **state) {
-  (void)state;
+TEST(slab_is_plane_strain) {
   compare_slab(MPS_MPM_VOLUMETRIC_POINT);
   compare_slab(MPS_MPM_VOLUMETRIC_CELL);
 }
 
 /* Axial vibration between rollers, fixed at the bottom, free at the top: period 4 L/c. */
-static void bar_period(void **state) {
-  (void)state;
+TEST(bar_period) {
   const double E = 1e6, rho = 1000.0, length = 1.0;
   const double c = sqrt(E * 0.7 / (1.3 * 0.4) / rho), period = 4.0 * length / c;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, E);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, E);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, length);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
   mpm_scene_commit(&s, &v);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
+  DEF(mpm, def, .cell = 0.02);
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = 0.1;
   mpm_scene_solve(&s, &def);
@@ -112,7 +101,7 @@ static void bar_period(void **state) {
   double crossing[3], before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
   int found = 0;
   while (found < 3) {
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    OK(mps_mpm_step(s.mpm, 1));
     const double now = mpm_scene_totals(&s).linear[1], t = mps_mpm_time(s.mpm);
     if (now * before < 0.0) crossing[found++] = t_before + (t - t_before) * before / (before - now);
     before = now;
@@ -122,13 +111,5 @@ static void bar_period(void **state) {
   const double measured = crossing[2] - crossing[0];
   print_message("period %.6g s, exact %.6g s, %+.3f %%\n", measured, period,
                 100.0 * (measured / period - 1.0));
-  mps_assert_near(measured, period, 0.01 * period);
-  mpm_scene_end(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(own_weight),
-                                     cmocka_unit_test(slab_is_plane_strain),
-                                     cmocka_unit_test(bar_period)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(measured, period, 0.01 * period);
 }

@@ -80,18 +80,16 @@ static double clamp_moment(double gravity) {
 
 /* The reference is right: the moment at the clamp is that of the weights where they hang, and a
  * slight load has the closed form w L^4/(8 EI) + w L^2/(2 kappa G A). */
-static void the_beam_is_in_balance(void **state) {
-  (void)state;
+TEST(the_beam_is_in_balance) {
   const double g = gravity_of(FAR), at_clamp = clamp_moment(g);
   double moment = 0.0;
   for (int k = 0; k < 100; k++)
     moment -=
         DENSITY * DEPTH * g * integrate(g, at_clamp, LENGTH * (k + 0.5) / 100.0).x * LENGTH / 100.0;
-  mps_assert_near(moment, at_clamp, 1e-4 * fabs(at_clamp));
+  NEAR(moment, at_clamp, 1e-4 * fabs(at_clamp));
   const double slight = gravity_of(1e-4), w = DENSITY * DEPTH * slight;
-  mps_assert_near(integrate(slight, clamp_moment(slight), LENGTH).y,
-                  -w / (8.0 * bending()) - w / (2.0 * 5.0 / 6.0 * shear * DEPTH),
-                  1e-7 * w / bending());
+  NEAR(integrate(slight, clamp_moment(slight), LENGTH).y,
+       -w / (8.0 * bending()) - w / (2.0 * 5.0 / 6.0 * shear * DEPTH), 1e-7 * w / bending());
 }
 
 /* ---- the solver ------------------------------------------------------------------------------ */
@@ -124,25 +122,21 @@ static void tip_of(mpm_scene *s, const int64_t *ids, int64_t count, double *tip)
  */
 static double bend_for(double periods, int32_t spline, int cells, int across, double load) {
   const double cell = DEPTH / cells, spacing = cell / across, g = gravity_of(load);
-  mpm_scene s = mpm_scene_begin(context, spacing, 0.0, -0.5 * DEPTH, YOUNG);
+  scoped_mpm_scene s = mpm_scene_begin(context, spacing, 0.0, -0.5 * DEPTH, YOUNG);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
+  OK(mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
   mpm_scene_box(&s, 0.0, -0.5 * DEPTH, LENGTH, 0.5 * DEPTH);
   const double lo[2] = {LENGTH - spacing, -INFINITY}, hi[2] = {INFINITY, INFINITY};
   int64_t ids[64], count;
-  mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 64, &count, ids));
+  OK(mps_particles_select_box(s.particles, lo, hi, 64, &count, ids));
   assert_int_equal(count, across * cells);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = cell;
-  def.spline = spline;
-  def.lower[0] = 0.0;
-  def.gravity[1] = -g;
+  DEF(mpm, def, .cell = cell, .spline = spline, .lower[0] = 0.0, .gravity[1] = -g);
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double frequency = 3.516 * sqrt(bending() / (DENSITY * DEPTH)) / (LENGTH * LENGTH);
   while (mps_mpm_time(s.mpm) < periods * 2.0 * 3.14159265358979 / frequency) {
     damp(&s, 2.0 * frequency * mps_mpm_dt(s.mpm));
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    OK(mps_mpm_step(s.mpm, 1));
   }
   double tip[2];
   tip_of(&s, ids, count, tip);
@@ -152,7 +146,6 @@ static double bend_for(double periods, int32_t spline, int cells, int across, do
                 "(%.4f, %.4f) m, %+.2f %%\n",
                 (int)spline, load, cells, across * across, periods, tip[0], tip[1], exact.x,
                 exact.y, 100.0 * error);
-  mpm_scene_end(&s);
   return error;
 }
 
@@ -163,8 +156,7 @@ static double bend(int32_t spline, int cells, int across, double load) {
 
 /* What limits the accuracy far from the start is the number of particles a cell, see
  * docs/verification/wls-mpm/waves-and-bending.md. */
-static void the_end_hangs_where_the_elastica_has_it(void **state) {
-  (void)state;
+TEST(the_end_hangs_where_the_elastica_has_it) {
   const bool all = getenv("MPS_LONG_TESTS") != NULL;
   for (int32_t spline = 2; spline <= 3; spline++) {
     assert_true(fabs(bend(spline, 2, 4, SLIGHT)) < 0.02);
@@ -176,10 +168,4 @@ static void the_end_hangs_where_the_elastica_has_it(void **state) {
       assert_true(fabs(narrow) < fmax(fabs(wide), 0.005));
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_beam_is_in_balance),
-                                     cmocka_unit_test(the_end_hangs_where_the_elastica_has_it)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -7,13 +7,12 @@
 static void check(double share, int shear, double flip_time, double bar) {
   const field_response r = field_shake_layer(context, 0.25, share, shear, flip_time);
   field_print_response(&r);
-  mps_assert_near(r.amplification, r.exact, bar * r.exact);
+  NEAR(r.amplification, r.exact, bar * r.exact);
   assert_true(r.apart < 1e-6);
   assert_true(r.rough < 2e-3); /* noise of particles that nodes do not see */
 }
 
-static void layer_amplifies(void **state) {
-  (void)state;
+TEST(layer_amplifies) {
   static const double share[] = {0.5, 1.0, 2.0, 3.0};
   for (int shear = 0; shear < 2; shear++)
     for (size_t q = 0; q < sizeof share / sizeof *share; q++) {
@@ -22,9 +21,4 @@ static void layer_amplifies(void **state) {
       check(share[q], shear, 0.0, share[q] < 3.0 ? 0.02 : 0.15);
       check(share[q], shear, 0.1, 0.02);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(layer_amplifies)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

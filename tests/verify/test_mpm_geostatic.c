@@ -5,8 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/geostatic.h>
-
 #define GRAVITY 10.0
 #define HEIGHT 2.0
 
@@ -20,37 +18,31 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
   const double k0 = 0.3 / 0.7;
   const mps_geostatic_layer layers[] = {{0.8, k0, NAN}, {INFINITY, k0, NAN}};
   const double full = GRAVITY * (1500.0 * 0.8 + 2000.0 * 1.2);
-  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 2e7);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 2e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.4, HEIGHT);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
+  OK(mps_particles_set(s.particles, "density", 0, 2000.0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit rho = mpm_scene_edit(&s, "density");
   for (int64_t k = 0; k < x.shape[0]; k++)
     if (*mps_view_f64(&x, k, 1) > HEIGHT - 0.8) *mps_edit_f64(&rho, k, 0) = 1500.0;
   mpm_scene_commit(&s, &rho);
-  mps_geostatic_def ground = mps_geostatic_defaults();
-  ground.layers = layers;
-  ground.layer_count = 2;
-  ground.gravity = GRAVITY;
-  mps_assert_ok(context, mps_particles_set_geostatic(s.particles, &ground));
+  DEF(geostatic, ground, .layers = layers, .layer_count = 2, .gravity = GRAVITY);
+  OK(mps_particles_set_geostatic(s.particles, &ground));
   double before[320];
   mps_view stress = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
   assert_int_equal(x.shape[0], 320);
   for (int64_t k = 0; k < 320; k++) before[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&stress, k, 1);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
-  def.spline = spline;
-  def.cell = 0.1;
+  DEF(mpm, def, .geometry = geometry, .spline = spline, .cell = 0.1);
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = 0.4;
-  def.walls = walls;
+  def.edge = walls;
   def.gravity[1] = -GRAVITY;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, floor, 0.0);
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, floor, 0.0);
   double fastest = 0.0;
   part_changes change = {0.0, 0.0, 0.0};
   for (int look = 1; look <= 20; look++) { /* more than a period, 4 H/c = 0.07 s */
-    mps_assert_ok(context, mps_mpm_run(s.mpm, 0.005 * look, 1000000, NULL, NULL));
+    OK(mps_mpm_run(s.mpm, 0.005 * look, 1000000, NULL, NULL));
     mps_view v = mpm_scene_view(&s, "velocity");
     stress = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
     x = mpm_scene_view(&s, "position");
@@ -67,23 +59,21 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
       "geometry %d, spline %d, %s floor, %s: at most %.2g mm/s; stress moves by %.3g %% at "
       "the floor, %.3g %% at the surface, %.3g %% elsewhere\n",
       (int)geometry, (int)spline, floor == MPS_BOUNDARY_HELD ? "fixed" : "roller",
-      walls == MPS_MPM_WALLS_FIT ? "fit" : "mirror", 1e3 * fastest, 100.0 * change.floor,
+      walls == MPS_MPM_EDGE_FIT ? "fit" : "mirror", 1e3 * fastest, 100.0 * change.floor,
       100.0 * change.surface, 100.0 * change.inside);
   assert_true(fastest < 1e-3); /* free fall in this time: 1 m/s */
-  mpm_scene_end(&s);
   return change;
 }
 
 /* Mirrors leave the error of the particles' quadrature; the surface has half-filled cells. */
-static void layers_stay_at_rest(void **state) {
-  (void)state;
+TEST(layers_stay_at_rest) {
   static const int32_t floors[] = {MPS_BOUNDARY_ROLLER, MPS_BOUNDARY_HELD};
   for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
        geometry++)
     for (int32_t spline = 2; spline <= 3; spline++)
       for (int k = 0; k < 2; k++) {
         const double most = geometry == MPS_MPM_GEOMETRY_PLANE_STRAIN ? 8e-4 : 3e-3;
-        const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_MIRROR, floors[k]);
+        const part_changes c = rest(geometry, spline, MPS_MPM_EDGE_MIRROR, floors[k]);
         assert_true(c.floor < most);
         assert_true(c.inside < most);
         assert_true(c.surface < (spline == 2 ? 2.5e-3 : 1e-3));
@@ -91,20 +81,13 @@ static void layers_stay_at_rest(void **state) {
 }
 
 /* The kernels that a wall cuts do not integrate even a constant stress exactly. */
-static void fit_moves_it_at_walls(void **state) {
-  (void)state;
+TEST(fit_moves_it_at_walls) {
   static const double most[2][2] = {{4e-3, 0.025}, {0.012, 0.045}};
   for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
        geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
-      const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_FIT, MPS_BOUNDARY_ROLLER);
+      const part_changes c = rest(geometry, spline, MPS_MPM_EDGE_FIT, MPS_BOUNDARY_ROLLER);
       assert_true(c.floor < most[geometry][spline - 2]);
       assert_true(c.inside < 6e-3);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(layers_stay_at_rest),
-                                     cmocka_unit_test(fit_moves_it_at_walls)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -5,9 +5,6 @@
 #include "mpm_free_field.h"
 #include "test_fixture.h"
 
-#include <mps/pore_water.h>
-#include <mps/soil.h>
-
 #define HEIGHT 3.0
 #define SPACING 0.125
 #define WIDTH 1.0 /* four cells, the least between free-field sides */
@@ -35,34 +32,29 @@ static shaken begin(double acceleration, double permeability, double end) {
   const bool dry = isnan(permeability);
   shaken x = {.s = mpm_scene_begin(context, SPACING, 0.0, 0.0, field_young(VS))};
   mps_material *sand = NULL;
-  mps_material_cyclic_sand_def law = mps_material_cyclic_sand_defaults();
-  law.young = field_young(VS), law.poisson = FIELD_NU, law.friction = 0.61;
-  law.relative_density = DENSITY;
-  mps_assert_ok(context, mps_material_create_cyclic_sand(context, &law, &sand));
+  DEF(material_cyclic_sand, law, .young = field_young(VS), .poisson = FIELD_NU, .friction = 0.61,
+      .relative_density = DENSITY);
+  OK(mps_material_create_cyclic_sand(context, &law, &sand));
   mpm_scene_box(&x.s, 0.0, 0.0, WIDTH, HEIGHT);
-  mps_assert_ok(context, mps_particles_set(x.s.particles, "density", 0, FIELD_RHO));
+  OK(mps_particles_set(x.s.particles, "density", 0, FIELD_RHO));
   mpm_scene_weigh(&x.s, (dry ? FIELD_RHO : FIELD_RHO - WATER) * GRAVITY, FIELD_K0, HEIGHT);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 2.0 * SPACING;
-  def.lower[0] = 0.0, def.upper[0] = WIDTH, def.lower[1] = 0.0;
-  def.gravity[1] = -GRAVITY;
-  mps_assert_ok(context, mps_mpm_create(context, x.s.particles, sand, &def, &x.s.mpm));
+  DEF(mpm, def, .cell = 2.0 * SPACING, .lower[0] = 0.0, .upper[0] = WIDTH, .lower[1] = 0.0,
+      .gravity[1] = -GRAVITY);
+  OK(mps_mpm_create(context, x.s.particles, sand, &def, &x.s.mpm));
   mps_material_destroy(&sand);
   x.motion = field_shaking(context, FREQUENCY, velocity_of(acceleration), end);
-  mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
-  base.kind = MPS_BOUNDARY_DRIVEN, base.signal[0] = x.motion;
-  mps_assert_ok(context, mps_mpm_set_boundary(x.s.mpm, MPS_MPM_SIDE_Y_LOWER, &base));
-  mpm_scene_side(&x.s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  DEF(mpm_boundary, base, .kind = MPS_BOUNDARY_DRIVEN, .signal[0] = x.motion);
+  OK(mps_mpm_set_boundary(x.s.mpm, MPS_SIDE_Y_LOWER, &base));
+  mpm_scene_side(&x.s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
   if (!dry) {
     const double level[2] = {0.0, HEIGHT};
-    mps_pore_water_def water = mps_pore_water_defaults();
-    water.porosity = 0.4;
+    DEF(pore_water, water, .porosity = 0.4);
     if (permeability > 0.0) water.permeability = permeability;
     water.bulk = 0.4 * 20.0 * 3.5 * FIELD_RHO * VS * VS; /* K_w/n is 20 times K + 4G/3 */
-    mps_assert_ok(context, mps_mpm_add_pore_water(x.s.mpm, &water));
-    mps_assert_ok(context, mps_mpm_set_pore_level(x.s.mpm, level));
+    OK(mps_mpm_add_pore_water(x.s.mpm, &water));
+    OK(mps_mpm_set_pore_level(x.s.mpm, level));
   }
-  mpm_scene_side(&x.s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  mpm_scene_side(&x.s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_FREE_FIELD, 0.0);
   x.volume = mpm_scene_totals(&x.s).volume;
   return x;
 }
@@ -144,11 +136,10 @@ static void elastic_column(const shaken *x, double end, double *contraction) {
 
 /* ---- undrained ------------------------------------------------------------------------------- */
 
-static void pressures_rise_by_depth(void **state) {
-  (void)state;
+TEST(pressures_rise_by_depth) {
   const double end = 2.0, rebound = 3.5 * FIELD_RHO * VS * VS;
-  shaken x = begin(0.75, 0.0, end);
-  mps_assert_ok(context, mps_mpm_run(x.s.mpm, end, 10000000, NULL, NULL));
+  SCOPED(finish) shaken x = begin(0.75, 0.0, end);
+  OK(mps_mpm_run(x.s.mpm, end, 10000000, NULL, NULL));
   double u[ROWS], vertical[ROWS], contraction[ROWS], spread, apart, ignored;
   rows_of(&x, "pore_pressure", 0, u, &spread);
   rows_of(&x, "stress", 1, vertical, &apart);
@@ -169,12 +160,12 @@ static void pressures_rise_by_depth(void **state) {
   for (int r = 0; r < ROWS - 1; r++) {
     const double z = depth_of(r), first = (FIELD_RHO - WATER) * GRAVITY * z;
     const double excess = u[r] - WATER * GRAVITY * z;
-    mps_assert_near((u[r] - vertical[r]) / (FIELD_RHO * GRAVITY * z), 1.0, 0.015);
+    NEAR((u[r] - vertical[r]) / (FIELD_RHO * GRAVITY * z), 1.0, 0.015);
     if (excess < 0.1 * first) continue;
     /* pressures are means over cells, contraction is not */
-    mps_assert_near(rebound * contraction[r] / excess, 1.0, 0.15);
+    NEAR(rebound * contraction[r] / excess, 1.0, 0.15);
     /* the stress that contraction takes makes the strains larger than those of an elastic column */
-    mps_assert_near(contraction[r] / elastic[r], 1.15, 0.15);
+    NEAR(contraction[r] / elastic[r], 1.15, 0.15);
     both += rebound * contraction[r] / excess;
     risen++;
   }
@@ -183,22 +174,20 @@ static void pressures_rise_by_depth(void **state) {
   assert_in_range(risen, ROWS / 3, ROWS);
   assert_true(spread < 0.02 * (FIELD_RHO - WATER) * GRAVITY * HEIGHT);
   assert_true(apart < 0.02 * (FIELD_RHO - WATER) * GRAVITY * HEIGHT);
-  finish(&x);
 }
 
 /* ---- with flow ------------------------------------------------------------------------------- */
 
-static void ground_settles_by_the_water_that_leaves(void **state) {
-  (void)state;
+TEST(ground_settles_by_the_water_that_leaves) {
   const double end = 3.0, rest = 4.0;
-  shaken x = begin(1.0, 4e-4, end);
+  SCOPED(finish) shaken x = begin(1.0, 4e-4, end);
   double most = 0.0, base = 0.0, settled = 0.0, water = 0.0;
   for (double t = 1.0; t <= end + rest; t += 1.0) {
-    mps_assert_ok(context, mps_mpm_run(x.s.mpm, t, 10000000, NULL, NULL));
+    OK(mps_mpm_run(x.s.mpm, t, 10000000, NULL, NULL));
     double u[ROWS], spread;
     mps_pore_budget budget;
     rows_of(&x, "pore_pressure", 0, u, &spread);
-    mps_assert_ok(context, mps_mpm_get_pore_budget(x.s.mpm, &budget));
+    OK(mps_mpm_get_pore_budget(x.s.mpm, &budget));
     settled = (x.volume - mpm_scene_totals(&x.s).volume) / WIDTH;
     water = budget.drained / WATER / WIDTH;
     base = excess_ratio(u, 0), most = fmax(most, excess_ratio(u, TWO));
@@ -213,42 +202,37 @@ static void ground_settles_by_the_water_that_leaves(void **state) {
   print_message("settlement over water %.4f, over contraction %.4f\n", settled / water,
                 settled / sum);
   assert_true(most > 0.8 && most < 1.1 && base < 0.15);
-  mps_assert_near(settled / water, 1.0, 0.01);
-  mps_assert_near(settled / sum, 1.0, 0.06); /* some pressure is left */
-  finish(&x);
+  NEAR(settled / water, 1.0, 0.01);
+  NEAR(settled / sum, 1.0, 0.06); /* some pressure is left */
 }
 
 /* ---- a run that is cut ----------------------------------------------------------------------- */
 
 /* With water, free-field sides and half cycles under way a rollback continues bit for bit. */
-static void continues_from_a_snapshot(void **state) {
-  (void)state;
+TEST(continues_from_a_snapshot) {
   static const char *const fields[] = {"stress", "pore_pressure", "cyclic_sand.contraction",
                                        "cyclic_sand.far_xy", "mass"};
   enum { FIELDS = sizeof fields / sizeof *fields };
-  shaken x = begin(1.6, 4e-4, 3.0);
-  mps_snapshot *kept = NULL;
+  SCOPED(finish) shaken x = begin(1.6, 4e-4, 3.0);
+  scoped_snapshot *kept = NULL;
   double once[FIELDS][ROWS], again[FIELDS][ROWS], spread;
-  mps_assert_ok(context, mps_mpm_run(x.s.mpm, 0.6, 10000000, NULL, NULL));
-  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &kept));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 2000));
+  OK(mps_mpm_run(x.s.mpm, 0.6, 10000000, NULL, NULL));
+  OK(mps_mpm_snapshot(x.s.mpm, &kept));
+  OK(mps_mpm_step(x.s.mpm, 2000));
   for (int f = 0; f < FIELDS; f++) rows_of(&x, fields[f], 0, once[f], &spread);
-  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, kept));
-  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 2000));
+  OK(mps_mpm_rollback(x.s.mpm, kept));
+  OK(mps_mpm_step(x.s.mpm, 2000));
   for (int f = 0; f < FIELDS; f++) rows_of(&x, fields[f], 0, again[f], &spread);
   assert_memory_equal(once, again, sizeof once);
   assert_true(once[2][1] > 0.0);
-  mps_snapshot_destroy(&kept);
-  finish(&x);
 }
 
 /* ---- dry ------------------------------------------------------------------------------------- */
 
-static void dry_ground_settles_at_once(void **state) {
-  (void)state;
+TEST(dry_ground_settles_at_once) {
   const double end = 3.0;
-  shaken x = begin(1.6, NAN, end);
-  mps_assert_ok(context, mps_mpm_run(x.s.mpm, end + 1.0, 10000000, NULL, NULL));
+  SCOPED(finish) shaken x = begin(1.6, NAN, end);
+  OK(mps_mpm_run(x.s.mpm, end + 1.0, 10000000, NULL, NULL));
   double contraction[ROWS], ignored, sum = 0.0, reference = 0.0;
   rows_of(&x, "cyclic_sand.contraction", 0, contraction, &ignored);
   for (int r = 0; r < ROWS; r++) sum += contraction[r] * SPACING;
@@ -261,17 +245,6 @@ static void dry_ground_settles_at_once(void **state) {
   print_message("dry: settlement over contraction %.4f, contraction over that of an elastic column "
                 "%.4f\n",
                 settled / sum, sum / reference);
-  mps_assert_near(settled / sum, 1.0, 0.08);
-  mps_assert_near(sum / reference, 1.0, 0.08);
-  finish(&x);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pressures_rise_by_depth),
-      cmocka_unit_test(ground_settles_by_the_water_that_leaves),
-      cmocka_unit_test(continues_from_a_snapshot),
-      cmocka_unit_test(dry_ground_settles_at_once),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(settled / sum, 1.0, 0.08);
+  NEAR(sum / reference, 1.0, 0.08);
 }

@@ -13,13 +13,13 @@
 static void lay(mpm_scene *s, mps_material *material, double y) {
   const double lo[] = {-1e3, y}, hi[] = {1e3, 1e3};
   int64_t ids[4096], count = 0;
-  mps_assert_ok(context, mps_particles_select_box(s->particles, lo, hi, 4096, &count, ids));
+  OK(mps_particles_select_box(s->particles, lo, hi, 4096, &count, ids));
   assert_in_range(count, 1, 4096);
-  mps_assert_ok(context, mps_mpm_set_material(s->mpm, material, count, ids));
+  OK(mps_mpm_set_material(s->mpm, material, ids, count));
 }
 
 static void set_density(mpm_scene *s, double below, double above, double y) {
-  mps_assert_ok(context, mps_particles_set(s->particles, "density", 0, below));
+  OK(mps_particles_set(s->particles, "density", 0, below));
   mps_view x = mpm_scene_view(s, "position");
   mps_edit rho = mpm_scene_edit(s, "density");
   for (int64_t k = 0; k < x.shape[0]; k++)
@@ -33,21 +33,19 @@ static double confined(double young, double poisson) { /* K + 4G/3 */
 
 static mps_material *von_mises(double young, double yield) {
   mps_material *out = NULL;
-  mps_material_von_mises_def def = mps_material_von_mises_defaults();
-  def.young = young, def.yield_stress = yield;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &out));
+  DEF(material_von_mises, def, .young = young, .yield_stress = yield);
+  OK(mps_material_create_von_mises(context, &def, &out));
   return out;
 }
 
 /* A column between rollers whose upper half is softer, lighter and elastoplastic: sigma_yy is the
  * weight above, and the column stays at rest. */
-static void two_layers_at_rest(void **state) {
-  (void)state;
+TEST(two_layers_at_rest) {
   const double lower = 2000.0, upper = 1200.0, g = 10.0, K0 = 0.3 / 0.7;
-  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 4e7);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 4e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
   set_density(&s, lower, upper, 0.52);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
+  OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -57,16 +55,15 @@ static void two_layers_at_rest(void **state) {
     *mps_edit_f64(&stress, k, 1) = yy;
   }
   mpm_scene_commit(&s, &stress);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.04;
+  DEF(mpm, def, .cell = 0.04);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
   def.gravity[1] = -g;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_material *soft = von_mises(1e7, 1e6);
   lay(&s, soft, 0.52);
   mps_material_destroy(&soft);
-  mps_assert_near(mps_mpm_limit(s.mpm), 0.04 / sqrt(confined(4e7, 0.3) / lower), 1e-12);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
+  NEAR(mps_mpm_limit(s.mpm), 0.04 / sqrt(confined(4e7, 0.3) / lower), 1e-12);
+  OK(mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
   x = mpm_scene_view(&s, "position"), stress.view = mpm_scene_view(&s, "stress");
   double worst = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -77,21 +74,19 @@ static void two_layers_at_rest(void **state) {
   }
   print_message("two layers: stress within %.2g\n", worst);
   assert_true(worst < 0.02);
-  mpm_scene_end(&s);
 }
 
 /* A pulse that travels up in the lower part (0 to 1 m) of a bar and arrives at the joint. Momentum
  * of the lower part afterwards is R of the pulse's, R = (Z1 - Z2)/(Z1 + Z2), Z = rho c; the pulse
  * in the upper part is where its own wave speed puts it. */
-static void joint_reflects(void **state) {
-  (void)state;
+TEST(joint_reflects) {
   const double rho1 = 1000.0, rho2 = 2500.0, E1 = 1e6, E2 = 5e6, width = 0.12, from = 0.5;
   const double c1 = sqrt(confined(E1, 0.3) / rho1), c2 = sqrt(confined(E2, 0.3) / rho2);
-  mpm_scene s = mpm_scene_begin(context, 0.005, 0.0, 0.0, E1);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.005, 0.0, 0.0, E1);
   mpm_scene_box(&s, 0.0, 0.0, 0.02, 2.0);
   set_density(&s, rho1, rho2, 1.0);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
+  OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
   mps_edit stress = mpm_scene_edit(&s, "stress");
@@ -104,16 +99,15 @@ static void joint_reflects(void **state) {
   }
   mpm_scene_commit(&s, &v);
   mpm_scene_commit(&s, &stress);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.01;
+  DEF(mpm, def, .cell = 0.01);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.02;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_material *stiff = NULL;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, E2, 0.3, &stiff));
+  OK(mps_material_create_linear_elastic(context, E2, 0.3, &stiff));
   lay(&s, stiff, 1.0);
   mps_material_destroy(&stiff);
   const double before = mpm_scene_totals(&s).linear[1], t = 0.85 / c1;
-  mps_assert_ok(context, mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
+  OK(mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
   x = mpm_scene_view(&s, "position"), v.view = mpm_scene_view(&s, "velocity");
   mps_view m = mpm_scene_view(&s, "mass"), law = mpm_scene_view(&s, "material");
   double low = 0.0, high = 0.0, moment = 0.0;
@@ -128,9 +122,8 @@ static void joint_reflects(void **state) {
   const double place = 1.0 + c2 * (t - (1.0 - from) / c1);
   print_message("R %.4f, exact %.4f; passed on at %.4f m, exact %.4f m\n", low / before, R,
                 moment / high, place);
-  mps_assert_near(low / before, R, 0.01 * fabs(R));
-  mps_assert_near(moment / high, place, 0.005);
-  mpm_scene_end(&s);
+  NEAR(low / before, R, 0.01 * fabs(R));
+  NEAR(moment / high, place, 0.005);
 }
 
 enum { ELASTIC = 1, RUBBER = 2 };
@@ -142,18 +135,16 @@ static mpm_scene lumps(int laws, mps_material *rubber) {
   if (laws & ELASTIC) mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
   if (laws & RUBBER) mpm_scene_box(&s, 0.0, 1.0, 0.2, 1.1);
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.dt = 2e-4;
+  DEF(mpm, def, .cell = 0.02, .dt = 2e-4);
   mpm_scene_solve(&s, &def);
   if (laws & RUBBER) lay(&s, rubber, 0.5);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 300));
+  OK(mps_mpm_step(s.mpm, 300));
   return s;
 }
 
-static void each_as_alone(void **state) {
-  (void)state;
-  mps_material *rubber = NULL;
-  mps_assert_ok(context, mps_material_create_neo_hookean(context, 2e5, 0.4, &rubber));
+TEST(each_as_alone) {
+  scoped_material *rubber = NULL;
+  OK(mps_material_create_neo_hookean(context, 2e5, 0.4, &rubber));
   mpm_scene both = lumps(ELASTIC | RUBBER, rubber);
   mpm_scene alone[2] = {lumps(ELASTIC, rubber), lumps(RUBBER, rubber)};
   const int64_t half = mps_particles_count(alone[0].particles);
@@ -170,8 +161,7 @@ static void each_as_alone(void **state) {
         moved = fmax(moved, fabs(*mps_view_f64(&x, i, c) - *mps_view_f64(&X, j, c)));
       for (int c = 0; c < 4; c++)
         pressed = fmax(pressed, fabs(*mps_view_f64(&s, i, c) - *mps_view_f64(&S, j, c)));
-      if (which == 1)
-        mps_assert_near(*mps_view_f64(&V, i, 0), 1e-4 * *mps_view_f64(&J, i, 0), 1e-16);
+      if (which == 1) NEAR(*mps_view_f64(&V, i, 0), 1e-4 * *mps_view_f64(&J, i, 0), 1e-16);
     }
   }
   print_message("both against alone: %.2g m, %.2g Pa\n", moved, pressed);
@@ -179,26 +169,22 @@ static void each_as_alone(void **state) {
   assert_true(pressed < 1e-7);
   mpm_scene_end(&both);
   for (int which = 0; which < 2; which++) mpm_scene_end(&alone[which]);
-  mps_material_destroy(&rubber);
 }
 
 /* A body presses each particle by the modulus of its own law. */
-static void contact_by_own_modulus(void **state) {
-  (void)state;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+TEST(contact_by_own_modulus) {
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.02, 0.01);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
+  DEF(mpm, def, .cell = 0.02);
   mpm_scene_solve(&s, &def);
   const int64_t second = 1;
-  mps_material *stiff = NULL;
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 7e5, 0.3, &stiff));
-  mps_assert_ok(context, mps_mpm_set_material(s.mpm, stiff, 1, &second));
-  mps_body *floor = NULL;
-  mps_body_def body = mps_body_defaults();
+  scoped_material *stiff = NULL;
+  OK(mps_material_create_linear_elastic(context, 7e5, 0.3, &stiff));
+  OK(mps_mpm_set_material(s.mpm, stiff, &second, 1));
+  scoped_body *floor = NULL;
+  DEF(body, body, .position[1] = 0.002);
   const double up[] = {0.0, 1.0};
-  body.position[1] = 0.002;
-  mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
+  OK(mps_body_create_half_plane(context, &body, up, &floor));
   mpm_scene_contact(&s, floor, 0.0);
   const mps_contact *contact = s.mpm->contact.handle[0];
   mpsi_contact_particle a, b;
@@ -206,16 +192,6 @@ static void contact_by_own_modulus(void **state) {
                                 mps_particles_index(s.particles, 0), &a));
   assert_true(mpsi_find_contact(&s.mpm->grid, &s.mpm->p, &s.mpm->def, contact, 2,
                                 mps_particles_index(s.particles, 1), &b));
-  mps_assert_near(a.force[1], 1.33 * confined(1e5, 0.3) * 0.002, 1e-9);
-  mps_assert_near(b.force[1] / a.force[1], 7.0, 1e-9);
-  mps_body_destroy(&floor);
-  mps_material_destroy(&stiff);
-  mpm_scene_end(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(two_layers_at_rest), cmocka_unit_test(joint_reflects),
-      cmocka_unit_test(each_as_alone), cmocka_unit_test(contact_by_own_modulus)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(a.force[1], 1.33 * confined(1e5, 0.3) * 0.002, 1e-9);
+  NEAR(b.force[1] / a.force[1], 7.0, 1e-9);
 }

@@ -5,8 +5,6 @@
 #include "pore_column.h"
 #include "test_fixture.h"
 
-#include <string.h>
-
 #define LOAD 1000.0 /* Pa */
 
 static void add_load(pore_column *c, double pressure) {
@@ -14,7 +12,7 @@ static void add_load(pore_column *c, double pressure) {
   const double traction[] = {0.0, -pressure, 0.0};
   const int64_t count = pore_column_top(c, ids, 16);
   mps_mpm_load_def load = mpm_scene_load_def(count, ids, NULL, traction, 3, NULL);
-  mps_assert_ok(context, mps_mpm_add_load(c->s.mpm, &load, NULL));
+  OK(mps_mpm_add_load(c->s.mpm, &load, NULL));
 }
 
 static double volume_of(pore_column *c) { return mpm_scene_totals(&c->s).volume; }
@@ -22,19 +20,16 @@ static double volume_of(pore_column *c) { return mpm_scene_totals(&c->s).volume;
 static void terzaghi(int32_t geometry, int32_t scheme) {
   static const double times[] = {0.05, 0.2, 0.5};
   pore_column c = pore_column_begin(context, geometry, 20, 0.0, 10.0);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.scheme = scheme;
-  water.porosity = 0.4;
-  water.bulk = 0.4 * 50.0 * c.modulus;
+  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .bulk = 0.4 * 50.0 * c.modulus);
   water.permeability =
       0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus; /* c_v = 0.25 m2/s: T = 1 is 4 s */
-  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
-  mps_assert_ok(context, mps_particles_set(c.s.particles, "pore_pressure", 0, LOAD));
+  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
+  OK(mps_particles_set(c.s.particles, "pore_pressure", 0, LOAD));
   const double volume = volume_of(&c), mass = mpm_scene_totals(&c.s).mass;
   add_load(&c, LOAD);
   for (size_t t = 0; t < sizeof times / sizeof *times; t++) {
     const double T = times[t];
-    mps_assert_ok(context, mps_mpm_run(c.s.mpm, T * 4.0, 1000000, NULL, NULL));
+    OK(mps_mpm_run(c.s.mpm, T * 4.0, 1000000, NULL, NULL));
     const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
     double worst = 0.0;
     for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -43,7 +38,7 @@ static void terzaghi(int32_t geometry, int32_t scheme) {
     }
     const double settled = (1.0 - volume_of(&c) / volume) * c.modulus / LOAD;
     mps_pore_budget budget;
-    mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+    OK(mps_mpm_get_pore_budget(c.s.mpm, &budget));
     print_message("geometry %d, scheme %d, T = %.2f: u/q within %.2f %%, S M'/(q H) = %.4f, exact "
                   "%.4f; %.5g kg "
                   "drained, residual %.1e\n",
@@ -51,30 +46,27 @@ static void terzaghi(int32_t geometry, int32_t scheme) {
                   budget.drained, budget.residual);
     const bool implicit = scheme == MPS_PORE_SCHEME_IMPLICIT;
     assert_true(worst < (implicit ? 0.015 : 0.01));
-    mps_assert_near(settled, pore_terzaghi_degree(T), implicit ? 0.022 : 0.02);
+    NEAR(settled, pore_terzaghi_degree(T), implicit ? 0.022 : 0.02);
     /* implicit pressures store water as the square of the step */
     assert_true(fabs(budget.residual) < (implicit ? 0.1 : 0.01) * budget.drained);
     /* what has left is what the particles lack, to rounding */
-    mps_assert_near(mass - mpm_scene_totals(&c.s).mass, budget.drained, 1e-13 * mass);
-    mps_assert_near(budget.left - budget.entered, budget.drained, 1e-13 * budget.start);
+    NEAR(mass - mpm_scene_totals(&c.s).mass, budget.drained, 1e-13 * mass);
+    NEAR(budget.left - budget.entered, budget.drained, 1e-13 * budget.start);
   }
   mpm_scene_end(&c.s);
 }
 
-static void consolidates_in_the_plane(void **state) {
-  (void)state;
+TEST(consolidates_in_the_plane) {
   terzaghi(MPS_MPM_GEOMETRY_PLANE_STRAIN, MPS_PORE_SCHEME_EXPLICIT);
   terzaghi(MPS_MPM_GEOMETRY_PLANE_STRAIN, MPS_PORE_SCHEME_IMPLICIT);
 }
 
-static void consolidates_in_a_ring(void **state) {
-  (void)state;
+TEST(consolidates_in_a_ring) {
   terzaghi(MPS_MPM_GEOMETRY_AXISYMMETRIC, MPS_PORE_SCHEME_EXPLICIT);
   terzaghi(MPS_MPM_GEOMETRY_AXISYMMETRIC, MPS_PORE_SCHEME_IMPLICIT);
 }
 
-static void consolidates_in_space(void **state) {
-  (void)state;
+TEST(consolidates_in_space) {
   terzaghi(MPS_MPM_GEOMETRY_SPACE, MPS_PORE_SCHEME_EXPLICIT);
   terzaghi(MPS_MPM_GEOMETRY_SPACE, MPS_PORE_SCHEME_IMPLICIT);
 }
@@ -86,14 +78,11 @@ static void consolidates_in_space(void **state) {
 static void at_rest(double cells, int32_t scheme) {
   const double g = 10.0, water_weight = 1000.0 * g, weight = 2000.0 * g, K0 = 0.3 / 0.7;
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, cells, g, 4.0);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.scheme = scheme;
-  water.porosity = 0.4;
-  water.bulk = 0.4 * 10.0 * c.modulus;
-  water.permeability = 0.1 * 1000.0 * MPS_PORE_GRAVITY / c.modulus;
-  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .bulk = 0.4 * 10.0 * c.modulus,
+      .permeability = 0.1 * 1000.0 * MPS_PORE_GRAVITY / c.modulus);
+  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
   const double surface[] = {0.0, 1.0};
-  mps_assert_ok(context, mps_mpm_set_pore_level(c.s.mpm, surface));
+  OK(mps_mpm_set_pore_level(c.s.mpm, surface));
   mps_view x = mpm_scene_view(&c.s, "position");
   mps_edit stress = mpm_scene_edit(&c.s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -102,7 +91,7 @@ static void at_rest(double cells, int32_t scheme) {
     *mps_edit_f64(&stress, k, 1) = yy;
   }
   mpm_scene_commit(&c.s, &stress);
-  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 1.0, 1000000, NULL, NULL));
+  OK(mps_mpm_run(c.s.mpm, 1.0, 1000000, NULL, NULL));
   x = mpm_scene_view(&c.s, "position");
   const mps_view u = mpm_scene_view(&c.s, "pore_pressure"), v = mpm_scene_view(&c.s, "velocity");
   double worst = 0.0, fastest = 0.0;
@@ -112,7 +101,7 @@ static void at_rest(double cells, int32_t scheme) {
     fastest = fmax(fastest, fabs(*mps_view_f64(&v, k, 1)));
   }
   mps_pore_budget budget;
-  mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+  OK(mps_mpm_get_pore_budget(c.s.mpm, &budget));
   print_message(
       "%.1f cells, scheme %d: p_w within %.3f %% of the base's, %.1e m/s, %.1e of the water left\n",
       cells, scheme, 100.0 * worst, fastest, budget.drained / budget.start);
@@ -122,8 +111,7 @@ static void at_rest(double cells, int32_t scheme) {
   mpm_scene_end(&c.s);
 }
 
-static void stays_at_rest(void **state) {
-  (void)state;
+TEST(stays_at_rest) {
   at_rest(20.0, MPS_PORE_SCHEME_EXPLICIT);
   at_rest(19.3, MPS_PORE_SCHEME_EXPLICIT);
   at_rest(19.5, MPS_PORE_SCHEME_EXPLICIT);
@@ -142,7 +130,7 @@ static double largest_energy(mpm_scene *s, int count) {
   double most = 0.0;
   for (int step = 0; step < count; step++) {
     double sum = 0.0;
-    mps_assert_ok(context, mps_mpm_step(s->mpm, 1));
+    OK(mps_mpm_step(s->mpm, 1));
     const mps_view v = mpm_scene_view(s, "velocity");
     for (int64_t k = 0; k < v.shape[0]; k++) sum += pow(*mps_view_f64(&v, k, 1) / SPEED, 2.0);
     most = fmax(most, sum / (double)v.shape[0]);
@@ -155,18 +143,14 @@ static double largest_energy(mpm_scene *s, int count) {
  * are not taken in part, give its energy 1 % in 1500 steps with cubic weights. */
 static void stands(int halves, int32_t spline, int32_t volumetric) {
   const double lo[] = {0.0, 0.0}, hi[] = {1.0, LENGTH};
-  mpm_scene s = mpm_scene_begin_in(context, 2, 0.5, 0.0, 0.0, PORE_YOUNG);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 1.0;
-  def.spline = spline;
-  def.volumetric = volumetric;
+  scoped_mpm_scene s = mpm_scene_begin_in(context, 2, 0.5, 0.0, 0.0, PORE_YOUNG);
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_set(s.particles, "density", 0, 2000.0));
+  DEF(mpm, def, .cell = 1.0, .spline = spline, .volumetric = volumetric);
   for (int c = 0; c < 2; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.porosity = 0.4;
-  mps_assert_ok(context, mps_mpm_add_pore_water(s.mpm, &water));
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  DEF(pore_water, water, .porosity = 0.4);
+  OK(mps_mpm_add_pore_water(s.mpm, &water));
   const mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++)
@@ -179,13 +163,11 @@ static void stands(int halves, int32_t spline, int32_t volumetric) {
   print_message("%d half waves in 64 cells, degree %d, volumetric %d: largest kinetic energy %.4f, "
                 "after 1200 steps %.4f\n",
                 halves, spline, volumetric, first, last);
-  mps_assert_near(first, 0.5, 0.08);
+  NEAR(first, 0.5, 0.08);
   assert_true(last < first);
-  mpm_scene_end(&s);
 }
 
-static void waves_do_not_grow(void **state) {
-  (void)state;
+TEST(waves_do_not_grow) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     stands(2, spline, MPS_MPM_VOLUMETRIC_CELL);
     stands(4, spline, MPS_MPM_VOLUMETRIC_CELL);
@@ -198,53 +180,48 @@ static void waves_do_not_grow(void **state) {
 
 /* Water that flows up through two layers at 4 : 1: the flux q = p/(rho_w g (H1/k1 + H2/k2)), and
  * 4/5 of the pressure is left at their interface. */
-static void flows_through_layers(void **state) {
-  (void)state;
+TEST(flows_through_layers) {
   const double k1 = 4e-4, k2 = 1e-4, base = 1000.0, weight = 1000.0 * MPS_PORE_GRAVITY;
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 10.0, 0.0, 4.0);
-  mps_assert_ok(context, mps_particles_add_field(c.s.particles, "permeability", 0));
-  mps_assert_ok(context, mps_particles_add_field(c.s.particles, "seepage", 0));
+  OK(mps_particles_add_field(c.s.particles, "permeability", 0));
+  OK(mps_particles_add_field(c.s.particles, "seepage", 0));
   mps_view x = mpm_scene_view(&c.s, "position");
   mps_edit k_of = mpm_scene_edit(&c.s, "permeability");
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.5 ? k1 : k2;
   mpm_scene_commit(&c.s, &k_of);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.porosity = 0.4;
-  water.bulk = 0.4 * 4.0 * c.modulus;
-  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
-  mps_pore_face_def face = mps_pore_face_defaults();
+  DEF(pore_water, water, .porosity = 0.4, .bulk = 0.4 * 4.0 * c.modulus);
+  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
+  DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_Y_LOWER,
+      .pressure = base);
   int32_t number;
-  face.kind = MPS_PORE_FACE_DRAINED;
-  face.sides = 1u << MPS_MPM_SIDE_Y_LOWER;
-  face.pressure = base;
-  mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &face, &number));
-  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 100.0, 1000000, NULL, NULL));
+  OK(mps_mpm_add_pore_face(c.s.mpm, &face, &number));
+  OK(mps_mpm_run(c.s.mpm, 100.0, 1000000, NULL, NULL));
   const double flux = base / (weight * (0.5 / k1 + 0.5 / k2)),
                middle = base * 0.5 / k2 * weight * flux / base;
   double in, out, came, went, worst = 0.0;
   mps_pore_budget budget;
-  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, number, &in, NULL));
-  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, -1, &out, NULL));
+  OK(mps_mpm_get_pore_flow(c.s.mpm, number, &in, NULL));
+  OK(mps_mpm_get_pore_flow(c.s.mpm, -1, &out, NULL));
   x = mpm_scene_view(&c.s, "position");
   const mps_view u = mpm_scene_view(&c.s, "pore_pressure"), q = mpm_scene_view(&c.s, "seepage");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double y = *mps_view_f64(&x, k, 1);
     const double exact = y < 0.5 ? base + (middle - base) * y / 0.5 : middle * (1.0 - y) / 0.5;
     worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) - exact) / base);
-    mps_assert_near(*mps_view_f64(&q, k, 1), flux, 0.02 * flux);
+    NEAR(*mps_view_f64(&q, k, 1), flux, 0.02 * flux);
   }
   print_message("layers: p within %.2f %%, %.6g kg/s in, %.6g kg/s out, exact %.6g\n",
                 100.0 * worst, -in, out, flux * 1000.0 * c.h);
-  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, number, NULL, &came));
-  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, -1, NULL, &went));
-  mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+  OK(mps_mpm_get_pore_flow(c.s.mpm, number, NULL, &came));
+  OK(mps_mpm_get_pore_flow(c.s.mpm, -1, NULL, &went));
+  OK(mps_mpm_get_pore_budget(c.s.mpm, &budget));
   print_message("came in %.9g kg, went out %.9g kg\n", budget.entered, budget.left);
   assert_true(came < 0.0 && went > 0.0);
-  mps_assert_near(budget.left - budget.entered, came + went, 1e-12 * went);
+  NEAR(budget.left - budget.entered, came + went, 1e-12 * went);
   assert_true(budget.entered > -came * (1.0 - 1e-12)); /* the surface draws some in at first */
-  mps_assert_near(-in, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
-  mps_assert_near(out, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
+  NEAR(-in, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
+  NEAR(out, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
   assert_true(worst < 0.01);
   mpm_scene_end(&c.s);
 }
@@ -278,8 +255,7 @@ static double two_layers(const double *c, double z, double t) {
   return sum;
 }
 
-static void two_layers_consolidate(void **state) {
-  (void)state;
+TEST(two_layers_consolidate) {
   static const double k[] = {1e-4, 4e-4}, times[] = {4.6, 9.1};
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 20, 0.0, 10.0);
   mps_pore_water_def water = mps_pore_water_defaults();
@@ -288,23 +264,23 @@ static void two_layers_consolidate(void **state) {
   for (int l = 0; l < 2; l++) {
     const mps_view x = mpm_scene_view(&c.s, "position");
     diffusivity[l] = k[l] * c.modulus / (1000.0 * MPS_PORE_GRAVITY);
-    if (l == 0) mps_assert_ok(context, mps_particles_add_field(c.s.particles, "permeability", 0));
+    if (l == 0) OK(mps_particles_add_field(c.s.particles, "permeability", 0));
     mps_edit edit;
-    mps_assert_ok(context, mps_particles_edit(c.s.particles, "permeability", &edit));
+    OK(mps_particles_edit(c.s.particles, "permeability", &edit));
     for (int64_t p = 0; p < x.shape[0]; p++)
       if ((*mps_view_f64(&x, p, 1) > 0.5) == (l == 1)) *mps_edit_f64(&edit, p, 0) = k[l];
-    mps_assert_ok(context, mps_particles_commit(c.s.particles, &edit));
+    OK(mps_particles_commit(c.s.particles, &edit));
   }
   water.scheme = MPS_PORE_SCHEME_IMPLICIT;
   water.porosity = 0.4;
   water.bulk = 0.4 * 100.0 * c.modulus;
-  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
   surface.kind = MPS_PORE_FACE_DRAINED;
-  surface.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+  surface.sides = 1u << MPS_SIDE_Y_UPPER;
   surface.pressure = -LOAD; /* pressures less the load */
-  mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &surface, NULL));
+  OK(mps_mpm_add_pore_face(c.s.mpm, &surface, NULL));
   for (int t = 0; t < 2; t++) {
-    mps_assert_ok(context, mps_mpm_run(c.s.mpm, times[t], 1000000, NULL, NULL));
+    OK(mps_mpm_run(c.s.mpm, times[t], 1000000, NULL, NULL));
     const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
     for (int64_t p = 0; p < x.shape[0]; p++) {
       const double exact = two_layers(diffusivity, *mps_view_f64(&x, p, 1), times[t]);
@@ -321,13 +297,10 @@ static void two_layers_consolidate(void **state) {
 /* A load on undrained ground between rollers: p = q/(1 + n M'/K_w). */
 static void undrained(int32_t scheme) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 10.0, 0.0, 200.0);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.scheme = scheme;
-  water.porosity = 0.4;
-  water.bulk = 0.4 * 4.0 * c.modulus;
-  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .bulk = 0.4 * 4.0 * c.modulus);
+  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
   add_load(&c, LOAD);
-  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 0.3, 1000000, NULL, NULL));
+  OK(mps_mpm_run(c.s.mpm, 0.3, 1000000, NULL, NULL));
   const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
   double worst = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++)
@@ -338,17 +311,7 @@ static void undrained(int32_t scheme) {
   mpm_scene_end(&c.s);
 }
 
-static void undrained_column(void **state) {
-  (void)state;
+TEST(undrained_column) {
   undrained(MPS_PORE_SCHEME_EXPLICIT);
   undrained(MPS_PORE_SCHEME_IMPLICIT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stays_at_rest),          cmocka_unit_test(flows_through_layers),
-      cmocka_unit_test(undrained_column),       cmocka_unit_test(consolidates_in_the_plane),
-      cmocka_unit_test(consolidates_in_a_ring), cmocka_unit_test(consolidates_in_space),
-      cmocka_unit_test(two_layers_consolidate), cmocka_unit_test(waves_do_not_grow)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -18,13 +18,13 @@ static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sid
   mps_material_newtonian_def law = mps_material_newtonian_defaults();
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mps_material_destroy(&s.material);
-  law.state = MPS_MATERIAL_STATE_LINEAR;
+  law.state = MPS_MATERIAL_STATE_EQUATION_LINEAR;
   law.bulk_modulus = K;
   law.no_tension = 1;
-  mps_assert_ok(context, mps_material_create_newtonian(context, &law, &s.material));
+  OK(mps_material_create_newtonian(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, WIDTH, height);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "volume_ratio", 0));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
+  OK(mps_particles_add_field(s.particles, "volume_ratio", 0));
+  OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit J = mpm_scene_edit(&s, "volume_ratio");
   mps_edit stress = mpm_scene_edit(&s, "stress");
@@ -35,10 +35,7 @@ static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sid
   }
   mpm_scene_commit(&s, &J);
   mpm_scene_commit(&s, &stress);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.spline = spline;
-  def.volumetric = volumetric;
-  def.cell = h;
+  DEF(mpm, def, .spline = spline, .volumetric = volumetric, .cell = h);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = sides;
   def.gravity[1] = -GRAVITY;
   mpm_scene_solve(&s, &def);
@@ -48,15 +45,14 @@ static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sid
 /* T = t (2 g/a)^1/2. */
 static double seconds(double T) { return T * sqrt(WIDTH / (2.0 * GRAVITY)); }
 
-static void water_rests(void **state) {
-  (void)state;
+TEST(water_rests) {
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int option = 0; option < 3; option++) {
       static const char *const name[] = {"by law", "point", "nodes"};
       static const int32_t which[] = {MPS_MPM_VOLUMETRIC_BY_LAW, MPS_MPM_VOLUMETRIC_POINT,
                                       MPS_MPM_VOLUMETRIC_NODES};
-      mpm_scene s = water(spline, which[option], 10, WIDTH, true);
-      mps_assert_ok(context, mps_mpm_run(s.mpm, seconds(12.0), 1000000, NULL, NULL));
+      scoped_mpm_scene s = water(spline, which[option], 10, WIDTH, true);
+      OK(mps_mpm_run(s.mpm, seconds(12.0), 1000000, NULL, NULL));
       mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
       double square = 0.0;
       for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -67,7 +63,6 @@ static void water_rests(void **state) {
       print_message("water at rest, spline %d, %s: off by %.3g %% of the bottom's pressure\n",
                     spline, name[option], 100.0 * off);
       assert_true(off < 1e-3);
-      mpm_scene_end(&s);
     }
 }
 
@@ -111,22 +106,20 @@ static double square_roughness(mpm_scene *s) {
 
 static void collapse(int32_t spline, int32_t volumetric, double *rough, double *front) {
   enum { LOOKS = 16 };
-  mpm_scene s = water(spline, volumetric, 20, 6.0 * WIDTH, false);
+  scoped_mpm_scene s = water(spline, volumetric, 20, 6.0 * WIDTH, false);
   double square = 0.0;
-  mps_assert_ok(context, mps_mpm_run(s.mpm, seconds(1.0), 1000000, NULL, NULL));
+  OK(mps_mpm_run(s.mpm, seconds(1.0), 1000000, NULL, NULL));
   for (int k = 1; k <= LOOKS; k++) {
-    mps_assert_ok(context, mps_mpm_run(s.mpm, seconds(1.0 + 2.0 * k / LOOKS), 1000000, NULL, NULL));
+    OK(mps_mpm_run(s.mpm, seconds(1.0 + 2.0 * k / LOOKS), 1000000, NULL, NULL));
     square += square_roughness(&s) / LOOKS;
   }
   mps_view x = mpm_scene_view(&s, "position");
   *front = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++) *front = fmax(*front, *mps_view_f64(&x, k, 0) / WIDTH);
   *rough = sqrt(square);
-  mpm_scene_end(&s);
 }
 
-static void collapse_is_smooth(void **state) {
-  (void)state;
+TEST(collapse_is_smooth) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     double rough[4], front[4];
     for (int32_t v = 0; v < 4; v++)
@@ -136,13 +129,7 @@ static void collapse_is_smooth(void **state) {
                   spline, rough[0], rough[1], rough[2], rough[3], front[0], front[1], front[2],
                   front[3]);
     assert_true(rough[0] < 0.15 * rough[1] && rough[3] < 0.1 * rough[1]);
-    mps_assert_near(front[0], front[1], 0.01 * front[1]);
-    mps_assert_near(front[3], front[1], 0.03 * front[1]);
+    NEAR(front[0], front[1], 0.01 * front[1]);
+    NEAR(front[3], front[1], 0.03 * front[1]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(water_rests),
-                                     cmocka_unit_test(collapse_is_smooth)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

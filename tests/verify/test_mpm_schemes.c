@@ -5,8 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/experimental.h>
-
 #include "mpm/base/mpm_solver.h"
 
 #define PI 3.14159265358979323846
@@ -17,7 +15,7 @@ static const char *const name[SCHEMES] = {"WLS", "FLIP", "FLIP 0.95", "PIC"};
 static void solve(mpm_scene *s, const mps_mpm_def *def, int scheme) {
   static const double flip[SCHEMES] = {1.0, 1.0, 0.95, 0.0};
   mpm_scene_solve(s, def);
-  if (scheme != WLS) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, flip[scheme]));
+  if (scheme != WLS) OK(mps_experimental_mpm_standard(s->mpm, flip[scheme]));
 }
 
 /* ---- shape functions and transfer ------------------------------------------------------------ */
@@ -28,17 +26,15 @@ static mpm_scene linear_velocity(int scheme, int32_t spline) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.12, 0.12);
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.spline = spline, def.dt = 1e-12;
+  DEF(mpm, def, .cell = 0.02, .spline = spline, .dt = 1e-12);
   solve(&s, &def, scheme);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  OK(mps_mpm_step(s.mpm, 1));
   return s;
 }
 
 /* The derivatives of the splines give sum s^n = 0, 1, 0, 3 sum w s^2 for n = 0 to 3 (cubic), and
  * the first three if quadratic: as many conditions as there are values. */
-static void splines_are_differentiated(void **state) {
-  (void)state;
+TEST(splines_are_differentiated) {
   for (int32_t spline = 2; spline <= 3; spline++)
     for (double t = spline == 3 ? 1.0 : 0.5; t < (spline == 3 ? 2.0 : 1.5); t += 0.07) {
       double w[4], slope[4], sum[4] = {0.0}, second = 0.0;
@@ -49,18 +45,17 @@ static void splines_are_differentiated(void **state) {
         second += w[i] * s * s;
         for (int n = 0; n < 4; n++) sum[n] += slope[i] * pow(s, n);
       }
-      for (int n = 0; n < 3; n++) mps_assert_near(sum[n], n == 1, 1e-14);
-      if (spline == 3) mps_assert_near(sum[3], 3.0 * second, 1e-14);
+      for (int n = 0; n < 3; n++) NEAR(sum[n], n == 1, 1e-14);
+      if (spline == 3) NEAR(sum[3], 3.0 * second, 1e-14);
     }
 }
 
 /* WLS gives a linear velocity back, at the block's edge too. PIC does not; FLIP, which changes
  * velocities only, does; but the edge's velocity gradient is wrong with both. */
-static void linear_velocity_returns(void **state) {
-  (void)state;
+TEST(linear_velocity_returns) {
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
-      mpm_scene s = linear_velocity(scheme, spline);
+      scoped_mpm_scene s = linear_velocity(scheme, spline);
       mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
       mps_view L = mpm_scene_view(&s, "velocity_gradient");
       double off = 0.0, gradient = 0.0;
@@ -74,7 +69,6 @@ static void linear_velocity_returns(void **state) {
       if (scheme == WLS || scheme == FLIP) assert_true(off < 1e-11);
       if (scheme == PIC) assert_true(off > 1e-3);
       assert_true(scheme == WLS ? gradient < 1e-10 : gradient > 0.01);
-      mpm_scene_end(&s);
     }
 }
 
@@ -90,11 +84,10 @@ static warm rotating_disc(int scheme, int32_t spline, double turns) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, -0.001, 1e5);
   mpm_scene_ball(&s, 0.0, 0.0, 0.1);
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.spline = spline;
+  DEF(mpm, def, .cell = 0.02, .spline = spline);
   solve(&s, &def, scheme);
   const mps_totals a = mpm_scene_totals(&s);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, turns * 2.0 * PI / w, 1000000, NULL, NULL));
+  OK(mps_mpm_run(s.mpm, turns * 2.0 * PI / w, 1000000, NULL, NULL));
   const mps_totals b = mpm_scene_totals(&s);
   const double away = 0.5 * (v0[0] * v0[0] + v0[1] * v0[1]); /* J/kg of the flight */
   mpm_scene_end(&s);
@@ -103,8 +96,7 @@ static warm rotating_disc(int scheme, int32_t spline, double turns) {
       b.angular[2] / a.angular[2], (b.kinetic - away * b.mass) / (a.kinetic - away * a.mass)};
 }
 
-static void disc_keeps(void **state) {
-  (void)state;
+TEST(disc_keeps) {
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
       const warm k = rotating_disc(scheme, spline, 1.0);
@@ -112,7 +104,7 @@ static void disc_keeps(void **state) {
           "disc, one turn, spline %d, %s: linear %.1e, angular left %.9f, energy left %.4f\n",
           spline, name[scheme], k.linear, k.angular, k.energy);
       assert_true(k.linear < 1e-12);
-      if (scheme == WLS) mps_assert_near(k.angular, 1.0, 1e-11);
+      if (scheme == WLS) NEAR(k.angular, 1.0, 1e-11);
       if (scheme == FLIP) assert_true(k.angular > 0.85 && k.angular < 0.99);
       if (scheme >= BLEND) assert_true(k.angular < 0.05);
     }
@@ -137,22 +129,21 @@ static double bar_energy(mpm_scene *s, double modulus) {
 static void vibrating_bar(int scheme, int periods, double *period, double *energy) {
   const double E = 1e6, rho = 1000.0, length = 1.0, modulus = E * 0.7 / (1.3 * 0.4);
   const double exact = 4.0 * length / sqrt(modulus / rho);
-  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, E);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, E);
   mpm_scene_box(&s, 0.0, 0.0, 0.08, length);
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
   mpm_scene_commit(&s, &v);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.04;
+  DEF(mpm, def, .cell = 0.04);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.08;
   solve(&s, &def, scheme);
   const double start = bar_energy(&s, modulus);
   double first = 0.0, last = 0.0, before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
   for (int found = 0; found < 2 * periods + 1;) {
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    OK(mps_mpm_step(s.mpm, 1));
     const double now = mpm_scene_totals(&s).linear[1], t = mps_mpm_time(s.mpm);
     if (now * before < 0.0) {
       last = t_before + (t - t_before) * before / (before - now);
@@ -164,17 +155,15 @@ static void vibrating_bar(int scheme, int periods, double *period, double *energ
   }
   *period = (last - first) / periods / exact;
   *energy = bar_energy(&s, modulus) / start;
-  mpm_scene_end(&s);
 }
 
-static void bar_swings(void **state) {
-  (void)state;
+TEST(bar_swings) {
   for (int scheme = 0; scheme < SCHEMES; scheme++) {
     double period, energy;
     vibrating_bar(scheme, 5, &period, &energy);
     print_message("bar, %s: period over exact %.5f, energy left after 5 periods %.4f\n",
                   name[scheme], period, energy);
-    mps_assert_near(period, 1.0, scheme == WLS ? 0.002 : 0.03);
+    NEAR(period, 1.0, scheme == WLS ? 0.002 : 0.03);
     if (scheme == WLS) assert_true(energy > 0.99 && energy < 1.0);
     if (scheme == FLIP) assert_true(energy > 0.95 && energy < 1.0);
     if (scheme == BLEND) assert_true(energy > 0.8 && energy < 0.95);
@@ -186,22 +175,18 @@ static void bar_swings(void **state) {
 
 static double column(int scheme, int32_t spline) {
   const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
-  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
   mpm_scene_weigh(&s, rho * g, K0, 1.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.04, def.spline = spline;
+  DEF(mpm, def, .cell = 0.04, .spline = spline);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
   def.gravity[1] = -g;
   solve(&s, &def, scheme);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
-  const double worst = mpm_scene_weight_error(&s, rho * g, 1.0);
-  mpm_scene_end(&s);
-  return worst;
+  OK(mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
+  return mpm_scene_weight_error(&s, rho * g, 1.0);
 }
 
-static void column_rests(void **state) {
-  (void)state;
+TEST(column_rests) {
   for (int scheme = 0; scheme < SCHEMES; scheme++) {
     const double cubic = column(scheme, 3), quadratic = column(scheme, 2);
     print_message("column, %s: stress within %.4f, quadratic %.4f\n", name[scheme], cubic,
@@ -248,19 +233,17 @@ static double left_by_step(int32_t spline, int cells) {
   mpm_scene_box(&s, 0.0, 0.0, length, 4.0 * h);
   mps_edit v;
   mps_view x = mpm_scene_view(&s, "position");
-  mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 0.0));
-  mps_assert_ok(context, mps_particles_edit(s.particles, "velocity", &v));
+  OK(mps_particles_set(s.particles, "velocity", 0, 0.0));
+  OK(mps_particles_edit(s.particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&v, k, 1) = cos(2.0 * PI * *mps_view_f64(&x, k, 0) / length);
-  mps_assert_ok(context, mps_particles_commit(s.particles, &v));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.spline = spline, def.dt = 1e-9;
-  def.lower[0] = 0.0, def.upper[0] = length;
+  OK(mps_particles_commit(s.particles, &v));
+  DEF(mpm, def, .cell = h, .spline = spline, .dt = 1e-9, .lower[0] = 0.0, .upper[0] = length);
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  OK(mps_mpm_step(s.mpm, 5));
   x = mpm_scene_view(&s, "velocity");
   const double before = *mps_view_f64(&x, 0, 1);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, STEPS));
+  OK(mps_mpm_step(s.mpm, STEPS));
   x = mpm_scene_view(&s, "velocity");
   const double after = *mps_view_f64(&x, 0, 1);
   mpm_scene_end(&s);
@@ -269,8 +252,7 @@ static double left_by_step(int32_t spline, int cells) {
 
 /* A wave of a few cells is damped by the transfers of each step, however short that is, by about
  * (k h)^4/42 with quadratic weights and (k h)^4/21 with cubic ones. */
-static void transfers_damp_waves(void **state) {
-  (void)state;
+TEST(transfers_damp_waves) {
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int cells = 4; cells <= 12; cells += 4) {
       const double k = 2.0 * PI / cells;
@@ -278,17 +260,7 @@ static void transfers_damp_waves(void **state) {
       print_message(
           "wave of %d cells, spline %d: a step takes off %.3e, theory %.3e, %.4f (kh)^4\n", cells,
           spline, 1.0 - left, 1.0 - theory, (1.0 - left) / pow(k, 4.0));
-      mps_assert_near(1.0 - left, 1.0 - theory, 1e-6);
+      NEAR(1.0 - left, 1.0 - theory, 1e-6);
       assert_true((1.0 - left) / pow(k, 4.0) < (spline == 3 ? 1.0 / 21.0 : 1.0 / 41.0));
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(splines_are_differentiated),
-                                     cmocka_unit_test(linear_velocity_returns),
-                                     cmocka_unit_test(disc_keeps),
-                                     cmocka_unit_test(bar_swings),
-                                     cmocka_unit_test(column_rests),
-                                     cmocka_unit_test(transfers_damp_waves)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -1,11 +1,9 @@
 /* test_mpm_settle.c - damping of WLS-MPM leaves reactions right and books what it takes; ground
  * settles under its weight to what theory and a slow loading say, in fewer steps.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/same.h"
 #include "mpm_scene.h"
 #include "test_fixture.h"
-
-#include <mps/mpm_energy.h>
-#include <mps/mpm_settle.h>
 
 static double mean_of(mpm_scene *s, const char *field, int c) {
   mps_view v = mpm_scene_view(s, field);
@@ -14,9 +12,9 @@ static double mean_of(mpm_scene *s, const char *field, int c) {
   return sum / (double)v.shape[0];
 }
 
-static mps_mpm_losses losses(mpm_scene *s) {
-  mps_mpm_losses l;
-  mps_assert_ok(s->context, mps_mpm_get_losses(s->mpm, &l));
+static mps_mpm_energy_report losses(mpm_scene *s) {
+  mps_mpm_energy_report l;
+  OK(mps_mpm_get_energy_report(s->mpm, &l));
   return l;
 }
 
@@ -24,97 +22,80 @@ static mps_mpm_losses losses(mpm_scene *s) {
 
 /* Free fall: with local damping of 0.3 at 0.7 g; with viscous damping the velocity of the implicit
  * step, (v + g dt)/(1 + c dt), on its way to g/c. What damping takes is booked. */
-static void damped_fall(void **state) {
-  (void)state;
+TEST(damped_fall) {
   for (int viscous = 0; viscous <= 1; viscous++) {
     const double g = 10.0, rate = 40.0, dt = 1e-4;
-    mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+    scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
     mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-    mps_mpm_def def = mps_mpm_defaults();
-    def.cell = 0.02, def.dt = dt, def.gravity[1] = -g, def.budget = 1;
-    def.local_damping = viscous ? 0.0 : 0.3;
-    def.viscous_damping = viscous ? rate : 0.0;
+    DEF(mpm, def, .cell = 0.02, .dt = dt, .gravity[1] = -g, .budget = 1,
+        .local_damping = viscous ? 0.0 : 0.3, .viscous_damping = viscous ? rate : 0.0);
     mpm_scene_solve(&s, &def);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 500));
+    OK(mps_mpm_step(s.mpm, 500));
     double v = 0.0, taken = 0.0;
     for (int k = 0; k < 500; k++) {
       const double to = viscous ? (v + g * dt) / (1.0 + rate * dt) : v + 0.7 * g * dt;
       taken += 10.0 * (v + g * dt - to) * to;
       v = to;
     }
-    mps_assert_near(mean_of(&s, "velocity", 1), -v, 1e-12);
-    const mps_mpm_losses l = losses(&s);
-    mps_assert_near(l.damping, taken, 1e-11);
-    mps_assert_near(l.residual, 0.0, 1e-12);
+    NEAR(mean_of(&s, "velocity", 1), -v, 1e-12);
+    const mps_mpm_energy_report l = losses(&s);
+    NEAR(l.damping, taken, 1e-11);
+    NEAR(l.residual, 0.0, 1e-12);
     if (viscous) assert_true(v > 0.8 * g / rate && v < g / rate);
-    mpm_scene_end(&s);
   }
 }
 
 /* A block comes to rest on a fixed floor, between rollers or driven ahead by a box of nodes: the
  * floor bears the weight whatever the damping, and in each step the momentum changes by the forces
  * of boundaries, gravity and damping. */
-static void floor_bears_the_weight(void **state) {
-  (void)state;
+TEST(floor_bears_the_weight) {
   for (int viscous = 0; viscous <= 1; viscous++) {
-    mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+    scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
     mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
-    mps_mpm_def def = mps_mpm_defaults();
-    def.cell = 0.02, def.gravity[1] = -10.0, def.budget = 1;
+    DEF(mpm, def, .cell = 0.02, .gravity[1] = -10.0, .budget = 1);
     def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
     def.local_damping = viscous ? 0.0 : 0.7;
     def.viscous_damping = viscous ? 30.0 : 0.0;
     mpm_scene_solve(&s, &def);
-    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 4000));
+    mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+    OK(mps_mpm_step(s.mpm, 4000));
     double force[3];
-    mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
-    const mps_mpm_losses l = losses(&s);
+    mpm_scene_force(&s, MPS_SIDE_Y_LOWER, force);
+    const mps_mpm_energy_report l = losses(&s);
     print_message("%s damping: floor bears %.9g of 600 N, damping took %.4g J\n",
                   viscous ? "viscous" : "local", force[1], l.damping);
-    mps_assert_near(fabs(force[1]), 600.0, viscous ? 1e-3 : 1e-6);
+    NEAR(fabs(force[1]), 600.0, viscous ? 1e-3 : 1e-6);
     assert_true(l.damping > 0.0 && fabs(l.residual) < 1e-12 * l.damping * 100.0);
-    mpm_scene_end(&s);
   }
 }
 
 /* What a boundary drives is not damped: a box of nodes keeps its velocity, and so do the particles
  * well inside it. */
-static void driven_nodes_are_not_damped(void **state) {
-  (void)state;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+TEST(driven_nodes_are_not_damped) {
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.2);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.local_damping = 0.8, def.viscous_damping = 100.0;
+  DEF(mpm, def, .cell = 0.02, .local_damping = 0.8, .viscous_damping = 100.0);
   mpm_scene_solve(&s, &def);
-  mps_signal *go = NULL;
+  scoped_signal *go = NULL;
   const double t[] = {0.0, 1.0}, v[] = {0.3, 0.3}, low[] = {-1.0, -1.0}, high[] = {1.0, 1.0};
-  mps_assert_ok(context,
-                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
+  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
   const mps_mpm_boundary_def all = mpm_scene_box_def(s.mpm, low, high, 0, go, 1.0);
   int32_t number;
-  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &all, &number));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+  OK(mps_mpm_add_boundary(s.mpm, &all, &number));
+  OK(mps_mpm_step(s.mpm, 20));
   mps_view velocity = mpm_scene_view(&s, "velocity");
-  for (int64_t k = 0; k < velocity.shape[0]; k++)
-    mps_assert_near(*mps_view_f64(&velocity, k, 0), 0.3, 1e-14);
-  mps_signal_destroy(&go);
-  mpm_scene_end(&s);
+  for (int64_t k = 0; k < velocity.shape[0]; k++) NEAR(*mps_view_f64(&velocity, k, 0), 0.3, 1e-14);
 }
 
-static void damping_is_checked(void **state) {
-  (void)state;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+TEST(damping_is_checked) {
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  OK(mps_particles_set(s.particles, "density", 0, 1000.0));
   const double bad[][2] = {{1.0, 0.0}, {-0.1, 0.0}, {NAN, 0.0}, {0.0, -1.0}, {0.0, NAN}};
   for (int k = 0; k < 5; k++) {
-    mps_mpm_def def = mps_mpm_defaults();
-    def.cell = 0.02, def.local_damping = bad[k][0], def.viscous_damping = bad[k][1];
-    mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm),
-                     MPS_ERROR_ARGUMENT, "must be in [0, 1) and 0 to");
+    DEF(mpm, def, .cell = 0.02, .local_damping = bad[k][0], .viscous_damping = bad[k][1]);
+    REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "_damping is ");
   }
-  mpm_scene_end(&s);
 }
 
 /* ---- settling -------------------------------------------------------------------------------- */
@@ -126,8 +107,7 @@ static mpm_scene column(double young, mps_material *law) {
     s.material = law;
   }
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.05, def.gravity[1] = -10.0, def.budget = 1;
+  DEF(mpm, def, .cell = 0.05, .gravity[1] = -10.0, .budget = 1);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
   mpm_scene_solve(&s, &def);
   return s;
@@ -135,116 +115,101 @@ static mpm_scene column(double young, mps_material *law) {
 
 /* A column between rollers: its middle sinks by rho g (H y - y^2/2)/M on average, the floor bears
  * the weight; the time stands still; the budget closes. */
-static void column_settles(void **state) {
-  (void)state;
+TEST(column_settles) {
   const double young = 1e7, M = young * 0.7 / (1.3 * 0.4), g = 10.0, rho = 1000.0;
-  mpm_scene s = column(young, NULL);
+  scoped_mpm_scene s = column(young, NULL);
   const double before = mean_of(&s, "position", 1);
-  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  DEF(mpm_settle, def, .tolerance = 1e-6);
   mps_mpm_settled out;
-  def.tolerance = 1e-6;
-  mps_assert_ok(context, mps_mpm_settle(s.mpm, &def, &out));
+  OK(mps_mpm_settle(s.mpm, &def, &out));
   const double sunk = before - mean_of(&s, "position", 1), theory = rho * g / (3.0 * M);
   double force[3];
-  mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
-  const mps_mpm_losses l = losses(&s);
+  mpm_scene_force(&s, MPS_SIDE_Y_LOWER, force);
+  const mps_mpm_energy_report l = losses(&s);
   print_message(
       "column: sunk %.6g m, theory %.6g, in %d steps and %d peaks, unbalanced %.2g; floor "
       "bears %.8g of 2000 N\n",
       sunk, theory, (int)out.steps, (int)out.peaks, out.unbalanced, fabs(force[1]));
-  mps_assert_near(sunk, theory, 0.005 * theory);
-  mps_assert_near(fabs(force[1]), 2000.0, 1e-5 * 2000.0);
+  NEAR(sunk, theory, 0.005 * theory);
+  NEAR(fabs(force[1]), 2000.0, 1e-5 * 2000.0);
   assert_true(out.unbalanced <= 1e-6 && out.steps < 2000 && out.peaks > 1);
   assert_true(mps_mpm_time(s.mpm) == 0.0 && mps_mpm_steps(s.mpm) == out.steps);
   assert_true(mpm_scene_totals(&s).kinetic == 0.0);
-  mps_assert_near(l.residual, 0.0, 1e-12 * (l.damping + l.transfer));
-  mps_assert_ok(context, mps_mpm_settle(s.mpm, &def, &out)); /* it is at rest */
+  NEAR(l.residual, 0.0, 1e-12 * (l.damping + l.transfer));
+  OK(mps_mpm_settle(s.mpm, &def, &out)); /* it is at rest */
   assert_int_equal(out.steps, 1);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 100)); /* and stays there */
+  OK(mps_mpm_step(s.mpm, 100)); /* and stays there */
   assert_true(mpm_scene_totals(&s).kinetic < 1e-10 * l.damping);
-  mpm_scene_end(&s);
 }
 
 /* Clay that cannot stand flows: no equilibrium, a clear status, the particles at rest, the result
  * written; arguments are checked. */
-static void flow_does_not_settle(void **state) {
-  (void)state;
-  mps_material_von_mises_def weak = mps_material_von_mises_defaults();
+TEST(flow_does_not_settle) {
+  DEF(material_von_mises, weak, .young = 1e7, .yield_stress = 500.0);
   mps_material *law = NULL;
-  weak.young = 1e7, weak.yield_stress = 500.0;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &weak, &law));
-  mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e7);
+  OK(mps_material_create_von_mises(context, &weak, &law));
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
   s.material = law;
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.05, def.gravity[1] = -10.0;
+  DEF(mpm, def, .cell = 0.05, .gravity[1] = -10.0);
   def.lower[0] = def.lower[1] = 0.0;
   mpm_scene_solve(&s, &def);
-  mps_mpm_settle_def settle = mps_mpm_settle_defaults();
+  DEF(mpm_settle, settle, .max_steps = 200);
   mps_mpm_settled out;
-  settle.max_steps = 200;
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, &out), MPS_ERROR_NUMERIC,
-                   "no equilibrium after 200 steps");
+  FAILS(mps_mpm_settle(s.mpm, &settle, &out), MPS_ERROR_NUMERIC, "no equilibrium after 200 steps");
   assert_true(out.steps == 200 && out.unbalanced > 1e-3 && out.applied > 1000.0);
   assert_true(mpm_scene_totals(&s).kinetic == 0.0);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it continues */
+  OK(mps_mpm_step(s.mpm, 1)); /* it continues */
   settle.max_steps = 0;
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, NULL), MPS_ERROR_ARGUMENT,
-                   "max_steps is 0");
+  REFUSES(mps_mpm_settle(s.mpm, &settle, NULL), "max_steps is 0");
   settle = mps_mpm_settle_defaults();
   settle.tolerance = 0.0;
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, NULL), MPS_ERROR_ARGUMENT,
-                   "tolerance is 0");
+  REFUSES(mps_mpm_settle(s.mpm, &settle, NULL), "tolerance is 0");
   mps_body_def ball = mps_body_defaults();
-  mps_body *body = NULL;
+  scoped_body *body = NULL;
   ball.motion = MPS_BODY_MOTION_FREE, ball.mass = ball.inertia[2] = 1.0, ball.position[1] = 1.0;
-  mps_assert_ok(context, mps_body_create_disc(context, &ball, 0.1, &body));
+  OK(mps_body_create_disc(context, &ball, 0.1, &body));
   mpm_scene_contact(&s, body, 0.0);
-  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED,
-                   "body 0 moves freely");
-  mps_body_destroy(&body);
-  mpm_scene_end(&s);
+  FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED, "body 0 moves freely");
 }
 
 /* ---- a slope --------------------------------------------------------------------------------- */
 
 static mpm_scene slope(double gravity) {
   const double xy[] = {0.0, 0.0, 8.0, 0.0, 8.0, 2.0, 6.0, 2.0, 3.0, 4.0, 0.0, 4.0};
-  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
-  law.young = 2e7, law.poisson = 0.3, law.friction = 0.45, law.cohesion = 6e3;
+  DEF(material_drucker_prager, law, .young = 2e7, .poisson = 0.3, .friction = 0.45,
+      .cohesion = 6e3);
   mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_drucker_prager(context, &law, &s.material));
-  mps_assert_ok(context, mps_particles_fill_polygon(s.particles, 6, xy, NULL));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.25, def.gravity[1] = -gravity;
+  OK(mps_material_create_drucker_prager(context, &law, &s.material));
+  OK(mps_particles_fill_polygon(s.particles, 6, xy, NULL));
+  OK(mps_particles_add_field(s.particles, "body_acceleration", 0));
+  DEF(mpm, def, .cell = 0.25, .gravity[1] = -gravity);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 8.0;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
 
 /* Weight that grows over 5 s, eighty first periods of the slope's height, in 40 steps of it. */
 static void load_slowly(mpm_scene *s, double g) {
   for (int k = 1; k <= 200; k++) {
-    mps_assert_ok(context, mps_particles_set(s->particles, "body_acceleration", 1, -g * k / 200.0));
-    mps_assert_ok(context, mps_mpm_run(s->mpm, 0.025 * k, 1, NULL, NULL));
+    OK(mps_particles_set(s->particles, "body_acceleration", 1, -g * k / 200.0));
+    OK(mps_mpm_run(s->mpm, 0.025 * k, 1, NULL, NULL));
   }
-  mps_assert_ok(context, mps_mpm_run(s->mpm, 6.0, 1, NULL, NULL));
+  OK(mps_mpm_run(s->mpm, 6.0, 1, NULL, NULL));
 }
 
 /* How far the top has sunk, and the mean of the size of the displacement. */
-static void slope_settles(void **state) {
-  (void)state;
-  mpm_scene slow = slope(0.0), fast = slope(10.0);
+TEST(slope_settles) {
+  scoped_mpm_scene slow = slope(0.0), fast = slope(10.0);
   mps_view x = mpm_scene_view(&slow, "position");
   const double start = mean_of(&slow, "position", 1), aside = mean_of(&slow, "position", 0);
   assert_true(x.shape[0] > 1000);
   load_slowly(&slow, 10.0);
   mps_mpm_settled out;
-  mps_assert_ok(context, mps_mpm_settle(fast.mpm, NULL, &out));
+  OK(mps_mpm_settle(fast.mpm, NULL, &out));
   double sunk[2], moved[2];
   mpm_scene *both[] = {&slow, &fast};
   for (int k = 0; k < 2; k++) {
@@ -254,10 +219,8 @@ static void slope_settles(void **state) {
   print_message("slope: sunk %.6g and %.6g m, aside %.4g and %.4g, slowly in %d steps, settled in "
                 "%d\n",
                 sunk[0], sunk[1], moved[0], moved[1], (int)mps_mpm_steps(slow.mpm), (int)out.steps);
-  mps_assert_near(sunk[1], sunk[0], 0.01 * sunk[0]);
+  NEAR(sunk[1], sunk[0], 0.01 * sunk[0]);
   assert_true(4 * out.steps < mps_mpm_steps(slow.mpm));
-  mpm_scene_end(&slow);
-  mpm_scene_end(&fast);
 }
 
 /* ---- between bodies -------------------------------------------------------------------------- */
@@ -265,43 +228,39 @@ static void slope_settles(void **state) {
 static mps_body *half_plane(double along, double from, double normal) {
   const double angle = 17.0 * atan(1.0) / 45.0;
   const double n[] = {normal * cos(angle), normal * sin(angle)};
-  mps_body_def def = mps_body_defaults();
-  def.position[0] = along * cos(angle) + from * n[0];
-  def.position[1] = along * sin(angle) + from * n[1];
+  DEF(body, def, .position[0] = along * cos(angle) + from * n[0],
+      .position[1] = along * sin(angle) + from * n[1]);
   mps_body *body = NULL;
-  mps_assert_ok(context, mps_body_create_half_plane(context, &def, n, &body));
+  OK(mps_body_create_half_plane(context, &def, n, &body));
   return body;
 }
 
 /* A block that nothing but two smooth half planes presses, turned by 17 degrees in the grid: it
  * settles, as their impulses are what is applied, to the force of plane stress sideways, E ln(1 -
  * u/w)/(1 - nu^2). */
-static void block_between_bodies_settles(void **state) {
-  (void)state;
+TEST(block_between_bodies_settles) {
   const double width = 0.1, way = 1e-3, angle = 17.0 * atan(1.0) / 45.0;
-  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
   for (int k = 0; k < 100; k++) {
     const double u = (k % 10 + 0.5) * 0.01, v = (k / 10 + 0.5) * 0.01;
     const double x[] = {u * cos(angle) - v * sin(angle), u * sin(angle) + v * cos(angle)};
-    mps_assert_ok(context, mps_particles_append(s.particles, 1, x));
+    OK(mps_particles_append(s.particles, 1, x));
   }
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02, def.spline = 2;
+  DEF(mpm, def, .cell = 0.02, .spline = 2);
   mpm_scene_solve(&s, &def);
   mps_body *body[] = {half_plane(0.0, 0.0, 1.0), half_plane(width, 0.0, -1.0)};
   mps_contact *contact[2];
-  for (int b = 0; b < 2; b++)
-    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body[b], NULL, &contact[b]));
-  mps_body_motion press = mps_body_motion_defaults();
-  press.velocity[0] = -0.02 * cos(angle), press.velocity[1] = -0.02 * sin(angle);
-  mps_assert_ok(context, mps_body_set_motion(body[1], &press));
-  mps_assert_ok(context, mps_mpm_run(s.mpm, way / 0.02, 1, NULL, NULL));
+  for (int b = 0; b < 2; b++) OK(mps_mpm_add_contact(s.mpm, body[b], NULL, &contact[b]));
+  WITH_DEFAULTS(mps_body_motion, press, .velocity[0] = -0.02 * cos(angle),
+                .velocity[1] = -0.02 * sin(angle));
+  OK(mps_body_set_motion(body[1], &press));
+  OK(mps_mpm_run(s.mpm, way / 0.02, 1, NULL, NULL));
   mps_mpm_settled out;
-  mps_assert_ok(context, mps_mpm_settle(s.mpm, NULL, &out));
+  OK(mps_mpm_settle(s.mpm, NULL, &out));
   double force[2];
   for (int b = 0; b < 2; b++) {
     mps_reaction r;
-    mps_assert_ok(context, mps_contact_get_reaction(contact[b], -1, &r));
+    OK(mps_contact_get_reaction(contact[b], -1, &r));
     force[b] = hypot(r.force[0], r.force[1]);
     mps_contact_destroy(&contact[b]);
     mps_body_destroy(&body[b]);
@@ -310,9 +269,8 @@ static void block_between_bodies_settles(void **state) {
   const double exact = 1e6 / (1.0 - nu * nu) * strain * width * exp(nu / (1.0 - nu) * strain);
   print_message("block between bodies: %.6g and %.6g of %.6g N, applied %.6g N, in %d steps\n",
                 force[0], force[1], exact, out.applied, (int)out.steps);
-  for (int b = 0; b < 2; b++) mps_assert_near(force[b], exact, 0.015 * exact);
-  mps_assert_near(out.applied, force[0] + force[1], 1e-9 * exact);
-  mpm_scene_end(&s);
+  for (int b = 0; b < 2; b++) NEAR(force[b], exact, 0.015 * exact);
+  NEAR(out.applied, force[0] + force[1], 1e-9 * exact);
 }
 
 /* ---- a footing ------------------------------------------------------------------------------- */
@@ -324,43 +282,38 @@ typedef struct footing {
 
 static footing make_footing(void) {
   footing f = {.s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e9)};
-  mps_material_von_mises_def law = mps_material_von_mises_defaults();
-  law.young = 1e9, law.poisson = 0.3, law.yield_stress = sqrt(3.0) * 1e4;
+  DEF(material_von_mises, law, .young = 1e9, .poisson = 0.3, .yield_stress = sqrt(3.0) * 1e4);
   mps_material_destroy(&f.s.material);
-  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &f.s.material));
+  OK(mps_material_create_von_mises(context, &law, &f.s.material));
   mpm_scene_box(&f.s, 0.0, 0.0, 2.0, 1.2);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.1, def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* the loading is compared */
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
   mpm_scene_solve(&f.s, &def);
-  mpm_scene_side(&f.s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  mps_body_def body = mps_body_defaults();
-  body.position[1] = 1.45;
-  mps_assert_ok(context, mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));
-  mps_assert_ok(context, mps_mpm_add_contact(f.s.mpm, f.strip, NULL, NULL));
+  mpm_scene_side(&f.s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  DEF(body, body, .position[1] = 1.45);
+  OK(mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));
+  OK(mps_mpm_add_contact(f.s.mpm, f.strip, NULL, NULL));
   return f;
 }
 
 static double pressure(footing *f) {
   mps_reaction r;
-  mps_assert_ok(context, mps_body_get_reaction(f->strip, -1, &r));
+  OK(mps_body_get_reaction(f->strip, -1, &r));
   return r.force[1] / (0.5 * 1e4);
 }
 
 static void press(footing *f, double speed, double way) {
-  mps_body_motion down = mps_body_motion_defaults();
-  down.velocity[1] = -speed;
-  mps_assert_ok(context, mps_body_set_motion(f->strip, &down));
-  mps_assert_ok(context,
-                mps_mpm_run(f->s.mpm, mps_mpm_time(f->s.mpm) + way / speed, 1, NULL, NULL));
+  WITH_DEFAULTS(mps_body_motion, down, .velocity[1] = -speed);
+  OK(mps_body_set_motion(f->strip, &down));
+  OK(mps_mpm_run(f->s.mpm, mps_mpm_time(f->s.mpm) + way / speed, 1, NULL, NULL));
 }
 
 /* q/c at 0.6 mm: at two speeds, which give the one without inertia (from 1 and 0.5 mm/s to 0.1 %; a
  * quick test has twice the speeds and half a percent); and by settling after each of six small
  * ways. A fast way makes the ground flow further than the footing requires, and leaves less than it
  * can bear. */
-static void footing_bears(void **state) {
-  (void)state;
+TEST(footing_bears) {
   const double slowest = test_quick() ? 1e-3 : 0.5e-3, within = test_quick() ? 0.0125 : 0.01;
   double q[2];
   int64_t steps = 0;
@@ -377,21 +330,20 @@ static void footing_bears(void **state) {
   }
   const double slow = 2.0 * q[1] - q[0];
   footing f = make_footing();
-  mps_mpm_settle_def def = mps_mpm_settle_defaults();
-  def.tolerance = 2e-3;
+  DEF(mpm_settle, def, .tolerance = 2e-3);
   press(&f, 8e-3, 0.48e-3);
-  mps_assert_ok(context, mps_mpm_settle(f.s.mpm, &def, NULL));
+  OK(mps_mpm_settle(f.s.mpm, &def, NULL));
   const double rough = pressure(&f);
   for (int k = 0; k < 6; k++) {
     press(&f, 0.75e-3, 0.02e-3);
-    mps_assert_ok(context, mps_mpm_settle(f.s.mpm, &def, NULL));
+    OK(mps_mpm_settle(f.s.mpm, &def, NULL));
   }
   const double settled = pressure(&f);
   print_message("footing: q/c %.4f at %g mm/s, %.4f at half of it, so %.4f without inertia in %d "
                 "steps; settled %.4f in %d (after one fast way %.4f)\n",
                 q[0], 2e3 * slowest, q[1], slow, (int)steps, settled, (int)mps_mpm_steps(f.s.mpm),
                 rough);
-  mps_assert_near(settled, slow, within * slow);
+  NEAR(settled, slow, within * slow);
   assert_true(2 * mps_mpm_steps(f.s.mpm) < steps);
   mps_body_destroy(&f.strip);
   mpm_scene_end(&f.s);
@@ -409,67 +361,37 @@ static int32_t loses_patience(void *user) {
 static mpm_scene column_to_settle(mps_context *in) {
   mpm_scene s = mpm_scene_begin(in, 0.025, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
-  mps_mpm_def solver = mps_mpm_defaults();
-  solver.cell = 0.05, solver.gravity[1] = -10.0, solver.lower[1] = 0.0;
+  DEF(mpm, solver, .cell = 0.05, .gravity[1] = -10.0, .lower[1] = 0.0);
   mpm_scene_solve(&s, &solver);
   return s;
 }
 
-static void same_particles(mpm_scene *a, mpm_scene *b) {
-  static const char *const names[] = {"position", "velocity", "stress", "volume"};
-  for (int n = 0; n < 4; n++) {
-    const mps_view x = mpm_scene_view(a, names[n]), y = mpm_scene_view(b, names[n]);
-    for (int64_t k = 0; k < x.shape[0]; k++)
-      for (int64_t c = 0; c < x.shape[1]; c++)
-        assert_true(*mps_view_f64(&x, k, c) == *mps_view_f64(&y, k, c));
-  }
-}
-
 /* A settling that is cut, twice, and continued, also after a rollback to where it was cut, is the
  * one that was not, bit for bit; a step in between begins from rest. */
-static void settling_goes_on_where_it_was_cut(void **state) {
-  (void)state;
+TEST(settling_goes_on_where_it_was_cut) {
   patience p = {0};
   mps_context_def def = test_context_defaults();
   def.cancel = loses_patience, def.cancel_user = &p;
-  mps_context *other = NULL;
+  scoped_context *other = NULL;
   assert_int_equal(mps_context_create(&def, &other, NULL, 0), MPS_OK);
-  mpm_scene s = column_to_settle(other), whole = column_to_settle(context);
+  scoped_mpm_scene s = column_to_settle(other), whole = column_to_settle(context);
   mps_mpm_settled out, uncut;
-  mps_snapshot *cut = NULL;
-  mps_assert_ok(context, mps_mpm_settle(whole.mpm, NULL, &uncut));
+  scoped_snapshot *cut = NULL;
+  OK(mps_mpm_settle(whole.mpm, NULL, &uncut));
   for (int k = 1; k <= 2; k++) {
     p.left = 8;
-    mps_assert_fails(other, mps_mpm_settle(s.mpm, NULL, &out), MPS_ERROR_CANCELLED, "cancel hook");
+    FAILS_ON(other, mps_mpm_settle(s.mpm, NULL, &out), MPS_ERROR_CANCELLED, "cancel hook");
     assert_int_equal(out.steps, 8 * k);
   }
   const mps_totals totals = mpm_scene_totals(&s);
   assert_true(totals.kinetic > 0.0);
-  mps_assert_ok(other, mps_mpm_snapshot(s.mpm, &cut));
+  OK(mps_mpm_snapshot(s.mpm, &cut));
   for (int again = 0; again < 2; again++) {
-    mps_assert_ok(other, mps_mpm_settle(s.mpm, NULL, &out));
-    same_particles(&s, &whole);
+    OK(mps_mpm_settle(s.mpm, NULL, &out));
+    assert_same_rows(s.particles, whole.particles, "");
     assert_memory_equal(&out, &uncut, sizeof out);
-    mps_assert_ok(other, mps_mpm_rollback(s.mpm, cut));
+    OK(mps_mpm_rollback(s.mpm, cut));
   }
-  mps_assert_ok(other, mps_mpm_step(s.mpm, 1)); /* from rest: not the swing's energy any more */
+  OK(mps_mpm_step(s.mpm, 1)); /* from rest: not the swing's energy any more */
   assert_true(mpm_scene_totals(&s).kinetic < 0.2 * totals.kinetic);
-  mps_snapshot_destroy(&cut);
-  mpm_scene_end(&s);
-  mpm_scene_end(&whole);
-  mps_context_destroy(&other);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damped_fall),
-                                     cmocka_unit_test(floor_bears_the_weight),
-                                     cmocka_unit_test(driven_nodes_are_not_damped),
-                                     cmocka_unit_test(damping_is_checked),
-                                     cmocka_unit_test(column_settles),
-                                     cmocka_unit_test(flow_does_not_settle),
-                                     cmocka_unit_test(settling_goes_on_where_it_was_cut),
-                                     cmocka_unit_test(slope_settles),
-                                     cmocka_unit_test(block_between_bodies_settles),
-                                     cmocka_unit_test(footing_bears)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -18,12 +18,10 @@
 
 /* The law; the seed, half a cell on either side of mid-height, is weaker by 2 %. */
 static mps_material *clay(double share, double band) {
-  mps_material_von_mises_def def = mps_material_von_mises_defaults();
+  DEF(material_von_mises, def, .young = 2.6 * SHEAR, .poisson = 0.3,
+      .yield_stress = ROOT3 * SU * share, .residual = RESIDUAL, .slip = SLIP, .band = band);
   mps_material *m = NULL;
-  def.young = 2.6 * SHEAR, def.poisson = 0.3;
-  def.yield_stress = ROOT3 * SU * share;
-  def.residual = RESIDUAL, def.slip = SLIP, def.band = band;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &m));
+  OK(mps_material_create_von_mises(context, &def, &m));
   return m;
 }
 
@@ -42,51 +40,40 @@ static double exact_work(void) {
 /* J/m2. `band` in cells of the grid, or in m where `fixed`. */
 static double work_of(int cells, int32_t spline, double band, bool fixed) {
   const double h = HEIGHT / cells, width = 4.0 * h;
-  mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mps_material_destroy(&s.material);
   const double length = fixed ? band : band * h;
   s.material = clay(1.0, length);
-  mps_material *seed = clay(0.98, length);
+  scoped_material *seed = clay(0.98, length);
   mpm_scene_box(&s, 0.0, 0.0, width, HEIGHT);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, DENSITY));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h;
-  def.spline = spline;
-  def.local_damping = 0.05;
-  def.lower[0] = -4.0 * h, def.upper[0] = width + h * (4.0 + ceil(TRAVEL / h));
-  def.lower[1] = 0.0, def.upper[1] = HEIGHT;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  OK(mps_particles_set(s.particles, "density", 0, DENSITY));
+  DEF(mpm, def, .cell = h, .spline = spline, .local_damping = 0.05, .lower[0] = -4.0 * h,
+      .upper[0] = width + h * (4.0 + ceil(TRAVEL / h)), .lower[1] = 0.0, .upper[1] = HEIGHT);
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   int64_t ids[64], count = 0;
   mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
   for (int64_t k = 0; k < x.shape[0]; k++)
     if (fabs(*mps_view_f64(&x, k, 1) - 0.5 * HEIGHT) < 0.5 * h)
       ids[count++] = *mps_view_i64(&id, k, 0);
-  mps_assert_ok(context, mps_mpm_set_material(s.mpm, seed, count, ids));
+  OK(mps_mpm_set_material(s.mpm, seed, ids, count));
   const double t[2] = {0.0, 10.0}, v[2] = {SPEED, SPEED};
-  mps_signal *go = NULL;
-  mps_assert_ok(context,
-                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_UPPER, MPS_BOUNDARY_DRIVEN, 0.0, 0, go, 1.0);
-  mps_mpm_boundary_def level = mps_mpm_boundary_defaults();
-  level.dofs = MPS_DOF_Y;
-  level.lower[1] = 0.01 * h, level.upper[1] = HEIGHT - 0.01 * h;
-  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &level, NULL));
-  mps_assert_ok(context, mps_mpm_run(s.mpm, TRAVEL / SPEED, 10000000, NULL, NULL));
+  scoped_signal *go = NULL;
+  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_drive(&s, MPS_SIDE_Y_UPPER, MPS_BOUNDARY_DRIVEN, 0.0, 0, go, 1.0);
+  DEF(mpm_boundary, level, .dofs = MPS_DOF_Y, .lower[1] = 0.01 * h, .upper[1] = HEIGHT - 0.01 * h);
+  OK(mps_mpm_add_boundary(s.mpm, &level, NULL));
+  OK(mps_mpm_run(s.mpm, TRAVEL / SPEED, 10000000, NULL, NULL));
   mps_reaction r;
-  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, MPS_MPM_SIDE_Y_UPPER, &r));
+  OK(mps_mpm_get_reaction(s.mpm, MPS_SIDE_Y_UPPER, &r));
   const double work = r.work / width;
   print_message("H/h %d, spline %d, band %g %s: %.1f J/m2, exact %.1f (%+.1f %%)\n", cells,
                 (int)spline, band, fixed ? "m" : "cells", work, exact_work(),
                 100.0 * (work / exact_work() - 1.0));
-  mps_signal_destroy(&go);
-  mps_material_destroy(&seed);
-  mpm_scene_end(&s);
   return work;
 }
 
-static void the_length_makes_the_work_that_of_the_slip(void **state) {
-  (void)state;
+TEST(the_length_makes_the_work_that_of_the_slip) {
   static const double band[2] = {2.0, 2.4};
   for (int32_t spline = 2; spline <= 3; spline++) {
     double work[2];
@@ -98,16 +85,7 @@ static void the_length_makes_the_work_that_of_the_slip(void **state) {
   }
 }
 
-static void without_it_the_work_follows_the_grid(void **state) {
-  (void)state;
+TEST(without_it_the_work_follows_the_grid) {
   const double coarse = work_of(20, 3, 0.12, true), fine = work_of(40, 3, 0.12, true);
   assert_true(fine < 0.93 * coarse);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_length_makes_the_work_that_of_the_slip),
-      cmocka_unit_test(without_it_the_work_follows_the_grid),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

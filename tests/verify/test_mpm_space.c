@@ -21,7 +21,7 @@ typedef struct tube {
 static void fill_tube(mpm_scene *s, const tube *t, bool space) {
   const double d = t->cell / CUBE;
   const int layers = (int)lround(t->height / d), rings = (int)lround((t->outer - t->inner) / d);
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "volume", 0));
+  OK(mps_particles_add_field(s->particles, "volume", 0));
   for (int k = 0; k < layers; k++)
     for (int i = 0; i < rings; i++) {
       const double r = t->inner + (i + 0.5) * d, z = (k + 0.5) * d;
@@ -30,13 +30,13 @@ static void fill_tube(mpm_scene *s, const tube *t, bool space) {
         const double angle = (j + 0.5) / count * 0.5 * PI;
         const double at[] = {space ? r * cos(angle) : r, space ? r * sin(angle) : z, z};
         const int64_t last = mps_particles_count(s->particles);
-        mps_assert_ok(context, mps_particles_append(s->particles, 1, at));
+        OK(mps_particles_append(s->particles, 1, at));
         mps_edit volume = mpm_scene_edit(s, "volume");
         *mps_edit_f64(&volume, last, 0) = r * d * d * (space ? 0.5 * PI / count : 1.0);
         mpm_scene_commit(s, &volume);
       }
     }
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity", 0));
+  OK(mps_particles_add_field(s->particles, "velocity", 0));
 }
 
 static mpm_scene make_tube(const tube *t, bool space) {
@@ -47,9 +47,8 @@ static mpm_scene make_tube(const tube *t, bool space) {
 
 static void solve(mpm_scene *s, const tube *t, double g, double courant) {
   const int up = mps_particles_dim(s->particles) - 1;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = up == 2 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  def.cell = t->cell;
+  DEF(mpm, def, .geometry = up == 2 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_AXISYMMETRIC,
+      .cell = t->cell);
   for (int c = 0; c <= up; c++) def.lower[c] = 0.0;
   def.gravity[up] = -g;
   def.dt = courant * t->cell / sqrt(E_ * 0.7 / (1.3 * 0.4) / RHO);
@@ -94,7 +93,7 @@ static double breathe(mpm_scene *s, const tube *ring, int steps, double *v) {
   double before = 0.01, crossing[3] = {0.0}, unused;
   int found = 0;
   for (int n = 0; n < steps; n++) {
-    mps_assert_ok(context, mps_mpm_step(s->mpm, 1));
+    OK(mps_mpm_step(s->mpm, 1));
     mean_velocity(s, &v[n], &unused);
     if (v[n] * before < 0.0 && found < 3) crossing[found++] = dt * (n + before / (before - v[n]));
     before = v[n];
@@ -104,37 +103,33 @@ static double breathe(mpm_scene *s, const tube *ring, int steps, double *v) {
 }
 
 /* omega = sqrt(E/(rho R^2)); a ring as thick as this departs by some (t/R)^2, 1/100. */
-static void ring_breathes(void **state) {
-  (void)state;
+TEST(ring_breathes) {
   const tube ring = {0.95, 1.05, 0.1, 0.05};
   const double exact = 2.0 * PI * sqrt(RHO / E_);
   enum { STEPS = 420 };
   double v[2][STEPS], period[2], apart = 0.0;
   for (int k = 0; k < 2; k++) {
-    mpm_scene s = make_tube(&ring, k == 1);
+    scoped_mpm_scene s = make_tube(&ring, k == 1);
     period[k] = breathe(&s, &ring, STEPS, v[k]);
     print_message("ring, %s: %lld particles, period %.6g s, exact %.6g s, %+.3f %%\n",
                   k ? "quarter in space" : "axisymmetric",
                   (long long)mps_particles_count(s.particles), period[k], exact,
                   100.0 * (period[k] / exact - 1.0));
-    mpm_scene_end(&s);
   }
   for (int n = 0; n < STEPS; n++) apart = fmax(apart, fabs(v[1][n] - v[0][n]));
   print_message("velocities apart: %.3g of the first one\n", apart / 0.01);
-  mps_assert_near(period[0], exact, 0.003 * exact);
-  mps_assert_near(period[1], exact, 0.003 * exact);
+  NEAR(period[0], exact, 0.003 * exact);
+  NEAR(period[1], exact, 0.003 * exact);
   assert_true(apart < 0.03 * 0.01);
 }
 
 /* ---- column ---------------------------------------------------------------------------------- */
 
 static void become_sand(mpm_scene *s) {
-  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
-  law.cone = MPS_MATERIAL_CONE_INSCRIBED;
-  law.young = E_, law.poisson = 0.3;
-  law.friction = 35.0 / 180.0 * PI;
+  DEF(material_drucker_prager, law, .cone = MPS_MATERIAL_CONE_INSCRIBED, .young = E_,
+      .poisson = 0.3, .friction = 35.0 / 180.0 * PI);
   mps_material_destroy(&s->material);
-  mps_assert_ok(context, mps_material_create_drucker_prager(context, &law, &s->material));
+  OK(mps_material_create_drucker_prager(context, &law, &s->material));
 }
 
 /* On a floor that holds it, free at its side: released, it sags and bulges. The largest differences
@@ -144,14 +139,13 @@ static void sag(const tube *column, bool sand, double t_end, double *apart) {
   double v[2][2][SAMPLES], most[2] = {0.0, 0.0};
   apart[0] = apart[1] = 0.0;
   for (int k = 0; k < 2; k++) {
-    mpm_scene s = make_tube(column, k == 1);
+    scoped_mpm_scene s = make_tube(column, k == 1);
     if (sand) become_sand(&s);
     solve(&s, column, sand ? 9.81 : 1.0, 0.4);
     for (int n = 0; n < SAMPLES; n++) {
-      mps_assert_ok(context, mps_mpm_run(s.mpm, t_end * (n + 1) / SAMPLES, 1000000, NULL, NULL));
+      OK(mps_mpm_run(s.mpm, t_end * (n + 1) / SAMPLES, 1000000, NULL, NULL));
       mean_velocity(&s, &v[k][0][n], &v[k][1][n]);
     }
-    mpm_scene_end(&s);
   }
   for (int c = 0; c < 2; c++) {
     for (int n = 0; n < SAMPLES; n++) {
@@ -166,8 +160,7 @@ static void sag(const tube *column, bool sand, double t_end, double *apart) {
       sand ? "sand" : "elastic", column->cell, most[0], apart[0], most[1], apart[1]);
 }
 
-static void elastic_column(void **state) {
-  (void)state;
+TEST(elastic_column) {
   const tube column = {0.0, 0.4, 0.8, 0.1};
   double apart[2];
   sag(&column, false, 0.14, apart);
@@ -176,8 +169,7 @@ static void elastic_column(void **state) {
 }
 
 /* Apart by the grid: with half the cell much less. */
-static void sand_column(void **state) {
-  (void)state;
+TEST(sand_column) {
   const tube coarse = {0.0, 0.4, 0.4, 0.1}, fine = {0.0, 0.4, 0.4, 0.05};
   double at_coarse[2], at_fine[2];
   sag(&coarse, true, 0.2, at_coarse);
@@ -186,11 +178,4 @@ static void sand_column(void **state) {
     assert_true(at_fine[c] < 0.03);
     assert_true(at_fine[c] < 0.3 * at_coarse[c]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ring_breathes),
-                                     cmocka_unit_test(elastic_column),
-                                     cmocka_unit_test(sand_column)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -4,8 +4,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include <mps/experimental.h>
-
 #define PI 3.14159265358979323846
 
 /* A ball of `material` that deforms by a uniform velocity gradient; the nodes are not needed for
@@ -20,24 +18,21 @@ static mpm_scene stretched(int32_t geometry, int32_t spline, int32_t volumetric,
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, 1e6);
   if (rubber) {
     mps_material_destroy(&s.material);
-    mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &s.material));
+    OK(mps_material_create_neo_hookean(context, 1e6, 0.3, &s.material));
   }
-  mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.07, NULL));
+  OK(mps_particles_fill_ball(s.particles, centre, 0.07, NULL));
   mpm_scene_affine(&s, axis ? still : v0, dim == 3 ? space : axis ? axial : plane);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry, def.spline = spline, def.cell = 0.02;
-  def.volumetric = volumetric;
+  DEF(mpm, def, .geometry = geometry, .spline = spline, .cell = 0.02, .volumetric = volumetric);
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  OK(mps_mpm_step(s.mpm, 1));
   return s;
 }
 
-static void uniform_strain_is_untouched(void **state) {
-  (void)state;
+TEST(uniform_strain_is_untouched) {
   for (int variant = 0; variant < 24; variant++) {
     const int geometry = variant % 12 / 4, spline = 2 + variant % 2;
     const bool rubber = variant / 2 % 2;
-    mpm_scene a = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_POINT, rubber);
+    scoped_mpm_scene a = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_POINT, rubber);
     mpm_scene b =
         stretched(geometry, spline,
                   variant < 12 ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_NODES, rubber);
@@ -49,13 +44,12 @@ static void uniform_strain_is_untouched(void **state) {
         worst = fmax(worst, fabs(*mps_view_f64(&s, k, c) - *mps_view_f64(&S, k, c)));
         largest = fmax(largest, fabs(*mps_view_f64(&s, k, c)));
       }
-      mps_assert_near(*mps_view_f64(&W, k, 0) / *mps_view_f64(&V, k, 0), 1.0, 1e-14);
+      NEAR(*mps_view_f64(&W, k, 0) / *mps_view_f64(&V, k, 0), 1.0, 1e-14);
     }
     assert_true(largest > 0.0);
     if (worst > 1e-12 * largest)
       fail_msg("geometry %d, spline %d: stress differs by %g of %g Pa", geometry, spline, worst,
                largest);
-    mpm_scene_end(&a);
     mpm_scene_end(&b);
   }
 }
@@ -86,9 +80,9 @@ static void takes_the_mean(int32_t geometry) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double h = 0.02, E = 1e6, bulk = E / (3.0 * (1.0 - 2.0 * 0.3)), dt = 1e-4;
   const double centre[] = {0.11, 0.0, 0.0};
-  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, E);
-  mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
-  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, E);
+  OK(mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
+  OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_edit v = mpm_scene_edit(&s, "velocity");
   uint64_t seed = 1;
   for (int64_t k = 0; k < v.view.shape[0]; k++)
@@ -97,13 +91,11 @@ static void takes_the_mean(int32_t geometry) {
       *mps_edit_f64(&v, k, c) = (c == 1 ? 8.0 : 0.0) + 4.0 * (double)(seed >> 11) * 0x1p-53;
     }
   mpm_scene_commit(&s, &v);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry, def.cell = h, def.dt = dt;
-  def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  DEF(mpm, def, .geometry = geometry, .cell = h, .dt = dt, .volumetric = MPS_MPM_VOLUMETRIC_CELL);
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, /* means of fields, and not of derivatives */
-                mps_experimental_mpm_strain(s.mpm, MPS_EXPERIMENTAL_STRAIN_FIT));
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 15)); /* 12 to 18 mm: within a cell of the blocks */
+  OK(/* means of fields, and not of derivatives */
+     mps_experimental_mpm_strain(s.mpm, MPS_EXPERIMENTAL_STRAIN_FIT));
+  OK(mps_mpm_step(s.mpm, 15)); /* 12 to 18 mm: within a cell of the blocks */
   mps_view x = mpm_scene_view(&s, "position"), L = mpm_scene_view(&s, "velocity_gradient");
   mps_view V = mpm_scene_view(&s, "volume");
   mps_edit stress = mpm_scene_edit(&s, "stress");
@@ -117,7 +109,7 @@ static void takes_the_mean(int32_t geometry) {
   }
   mpm_scene_commit(&s, &stress);
   const uint64_t epoch = mps_particles_epoch(s.particles);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  OK(mps_mpm_step(s.mpm, 1));
   assert_true(mps_particles_epoch(s.particles) == epoch); /* not sorted: some are off their block */
   for (int64_t k = 0; k < count; k++) {
     volume[cell[k]] += held[k];
@@ -131,16 +123,14 @@ static void takes_the_mean(int32_t geometry) {
     worst = fmax(worst, fabs(p - exact));
     largest = fmax(largest, fabs(exact));
     apart = fmax(apart, fabs(p - bulk * dt * trace_of(&L, k)));
-    mps_assert_near(*mps_view_f64(&V, k, 0) / held[k], 1.0 + exact / bulk, 1e-12);
+    NEAR(*mps_view_f64(&V, k, 0) / held[k], 1.0 + exact / bulk, 1e-12);
   }
   assert_true(apart > 0.1 * largest); /* its own would have been another */
   if (worst > 1e-12 * largest)
     fail_msg("geometry %d: pressure off by %g of %g Pa", geometry, worst, largest);
-  mpm_scene_end(&s);
 }
 
-static void pressure_is_of_the_cell(void **state) {
-  (void)state;
+TEST(pressure_is_of_the_cell) {
   for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++)
     takes_the_mean(geometry);
 }
@@ -165,14 +155,12 @@ static double deflection(int32_t spline, int32_t volumetric) {
   const double length = h * LENGTH_CELLS, height = h * HEIGHT_CELLS;
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, E);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, nu, &s.material));
+  OK(mps_material_create_linear_elastic(context, E, nu, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, length, height);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h, def.spline = spline, def.volumetric = volumetric;
-  def.lower[0] = 0.0;
-  def.gravity[1] = -g;
+  DEF(mpm, def, .cell = h, .spline = spline, .volumetric = volumetric, .lower[0] = 0.0,
+      .gravity[1] = -g);
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double load = rho * g * height, plane = E / (1.0 - nu * nu), shear = 0.5 * E / (1.0 + nu);
   const double exact = load * pow(length, 4.0) / (8.0 * plane * pow(height, 3.0) / 12.0) +
                        load * length * length / (2.0 * 5.0 / 6.0 * shear * height);
@@ -180,7 +168,7 @@ static double deflection(int32_t spline, int32_t volumetric) {
   double sum = 0.0, before = 0.0, down = 0.0, mean = 0.0;
   while (down >= 0.9 * before) { /* a little beyond the turning point */
     const double dt = mps_mpm_dt(s.mpm);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    OK(mps_mpm_step(s.mpm, 1));
     down = start - tip_of(&s, length - h);
     sum += dt * down;
     if (down < before) continue;
@@ -191,8 +179,7 @@ static double deflection(int32_t spline, int32_t volumetric) {
   return mean / exact;
 }
 
-static void cantilever_bends(void **state) {
-  (void)state;
+TEST(cantilever_bends) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     const double point = deflection(spline, MPS_MPM_VOLUMETRIC_POINT);
     const double cell = deflection(spline, MPS_MPM_VOLUMETRIC_CELL);
@@ -250,30 +237,27 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   const double half = 0.5, speed = 0.08, ramp = 0.1, t_end = 0.3;
   const double t[] = {0.0, ramp, 1.0}, v[] = {0.0, speed, speed}, height = 0.1 * NY;
   mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
-  mps_material_von_mises_def law = mps_material_von_mises_defaults();
-  law.young = 1e3 * COHESION, law.poisson = 0.499, law.yield_stress = sqrt(3.0) * COHESION;
+  DEF(material_von_mises, law, .young = 1e3 * COHESION, .poisson = 0.499,
+      .yield_stress = sqrt(3.0) * COHESION);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &s.material));
+  OK(mps_material_create_von_mises(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, 0.1 * NX, height);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1, def.spline = spline, def.volumetric = volumetric;
+  DEF(mpm, def, .cell = 0.1, .spline = spline, .volumetric = volumetric);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.1 * NX;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_signal *down = NULL;
   mps_body *body = NULL;
-  mps_body_def plate = mps_body_defaults();
-  plate.position[1] = height + 0.25;
-  mps_assert_ok(context,
-                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down));
-  mps_assert_ok(context, mps_body_create_box(context, &plate, 2.0 * half, 0.5, &body));
-  mps_assert_ok(context, mps_body_drive(body, 1, down, -1.0));
+  DEF(body, plate, .position[1] = height + 0.25);
+  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down));
+  OK(mps_body_create_box(context, &plate, 2.0 * half, 0.5, &body));
+  OK(mps_body_drive(body, 1, down, -1.0));
   mpm_scene_contact(&s, body, 0.0);
   mps_reaction begin, end;
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.75 * t_end, 1000000, NULL, NULL));
-  mps_assert_ok(context, mps_body_get_reaction(body, -1, &begin));
-  mps_assert_ok(context, mps_mpm_run(s.mpm, t_end, 1000000, NULL, NULL));
-  mps_assert_ok(context, mps_body_get_reaction(body, -1, &end));
+  OK(mps_mpm_run(s.mpm, 0.75 * t_end, 1000000, NULL, NULL));
+  OK(mps_body_get_reaction(body, -1, &begin));
+  OK(mps_mpm_run(s.mpm, t_end, 1000000, NULL, NULL));
+  OK(mps_body_get_reaction(body, -1, &end));
   *rough = roughness(&s);
   mps_body_destroy(&body);
   mps_signal_destroy(&down);
@@ -281,8 +265,7 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   return (end.impulse[1] - begin.impulse[1]) / (0.25 * t_end) / half;
 }
 
-static void footing_does_not_lock(void **state) {
-  (void)state;
+TEST(footing_does_not_lock) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     double wild, rough, smooth;
     const double point = footing(spline, MPS_MPM_VOLUMETRIC_POINT, &wild) / COHESION;
@@ -300,11 +283,4 @@ static void footing_does_not_lock(void **state) {
     assert_true(nodes < 1.35 * (2.0 + PI) && nodes > 2.0 + PI && nodes < point);
     assert_true(smooth < 0.05 * COHESION);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(uniform_strain_is_untouched), cmocka_unit_test(pressure_is_of_the_cell),
-      cmocka_unit_test(cantilever_bends), cmocka_unit_test(footing_does_not_lock)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

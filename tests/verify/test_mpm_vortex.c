@@ -92,21 +92,20 @@ static void piola(const vortex *v, const mps_material *law, const double *X, dou
     for (int i = 0; i < 2; i++) F[2 * i + j] = (xb[i] - xa[i]) / (2.0 * e);
   }
   mps_material_point point;
-  mps_assert_ok(context, mps_material_point_init(context, law, &point));
+  OK(mps_material_point_init(context, law, &point));
   point.deformation[0] = F[0], point.deformation[1] = F[1];
   point.deformation[3] = F[2], point.deformation[4] = F[3];
-  mps_assert_ok(context, mps_material_point_drive(context, law, &point, still, 1.0, 1));
+  OK(mps_material_point_drive(context, law, &point, still, 1.0, 1));
   const double *s = point.stress; /* J F^-T = cofactors */
   P[0] = s[0] * F[3] - s[3] * F[1], P[1] = -s[0] * F[2] + s[3] * F[0];
   P[2] = s[3] * F[3] - s[1] * F[1], P[3] = -s[3] * F[2] + s[1] * F[0];
 }
 
-static void the_body_force_balances_the_librarys_law(void **state) {
-  (void)state;
+TEST(the_body_force_balances_the_librarys_law) {
   const vortex v = {.amplitude = 1.0};
   const double e = 1e-3;
-  mps_material *law = NULL;
-  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &law));
+  scoped_material *law = NULL;
+  OK(mps_material_create_neo_hookean(context, YOUNG, POISSON, &law));
   for (int k = 0; k < 60; k++) {
     const double R = INNER + e + (OUTER - INNER - 2.0 * e) * (k + 0.5) / 60.0, t = 0.03 + 0.016 * k;
     const double X[2] = {R * cos(0.7 * k), R * sin(0.7 * k)};
@@ -125,10 +124,9 @@ static void the_body_force_balances_the_librarys_law(void **state) {
     body_force_at(&v, X, t, b);
     for (int i = 0; i < 2; i++) { /* of forces up to 5e4 N/m3 */
       const double acceleration = (before[i] - 2.0 * now[i] + after[i]) / (e * e);
-      mps_assert_near(DENSITY * acceleration, div[i] + DENSITY * b[i], 5.0);
+      NEAR(DENSITY * acceleration, div[i] + DENSITY * b[i], 5.0);
     }
   }
-  mps_material_destroy(&law);
 }
 
 /* ---- the solver ------------------------------------------------------------------------------ */
@@ -146,8 +144,8 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
       X[2 * *count + 1] = R * sin(2.0 * PI * k / n);
     }
   }
-  mps_assert_ok(context, mps_particles_append(s->particles, *count, X));
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "volume", 0));
+  OK(mps_particles_append(s->particles, *count, X));
+  OK(mps_particles_add_field(s->particles, "volume", 0));
   mps_edit volume = mpm_scene_edit(s, "volume");
   for (int64_t k = 0; k < *count; k++) {
     const double R = hypot(X[2 * k], X[2 * k + 1]);
@@ -159,8 +157,8 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
 
 /* Velocity and its gradient at the time t. */
 static void start(mpm_scene *s, const vortex *v, const double *X, double t) {
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity", 0));
-  mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity_gradient", 0));
+  OK(mps_particles_add_field(s->particles, "velocity", 0));
+  OK(mps_particles_add_field(s->particles, "velocity_gradient", 0));
   mps_edit velocity = mpm_scene_edit(s, "velocity");
   mps_edit L = mpm_scene_edit(s, "velocity_gradient");
   for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
@@ -217,19 +215,16 @@ static void run_vortex(double amplitude, int32_t spline, int cells, double *erro
   const double cell = (OUTER - INNER) / cells;
   mpm_scene s = mpm_scene_begin(context, 0.5 * cell, 0.0, 0.0, YOUNG);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
+  OK(mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
   int64_t count;
   double *X = fill_ring(&s, 0.5 * cell, &count);
   const int64_t half = 16 * cells;
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = cell;
-  def.spline = spline;
-  def.dt = 0.5 * PERIOD / (double)half;
+  DEF(mpm, def, .cell = cell, .spline = spline, .dt = 0.5 * PERIOD / (double)half);
   start(&s, &v, X, -0.5 * def.dt);
   mpm_scene_solve(&s, &def);
   for (int64_t step = 1; step <= 2 * half; step++) {
     kick(&s, &v, X, def.dt);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    OK(mps_mpm_step(s.mpm, 1));
     if (step == half) errors[0] = error_of(&s, &v, X);
   }
   errors[1] = error_of(&s, &v, X);
@@ -238,8 +233,7 @@ static void run_vortex(double amplitude, int32_t spline, int cells, double *erro
 }
 
 /* The order settles near 2 only when the ring is more than 8 cells wide. */
-static void the_error_falls_with_the_square_of_the_cell(void **state) {
-  (void)state;
+TEST(the_error_falls_with_the_square_of_the_cell) {
   const int last = getenv("MPS_LONG_TESTS") ? 5 : 4;
   for (int32_t spline = 2; spline <= 3; spline++) {
     double before[2] = {0.0}, errors[2];
@@ -257,10 +251,4 @@ static void the_error_falls_with_the_square_of_the_cell(void **state) {
       if (k == 4) assert_true(errors[0] < 0.015 && errors[1] < 0.03);
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_body_force_balances_the_librarys_law),
-                                     cmocka_unit_test(the_error_falls_with_the_square_of_the_cell)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -11,8 +11,6 @@
 #include "test_fixture.h"
 #include "textbook_table.h"
 
-#include <mps/material_law.h>
-
 #define G 9.81
 #define PI 3.14159265358979323846
 #define LENGTH 0.8 /* m, of the block */
@@ -99,18 +97,13 @@ static mps_status update_damped(void *user, const mps_material_block *block) {
 
 static void make_damped(mpm_scene *s, shaking *how) {
   static const char *const names[] = {"xx", "yy", "zz", "xy"};
-  mps_material_user_def def = mps_material_user_defaults();
-  def.update = update_damped;
-  def.user = how;
-  def.name = "damped";
-  def.history_count = 4;
-  def.history = names;
-  def.shear_modulus = 0.5 * YOUNG / (1.0 + POISSON);
-  def.bulk_modulus = YOUNG / (3.0 * (1.0 - 2.0 * POISSON));
+  DEF(material_user, def, .update = update_damped, .user = how, .name = "damped",
+      .history_count = 4, .history = names, .shear_modulus = 0.5 * YOUNG / (1.0 + POISSON),
+      .bulk_modulus = YOUNG / (3.0 * (1.0 - 2.0 * POISSON)));
   def.wave_modulus = def.bulk_modulus + 4.0 / 3.0 * def.shear_modulus;
   def.viscosity = how->damping * def.wave_modulus;
   mps_material_destroy(&s->material);
-  mps_assert_ok(context, mps_material_create_user(context, &def, &s->material));
+  OK(mps_material_create_user(context, &def, &s->material));
 }
 
 /* The plane is y = 0, x points up the slope. The stress of rest across the plane is there. */
@@ -118,8 +111,8 @@ static mps_body *place_block(mpm_scene *s, shaking *how, double h) {
   *s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, YOUNG);
   if (how->damping > 0.0) make_damped(s, how);
   mpm_scene_box(s, 0.0, 0.0, LENGTH, HEIGHT);
-  mps_assert_ok(context, mps_particles_set(s->particles, "density", 0, DENSITY));
-  mps_assert_ok(context, mps_particles_set(s->particles, "stress", 0, 0.0));
+  OK(mps_particles_set(s->particles, "density", 0, DENSITY));
+  OK(mps_particles_set(s->particles, "stress", 0, 0.0));
   const mps_view x = mpm_scene_view(s, "position");
   mps_edit stress = mpm_scene_edit(s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -128,17 +121,14 @@ static mps_body *place_block(mpm_scene *s, shaking *how, double h) {
     *mps_edit_f64(&stress, k, 2) = 0.3 * across;
   }
   mpm_scene_commit(s, &stress);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = h;
-  def.gravity[0] = -G * sin(how->slope);
-  def.gravity[1] = -G * cos(how->slope);
-  mps_assert_ok(context, mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
+  DEF(mpm, def, .cell = h, .gravity[0] = -G * sin(how->slope), .gravity[1] = -G * cos(how->slope));
+  OK(mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
   const double up[2] = {0.0, 1.0};
   mps_body *plane = NULL;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_body_create_half_plane(context, NULL, up, &plane));
-  mps_assert_ok(context, mps_signal_create_user(context, move, how, &signal));
-  mps_assert_ok(context, mps_body_drive(plane, 0, signal, 1.0));
+  OK(mps_body_create_half_plane(context, NULL, up, &plane));
+  OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, move, how, NULL, &signal));
+  OK(mps_body_drive(plane, 0, signal, 1.0));
   mps_signal_destroy(&signal);
   mpm_scene_contact(s, plane, how->friction);
   return plane;
@@ -155,13 +145,13 @@ static double slip_of(mpm_scene *s, const shaking *how) {
 static double slide(shaking *how, double h, double expected) {
   mpm_scene s;
   const double began = textbook_cost();
-  mps_body *plane = place_block(&s, how, h);
+  scoped_body *plane = place_block(&s, how, h);
   FILE *f = textbook_table(how->name, "t_s,plane_m_s2,slip_m");
   const int samples = 200;
   double slip = 0.0;
   for (int k = 0; k <= samples; k++) {
     const double t = how->end * k / samples;
-    mps_assert_ok(context, mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
+    OK(mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
     slip = slip_of(&s, how);
     textbook_row(f, 3, (double[]){t, plane_acceleration(how, t), slip});
   }
@@ -169,24 +159,21 @@ static double slide(shaking *how, double h, double expected) {
   print_message("%s, h %g m: slip %.6f m, exact %.6f (%+.2f %%), %.1f s\n", how->name, h, slip,
                 expected, 100.0 * (slip / expected - 1.0), textbook_cost() - began);
   mpm_scene_end(&s);
-  mps_body_destroy(&plane);
   return slip;
 }
 
 /* Level ground, 0.4 g for 0.25 s over mu = 0.2: a t0^2/2 (a/ay - 1). */
-static void slips_after_a_pulse(void **state) {
-  (void)state;
+TEST(slips_after_a_pulse) {
   shaking how = {.name = "block_pulse", .friction = 0.2, .peak = 0.4 * G, .duration = 0.25};
   how.end = REST + 0.7;
   const double yield = how.friction * G;
   const double exact = 0.5 * how.peak * how.duration * how.duration * (how.peak / yield - 1.0);
-  mps_assert_near(rigid_slip(&how), exact, 1e-5 * exact);
-  mps_assert_near(slide(&how, 0.05, exact), exact, 0.01 * exact);
+  NEAR(rigid_slip(&how), exact, 1e-5 * exact);
+  NEAR(slide(&how, 0.05, exact), exact, 0.01 * exact);
 }
 
 /* A slope of 15 degrees, mu = 0.4 (ay 0.128 g), five cycles of 0.35 g and 2 Hz. */
-static void slips_down_a_slope(void **state) {
-  (void)state;
+TEST(slips_down_a_slope) {
   shaking how = {.name = "block_cycles",
                  .friction = 0.4,
                  .slope = PI / 12.0,
@@ -195,7 +182,7 @@ static void slips_down_a_slope(void **state) {
                  .duration = 2.5};
   how.end = REST + 3.0;
   const double exact = rigid_slip(&how);
-  mps_assert_near(slide(&how, 0.05, exact), exact, 0.01 * exact);
+  NEAR(slide(&how, 0.05, exact), exact, 0.01 * exact);
 }
 
 /* A rougher slope of 20 degrees, mu = 0.55 (ay 0.175 g): five cycles of `peak` (g) and `frequency`.
@@ -210,25 +197,9 @@ static void slide_damped(const char *name, double peak, double frequency) {
                  .damping = 1e-4};
   how.end = REST + how.duration + 0.5;
   const double exact = rigid_slip(&how);
-  mps_assert_near(slide(&how, 0.05, exact), exact, 0.02 * exact);
+  NEAR(slide(&how, 0.05, exact), exact, 0.02 * exact);
 }
 
-static void slips_when_damped(void **state) {
-  (void)state;
-  slide_damped("block_rough", 0.5, 3.0);
-}
+TEST(slips_when_damped) { slide_damped("block_rough", 0.5, 3.0); }
 
-static void slips_slowly_when_damped(void **state) {
-  (void)state;
-  slide_damped("block_slow", 0.35, 2.0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(slips_after_a_pulse),
-      cmocka_unit_test(slips_down_a_slope),
-      cmocka_unit_test(slips_when_damped),
-      cmocka_unit_test(slips_slowly_when_damped),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
-}
+TEST(slips_slowly_when_damped) { slide_damped("block_slow", 0.35, 2.0); }

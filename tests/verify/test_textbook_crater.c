@@ -9,8 +9,6 @@
 #include "test_fixture.h"
 #include "textbook_table.h"
 
-#include <mps/body.h>
-
 #define G 9.81
 #define PI 3.14159265358979323846
 #define DIAMETER 0.025 /* m, of the sphere */
@@ -46,33 +44,30 @@ static void make_bed(mpm_scene *s, double cell) {
   grains.young = YOUNG;
   grains.friction = atan(FRICTION);
   grains.cohesion = 1.0;
-  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &grains, &s->material));
+  OK(mps_material_create_mohr_coulomb(context, &grains, &s->material));
   mpm_scene_box(s, 0.0, 0.0, WIDTH * DIAMETER, WIDTH * DIAMETER);
   mpm_scene_weigh(s, DENSITY * G, 0.5, WIDTH * DIAMETER);
-  mps_assert_ok(context, mps_particles_set(s->particles, "density", 0, DENSITY));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  def.cell = cell;
+  OK(mps_particles_set(s->particles, "density", 0, DENSITY));
+  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = cell);
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = WIDTH * DIAMETER;
   def.upper[1] = 2.0 * WIDTH * DIAMETER;
   def.gravity[1] = -G;
-  mps_assert_ok(context, mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
-  mpm_scene_side(s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
-  mpm_scene_side(s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_ROLLER, 0.0);
+  OK(mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
+  mpm_scene_side(s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
+  mpm_scene_side(s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_ROLLER, 0.0);
 }
 
 static mps_body *make_sphere(mpm_scene *s, const drop *d) {
-  mps_body_def def = mps_body_defaults();
+  DEF(body, def, .motion = MPS_BODY_MOTION_FREE);
   const double mass = d->density * PI * DIAMETER * DIAMETER * DIAMETER / 6.0;
   mps_body *sphere = NULL;
-  def.motion = MPS_BODY_MOTION_FREE;
   def.position[1] = (WIDTH + 0.5) * DIAMETER;
   def.velocity[1] = -sqrt(2.0 * G * d->fall);
   def.gravity[1] = -G;
   def.mass = mass;
   def.inertia[2] = 0.1 * mass * DIAMETER * DIAMETER;
-  mps_assert_ok(context, mps_body_create_disc(context, &def, 0.5 * DIAMETER, &sphere));
+  OK(mps_body_create_disc(context, &def, 0.5 * DIAMETER, &sphere));
   mpm_scene_contact(s, sphere, SURFACE);
   return sphere;
 }
@@ -88,17 +83,17 @@ static double fall_into_bed(const drop *d, int cells) {
   FILE *f = textbook_table(d->name, "t_s,depth_m,velocity_m_s");
   double deepest = 0.0;
   for (int k = 1; k <= 100; k++) {
-    mps_assert_ok(context, mps_mpm_run(s.mpm, END * k / 100.0, 1000000, NULL, NULL));
-    mps_assert_ok(context, mps_body_get_state(sphere, &state));
+    OK(mps_mpm_run(s.mpm, END * k / 100.0, 1000000, NULL, NULL));
+    OK(mps_body_get_state(sphere, &state));
     const double depth = (WIDTH + 0.5) * DIAMETER - state.position[1];
     deepest = fmax(deepest, depth);
     textbook_row(f, 3, (double[]){state.time, depth, state.velocity[1]});
   }
   textbook_close(f);
-  mps_assert_ok(context, mps_body_get_totals(sphere, &totals));
-  mps_assert_near(state.position[0], 0.0, 0.0); /* on the axis, and not turned */
-  mps_assert_near(state.spin[2], 0.0, 0.0);
-  mps_assert_near(state.velocity[1], 0.0, 0.02); /* at rest */
+  OK(mps_body_get_totals(sphere, &totals));
+  NEAR(state.position[0], 0.0, 0.0); /* on the axis, and not turned */
+  NEAR(state.spin[2], 0.0, 0.0);
+  NEAR(state.velocity[1], 0.0, 0.02); /* at rest */
   print_message("%s, D/%d: depth %.2f mm, law %.2f mm (%+.1f %%), %.1f s\n", d->name, cells,
                 1e3 * deepest, 1e3 * exact, 100.0 * (deepest / exact - 1.0),
                 textbook_cost() - began);
@@ -116,7 +111,7 @@ static void spheres_come_to_rest_at_the_depth_of_experiments(void **state) {
                               {"crater_steel", 7800.0, 0.1},
                               {"crater_wood", 700.0, 0.1}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    mps_assert_near(fall_into_bed(&list[k], cells), 1.0, cells < 20 ? 0.3 : 0.15);
+    NEAR(fall_into_bed(&list[k], cells), 1.0, cells < 20 ? 0.3 : 0.15);
 }
 
 int main(int argc, char **argv) {

@@ -9,8 +9,6 @@
 #include "test_fixture.h"
 #include "textbook_table.h"
 
-#include <mps/dynamics.h>
-
 #define PI 3.14159265358979323846
 #define WAVE 10.0 /* m, wavelength */
 #define VS 100.0
@@ -45,8 +43,8 @@ typedef struct record {
 /* From the two uppermost rows, extrapolated by half a spacing. `spacing` between them. */
 static void observe(mps_particles *set, double spacing, double t, record *r, int k) {
   mps_view x, v;
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
+  OK(mps_particles_view(set, "position", &x));
+  OK(mps_particles_view(set, "velocity", &v));
   double sum[2] = {0.0, 0.0}, count = 0.0;
   for (int64_t i = 0; i < x.shape[0]; i++) {
     const double row = (DEPTH - *mps_view_f64(&x, i, 1)) / spacing;
@@ -81,13 +79,13 @@ static void measure(const record *r, double *velocity, double *shape) {
 static void start(mps_particles *set) {
   mps_view x;
   mps_edit v;
-  mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.0));
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  OK(mps_particles_set(set, "velocity", 0, 0.0));
+  OK(mps_particles_view(set, "position", &x));
+  OK(mps_particles_edit(set, "velocity", &v));
   for (int64_t i = 0; i < x.shape[0]; i++)
     *mps_edit_f64(&v, i, 1) = SPEED * cos(2.0 * PI / WAVE * *mps_view_f64(&x, i, 0)) *
                               exp(-2.0 * PI / WAVE * (DEPTH - *mps_view_f64(&x, i, 1)));
-  mps_assert_ok(context, mps_particles_commit(set, &v));
+  OK(mps_particles_commit(set, &v));
 }
 
 static void state(const char *name, int count, const record *r, double a, double began,
@@ -109,83 +107,63 @@ static double sample_time(int k) { return WAVE / VS / 0.92 * k / PER_PERIOD; }
 static void by_particles(int count, double vp, double *velocity, double *shape) {
   static record r;
   const double spacing = WAVE / count, began = textbook_cost();
-  mps_particles_def set = mps_particles_defaults();
-  mps_particles *particles = NULL;
-  set.spacing = spacing;
-  mps_assert_ok(context, mps_particles_create(context, &set, &particles));
-  mps_assert_ok(context, mps_particles_fill_box(particles, (double[]){0.0, 0.0},
-                                                (double[]){WAVE, DEPTH}, NULL));
-  mps_assert_ok(context, mps_particles_set(particles, "density", 0, DENSITY));
-  mps_assert_ok(context, mps_particles_set(particles, "shear_velocity", 0, VS));
-  mps_assert_ok(context, mps_particles_set(particles, "pressure_velocity", 0, vp));
+  DEF(particles, set, .spacing = spacing);
+  scoped_particles *particles = NULL;
+  OK(mps_particles_create(context, &set, &particles));
+  OK(mps_particles_fill_box(particles, (double[]){0.0, 0.0}, (double[]){WAVE, DEPTH}, NULL));
+  OK(mps_particles_set(particles, "density", 0, DENSITY));
+  OK(mps_particles_set(particles, "shear_velocity", 0, VS));
+  OK(mps_particles_set(particles, "pressure_velocity", 0, vp));
   start(particles);
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
-  def.period_x = WAVE;
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
+  DEF(dynamics, def, .period_x = WAVE);
+  scoped_dynamics *dynamics = NULL;
+  OK(mps_dynamics_create(context, particles, &def, &dynamics));
+  DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_ABSORBING);
   int32_t number;
-  base.kind = MPS_BOUNDARY_ABSORBING;
   base.lower[0] = base.lower[1] = -INFINITY;
   base.upper[0] = INFINITY, base.upper[1] = spacing;
-  mps_assert_ok(context, mps_dynamics_add_boundary(dynamics, &base, &number));
+  OK(mps_dynamics_add_boundary(dynamics, &base, &number));
   for (int k = 0; k <= SAMPLES; k++) {
-    if (k > 0)
-      mps_assert_ok(context, mps_dynamics_run(dynamics, sample_time(k), INT64_MAX, NULL, NULL));
+    if (k > 0) OK(mps_dynamics_run(dynamics, sample_time(k), INT64_MAX, NULL, NULL));
     observe(particles, spacing, sample_time(k), &r, k);
   }
   state("rayleigh_particles", count, &r, pow(VS / vp, 2.0), began, velocity, shape);
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&particles);
 }
 
 /* Half a wavelength between rollers, two particles a cell along each axis. */
 static void by_grid(int count, double *velocity, double *shape) {
   static record r;
   const double spacing = WAVE / count, began = textbook_cost();
-  mpm_scene s = mpm_scene_begin(context, spacing, 0.0, 0.0, 1e6);
+  scoped_mpm_scene s = mpm_scene_begin(context, spacing, 0.0, 0.0, 1e6);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_create_linear_elastic(context, 2.5 * DENSITY * VS * VS, 0.25,
-                                                            &s.material));
+  OK(mps_material_create_linear_elastic(context, 2.5 * DENSITY * VS * VS, 0.25, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, 0.5 * WAVE, DEPTH);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, DENSITY));
+  OK(mps_particles_set(s.particles, "density", 0, DENSITY));
   start(s.particles);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 2.0 * spacing;
+  DEF(mpm, def, .cell = 2.0 * spacing);
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.5 * WAVE;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_ABSORBING, 0.0);
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_ABSORBING, 0.0);
   for (int k = 0; k <= SAMPLES; k++) {
-    mps_assert_ok(context, mps_mpm_run(s.mpm, sample_time(k), INT64_MAX, NULL, NULL));
+    OK(mps_mpm_run(s.mpm, sample_time(k), INT64_MAX, NULL, NULL));
     observe(s.particles, spacing, sample_time(k), &r, k);
   }
   state("rayleigh_grid", count, &r, 1.0 / 3.0, began, velocity, shape);
-  mpm_scene_end(&s);
 }
 
-static void explicit_mps_has_it(void **unused) {
-  (void)unused;
+TEST(explicit_mps_has_it) {
   double velocity, shape;
-  mps_assert_near(exact_velocity(1.0 / 3.0), 0.9194, 5e-5);
-  mps_assert_near(exact_shape(1.0 / 3.0), 0.681, 5e-4);
+  NEAR(exact_velocity(1.0 / 3.0), 0.9194, 5e-5);
+  NEAR(exact_shape(1.0 / 3.0), 0.681, 5e-4);
   for (int count = 10; count <= 40; count *= 2)
     by_particles(count, sqrt(3.0) * VS, &velocity, &shape);
-  mps_assert_near(velocity, exact_velocity(1.0 / 3.0), 0.01 * 0.9194);
-  mps_assert_near(shape, exact_shape(1.0 / 3.0), 0.02 * 0.681);
+  NEAR(velocity, exact_velocity(1.0 / 3.0), 0.01 * 0.9194);
+  NEAR(shape, exact_shape(1.0 / 3.0), 0.02 * 0.681);
 }
 
-static void wls_mpm_has_it(void **unused) {
-  (void)unused;
+TEST(wls_mpm_has_it) {
   double velocity, shape;
   for (int count = 20; count <= 80; count *= 2) by_grid(count, &velocity, &shape);
-  mps_assert_near(velocity, exact_velocity(1.0 / 3.0), 0.01 * 0.9194);
-  mps_assert_near(shape, exact_shape(1.0 / 3.0), 0.02 * 0.681);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(explicit_mps_has_it),
-      cmocka_unit_test(wls_mpm_has_it),
-  };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(velocity, exact_velocity(1.0 / 3.0), 0.01 * 0.9194);
+  NEAR(shape, exact_shape(1.0 / 3.0), 0.02 * 0.681);
 }

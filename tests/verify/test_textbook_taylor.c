@@ -13,11 +13,10 @@
 #define END 80e-6 /* s */
 
 static mps_material *copper(void) {
-  mps_material_von_mises_def def = mps_material_von_mises_defaults();
+  DEF(material_von_mises, def, .young = 117e9, .poisson = 0.35, .yield_stress = 400e6,
+      .hardening = 100e6);
   mps_material *m = NULL;
-  def.young = 117e9, def.poisson = 0.35;
-  def.yield_stress = 400e6, def.hardening = 100e6;
-  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &m));
+  OK(mps_material_create_von_mises(context, &def, &m));
   return m;
 }
 
@@ -40,36 +39,26 @@ static void shape_of(mpm_scene *s, double spacing, double *length, double *radiu
 
 static void hit(int cells, double *length, double *radius) {
   const double h = RADIUS / cells, began = textbook_cost();
-  mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 117e9);
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 117e9);
   mps_material_destroy(&s.material);
   s.material = copper();
   mpm_scene_box(&s, 0.0, 0.0, RADIUS, LENGTH);
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 8930.0));
+  OK(mps_particles_set(s.particles, "density", 0, 8930.0));
   const double down[2] = {0.0, -SPEED}, still[4] = {0.0};
   mpm_scene_affine(&s, down, still);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  def.cell = h;
-  def.lower[1] = 0.0;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.0);
-  mps_assert_ok(context, mps_mpm_run(s.mpm, END, 1000000, NULL, NULL));
+  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = h, .lower[1] = 0.0);
+  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.0);
+  OK(mps_mpm_run(s.mpm, END, 1000000, NULL, NULL));
   shape_of(&s, 0.5 * h, length, radius);
   const mps_totals t = mpm_scene_totals(&s);
   print_message("radius of %d cells: length %.3f mm, foot %.3f mm, velocity %.2f m/s, %.1f s\n",
                 cells, 1e3 * *length, 1e3 * *radius, t.linear[1] / t.mass, textbook_cost() - began);
-  mpm_scene_end(&s);
 }
 
-static void is_as_short_as_measured(void **state) {
-  (void)state;
+TEST(is_as_short_as_measured) {
   double length, radius;
   for (int cells = 4; cells <= 16; cells *= 2) hit(cells, &length, &radius);
-  mps_assert_near(length, 21.4e-3, 0.03 * 21.4e-3);
-  mps_assert_near(radius, 7.1e-3, 0.05 * 7.1e-3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(is_as_short_as_measured)};
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  NEAR(length, 21.4e-3, 0.03 * 21.4e-3);
+  NEAR(radius, 7.1e-3, 0.05 * 7.1e-3);
 }

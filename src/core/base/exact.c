@@ -47,6 +47,17 @@ void mpsi_exact_merge(mpsi_exact *to, const mpsi_exact *from) {
   for (int k = 0; k < MPSI_EXACT_LIMBS; k++) to->limb[k] += from->limb[k];
 }
 
+bool mpsi_exact_is_sum(const int64_t limb[MPSI_EXACT_LIMBS]) {
+  const int64_t terms = limb[TERMS], most = INT64_C(1) << 53;
+  if (terms < 0 || terms >= MOST_TERMS) return false;
+  const int64_t largest = (terms << 33) + (INT64_C(1) << 60); /* merged sums have no terms */
+  for (int k = 0; k < MPSI_EXACT_VALUE; k++)
+    if (limb[k] > largest || limb[k] < -largest) return false;
+  for (int k = NOT_A_NUMBER; k <= MINUS; k++)
+    if (limb[k] < 0 || limb[k] > most) return false;
+  return true;
+}
+
 /* 53 bits from bit `lowest` on, of limbs that have been carried. */
 static uint64_t bits_from(const mpsi_exact *sum, int lowest) {
   const int k = lowest / 32, shift = lowest % 32;

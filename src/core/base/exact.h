@@ -20,6 +20,8 @@ void mpsi_exact_add(mpsi_exact *sum, double term);
 void mpsi_exact_merge(mpsi_exact *to, const mpsi_exact *from);
 /* Before the limbs of several sums are added as integers: at most 2^30 of them. */
 void mpsi_exact_carry(mpsi_exact *sum);
+/* Whether limbs of a file are those of a sum, to which more can be added without an overflow. */
+bool mpsi_exact_is_sum(const int64_t limb[MPSI_EXACT_LIMBS]);
 /* The double nearest to the sum. */
 double mpsi_exact_value(const mpsi_exact *sum);
 

@@ -3,6 +3,7 @@
 #ifndef MPSI_GIVEN_H
 #define MPSI_GIVEN_H
 
+#include "core/definition/definition.h"
 #include "hash.h"
 
 #include <math.h>
@@ -47,6 +48,17 @@ static inline void mpsi_give_vector(mpsi_given *list, const char *name, int32_t 
 #define MPSI_GIVE(list, def, member) mpsi_give(list, #member, (double)(def)->member)
 #define MPSI_GIVE_VECTOR(list, def, member, count)                                                 \
   mpsi_give_vector(list, #member, count, (def)->member)
+
+/* What a definition's table says that ranks share. */
+static inline void mpsi_give_def(mpsi_given *list, const mpsi_definition *definition,
+                                 const void *def) {
+  for (const mpsi_def_member *m = definition->member; m < definition->member + definition->count;
+       m++)
+    for (int32_t c = 0; m->same && c < m->count; c++)
+      mpsi_give(list, m->name, mpsi_member_value(m, def, c));
+}
+#define MPSI_GIVE_DEF(list, type, def)                                                             \
+  mpsi_give_def(list, &mpsi_definition_of_##type, 1 ? (def) : (type *)0)
 
 /* The bits of a hash that a double holds exactly. */
 static inline double mpsi_hash_short(uint64_t hash) { return (double)(hash >> 12); }

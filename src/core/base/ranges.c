@@ -1,12 +1,12 @@
 /* ranges.c - see ranges.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "ranges.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 static const struct {
   const char *unit;
   double low, high;
 } table[] = {
-#define ROW(name, unit, low, high) {unit, low, high},
+#define ROW(name, unit, ...) {unit, __VA_ARGS__},
     MPSI_RANGE_TABLE(ROW)
 #undef ROW
 };
@@ -15,22 +15,12 @@ bool mpsi_in_range(mpsi_range range, double value) {
   return value >= table[range].low && value <= table[range].high; /* not NaN */
 }
 
-static mps_status check(mps_context *context, const char *function, const char *name, double value,
-                        mpsi_range range, const char *zero) {
-  if (mpsi_in_range(range, value) || (zero[0] && value == 0.0)) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %s%g to %g", name,
-                   mpsi_outside(value, table[range].low, table[range].high).text, table[range].unit,
-                   zero, table[range].low, table[range].high);
-}
-
 mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,
                             double value, mpsi_range range) {
-  return check(context, function, name, value, range, "");
-}
-
-mps_status mpsi_check_range_or_0(mps_context *context, const char *function, const char *name,
-                                 double value, mpsi_range range) {
-  return check(context, function, name, value, range, "0 or ");
+  if (mpsi_in_range(range, value)) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %g to %g", name,
+                   mpsi_outside(value, table[range].low, table[range].high).text, table[range].unit,
+                   table[range].low, table[range].high);
 }
 
 size_t mpsi_identifier(const char *name, size_t room) {

@@ -4,25 +4,26 @@
 #ifndef MPSI_RANGES_H
 #define MPSI_RANGES_H
 
+#include "core/definition/ends.h"
 #include "core/internal.h"
 
 /* X(name, unit, lowest, highest) */
 #define MPSI_RANGE_TABLE(X)                                                                        \
-  X(SPACING, " m", 1e-12, 1e12) /* of particles, radii of influence */                             \
-  X(LENGTH, " m", 1e-9, 1e9)                                                                       \
-  X(MODULUS, " Pa", 1e-6, 1e18)                                                                    \
-  X(STRESS, " Pa", 1e-9, 1e18)                                                                     \
-  X(POISSON, "", -0.999, 0.49999)                                                                  \
-  X(DENSITY, " kg/m3", 1e-9, 1e9)                                                                  \
-  X(WAVE_VELOCITY, " m/s", 1e-6, 1e9)                                                              \
-  X(VISCOSITY, " Pa s", 1e-12, 1e18)                                                               \
-  X(ACCELERATION, " m/s2", 1e-9, 1e9)                                                              \
-  X(STRESS_RATIO, "", 1e-9, 1e6)                                                                   \
-  X(LEVEL, " m", -1e9, 1e9)                                                                        \
-  X(PLACE, " m", -MPSI_FARTHEST, MPSI_FARTHEST)
+  X(SPACING, " m", MPSI_SPACINGS) /* of particles, radii of influence */                           \
+  X(LENGTH, " m", MPSI_LENGTHS)                                                                    \
+  X(MODULUS, " Pa", MPSI_MODULI)                                                                   \
+  X(STRESS, " Pa", MPSI_STRESSES)                                                                  \
+  X(POISSON, "", MPSI_POISSONS)                                                                    \
+  X(DENSITY, " kg/m3", MPSI_DENSITIES)                                                             \
+  X(WAVE_VELOCITY, " m/s", MPSI_WAVE_VELOCITIES)                                                   \
+  X(VISCOSITY, " Pa s", MPSI_VISCOSITIES)                                                          \
+  X(ACCELERATION, " m/s2", MPSI_ACCELERATIONS)                                                     \
+  X(STRESS_RATIO, "", MPSI_STRESS_RATIOS)                                                          \
+  X(LEVEL, " m", MPSI_HEIGHTS)                                                                      \
+  X(PLACE, " m", MPSI_PLACES)
 
 typedef enum mpsi_range {
-#define MPSI_RANGE_ENTRY(name, unit, low, high) MPSI_RANGE_##name,
+#define MPSI_RANGE_ENTRY(name, unit, ...) MPSI_RANGE_##name,
   MPSI_RANGE_TABLE(MPSI_RANGE_ENTRY)
 #undef MPSI_RANGE_ENTRY
 } mpsi_range;
@@ -31,8 +32,5 @@ bool mpsi_in_range(mpsi_range range, double value);
 /* MPS_ERROR_ARGUMENT "<name> is <value> <unit>, must be <low> to <high>" for a value outside. */
 mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,
                             double value, mpsi_range range);
-/* The same, with 0 allowed too. */
-mps_status mpsi_check_range_or_0(mps_context *context, const char *function, const char *name,
-                                 double value, mpsi_range range);
 
 #endif

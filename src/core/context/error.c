@@ -1,4 +1,4 @@
-/* error.c - the record of an error on the context, and the log.
+/* error.c - the record of an error on the context and on the thread, and the log.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 
@@ -24,49 +24,75 @@ static void name_kind(mps_error *error, const char *function) {
   snprintf(error->object, sizeof error->object, "%.*s", (int)strcspn(kind, "_"), kind);
 }
 
+/* A getter by its name in a program: without the _sized of the function behind it. */
+static void name_function(mps_error *error, const char *function) {
+  const size_t length = strlen(function), tail = strlen("_sized");
+  const bool sized = length > tail && strcmp(function + length - tail, "_sized") == 0;
+  snprintf(error->function, sizeof error->function, "%.*s", (int)(sized ? length - tail : length),
+           function);
+}
+
+/* Where a failure is recorded: without a context on the thread alone. */
+static mps_error *record_of(mps_context *context) {
+  return context ? &context->error : &mpsi_thread_error;
+}
+
+/* Ends a change of the record of `context`: it is the thread's last one too. */
+static void publish(const mps_context *context) {
+  if (context) mpsi_thread_error = context->error;
+}
+
 mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
                      const char *format, ...) {
-  if (!context) return status;
-  mps_error *error = &context->error;
+  if (!function) return status;
+  mps_error *error = record_of(context);
   error->status = status;
   error->step = error->particle = -1;
-  snprintf(error->function, sizeof error->function, "%s", function);
+  name_function(error, function);
   name_kind(error, function);
   va_list args;
   va_start(args, format);
   vsnprintf(error->message, sizeof error->message, format, args);
   va_end(args);
-  context->failures++;
+  if (context) context->failures++;
+  publish(context);
   return status;
 }
 
 void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle) {
   context->error.step = step;
   context->error.particle = particle;
+  publish(context);
 }
 
 void mpsi_fail_object(mps_context *context, const char *format, ...) {
-  if (!context) return;
+  mps_error *error = record_of(context);
   va_list args;
   va_start(args, format);
-  vsnprintf(context->error.object, sizeof context->error.object, format, args);
+  vsnprintf(error->object, sizeof error->object, format, args);
   va_end(args);
+  publish(context);
+}
+
+mps_status mpsi_null(const char *function, const char *argument) {
+  return mpsi_fail(NULL, function, MPS_ERROR_ARGUMENT, "%s is NULL", argument);
 }
 
 mps_status mpsi_as(mps_context *context, const char *function, mps_status status) {
-  if (status == MPS_OK || !context) return status;
-  mps_error *error = &context->error;
+  if (status == MPS_OK) return status;
+  mps_error *error = record_of(context);
   mps_error former = *error;
   name_kind(&former, error->function);
   if (strcmp(former.object, error->object) == 0)
     name_kind(error, function); /* else it has a name */
-  snprintf(error->function, sizeof error->function, "%s", function);
+  name_function(error, function);
+  publish(context);
   return status;
 }
 
 mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *argument) {
-  if (status != MPS_ERROR_ARGUMENT || !context) return status;
-  mps_error *error = &context->error;
+  if (status != MPS_ERROR_ARGUMENT) return status;
+  mps_error *error = record_of(context);
   char *message = error->message;
   const size_t room = sizeof error->message, most = room / 4;
   const size_t length = strlen(argument) < most ? strlen(argument) : most, before = length + 2;
@@ -76,6 +102,7 @@ mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *arg
   memcpy(message, argument, length);
   memcpy(message + length, ": ", 2);
   message[before + rest] = '\0';
+  publish(context);
   return status;
 }
 
@@ -86,31 +113,18 @@ mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t b
 int64_t mpsi_failures(const mps_context *context) { return context->failures; }
 
 const mps_error *mps_context_error(const mps_context *context) {
-  return context ? &context->error : NULL;
+  return context ? &context->error : &mpsi_thread_error;
 }
 
 void mps_context_clear_error(mps_context *context) {
-  if (!context) return;
-  memset(&context->error, 0, sizeof context->error);
-  context->error.step = context->error.particle = -1;
+  *record_of(context) = (mps_error){.step = -1, .particle = -1};
 }
 
 mps_status mps_context_set_error(mps_context *context, mps_status status, const char *function,
                                  const char *message) {
-  if (!context) return MPS_ERROR_ARGUMENT;
   if (status <= MPS_OK || status > MPS_ERROR_INTERNAL || !message)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "status is %d with message %s, must be one of MPS_ERROR_... with a message",
                      (int)status, message ? "given" : "NULL");
   return mpsi_fail(context, function ? function : "caller", status, "%s", message);
-}
-
-void mpsi_log(mps_context *context, int32_t level, const char *format, ...) {
-  if (!context->def.log) return;
-  char message[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(message, sizeof message, format, args);
-  va_end(args);
-  context->def.log(context->def.log_user, level, message);
 }

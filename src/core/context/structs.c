@@ -4,34 +4,28 @@
 
 #include <string.h>
 
-mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
-                         size_t defaults_size) {
-  if (!def || size < minimum || size > MPSI_STRUCT_MOST) return MPS_ERROR_ARGUMENT;
-  memset(def, 0, size);
-  memcpy(def, defaults, size < defaults_size ? size : defaults_size);
-  const uint32_t stored = (uint32_t)size;
-  memcpy(def, &stored, sizeof stored); /* struct_size is the first member of every definition */
+mps_status mps_def_init(int32_t kind, void *def, size_t size) {
+  const mpsi_definition *d = mpsi_definition_of(kind);
+  if (!d)
+    return mpsi_fail(NULL, __func__, MPS_ERROR_ARGUMENT, "kind is %d, must be one of MPS_DEF_...",
+                     kind);
+  if (!def) return mpsi_null(__func__, "def");
+  if (size < d->released || size > MPSI_STRUCT_MOST)
+    return mpsi_fail(NULL, __func__, MPS_ERROR_ARGUMENT,
+                     "size is %zu bytes, allowed are %zu to %d: sizeof of the struct that def "
+                     "points to",
+                     size, d->released, MPSI_STRUCT_MOST);
+  mpsi_definition_fill(d, def, size);
   return MPS_OK;
 }
 
-mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
-                         size_t minimum, void *known, size_t known_size) {
-  if (!def) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  uint32_t size;
-  memcpy(&size, def, sizeof size);
-  if (size < minimum || size > MPSI_STRUCT_MOST)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "def.struct_size is %u bytes, allowed are %zu to %d: start from the "
-                     "_defaults() or _def_init function",
-                     size, minimum, MPSI_STRUCT_MOST);
-  for (size_t i = known_size; i < size; i++)
-    if (((const unsigned char *)def)[i] != 0)
-      return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                       "def has a non-zero member at byte %zu that this library (version %s) does "
-                       "not know",
-                       i, mps_version());
-  memcpy(known, def, size < known_size ? size : known_size);
-  return MPS_OK;
+mps_status mpsi_def_read(mps_context *context, const char *function,
+                         const mpsi_definition *definition, const void *def, bool needed,
+                         uint32_t scene, void *known) {
+  char why[MPSI_WHY];
+  if (!def && needed) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  const mps_status status = mpsi_definition_take(definition, def, known, scene, why);
+  return status == MPS_OK ? status : mpsi_fail(context, function, status, "%s", why);
 }
 
 mps_status mpsi_out_check(mps_context *context, const char *function, const void *out,
@@ -50,7 +44,7 @@ mps_status mpsi_out_write(mps_context *context, const char *function, void *out,
   const mps_status status = mpsi_out_check(context, function, out, size);
   if (status != MPS_OK) return status;
   memcpy(out, known, size < known_size ? size : known_size);
-  if (size > known_size) memset((char *)out + known_size, 0, size - known_size);
+  if (size > known_size) memset((char *)out + known_size, 0xFF, size - known_size);
   return MPS_OK;
 }
 

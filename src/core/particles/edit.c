@@ -12,7 +12,7 @@
 
 #include "fields.h"
 #include "core/base/hash.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -165,7 +165,7 @@ static mps_status keep_former(mps_particles *p, const char *function, mpsi_field
 }
 
 mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_edit *out) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = particles->context;
   if (out) out->data = NULL;
   mps_status status = mpsi_as(particles->context, __func__,
@@ -216,7 +216,7 @@ static void close_field(mps_particles *p, mpsi_field *field, mps_edit *edit) {
 }
 
 mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mpsi_field *field = find_open(particles, __func__, edit);
   if (!field) return mps_context_error(particles->context)->status;
   mps_status status = check_field(particles, __func__, field);
@@ -227,7 +227,7 @@ mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit) {
 }
 
 mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mpsi_field *field = find_open(particles, __func__, edit);
   if (!field) return mps_context_error(particles->context)->status;
   copy_former(particles, field, true);
@@ -264,7 +264,7 @@ static uint64_t note_constant(uint64_t hash, const char *name, int32_t component
 
 mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
                              double value) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mpsi_field shape;
   mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
@@ -274,6 +274,10 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
     return mpsi_fail(
         particles->context, __func__, MPS_ERROR_FIELD,
         "field '%s' is of int64, only float64 fields can be set: use mps_particles_edit", name);
+  if (component != 0 && shape.components == 1)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "component of field '%s' is %d, and the field has one alone: 0", name,
+                     component);
   if (component < 0 || component >= shape.components)
     return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
                      "component of field '%s' is %d, allowed are 0 to %d", name, component,

@@ -107,7 +107,7 @@ int64_t *mpsi_particles_integers(mps_particles *particles, const char *name) {
 
 /* ---- ready ----------------------------------------------------------------------------------- */
 
-mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
+mps_status mpsi_particles_committed(const mps_particles *p, const char *function) {
   for (int32_t f = 0; p->open_edits > 0 && f < p->field_count; f++) {
     if (!p->fields[f]->open) continue;
     (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
@@ -116,7 +116,12 @@ mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
     mpsi_fail_object(p->context, "field '%s'", p->fields[f]->name);
     return MPS_ERROR_STATE;
   }
-  return mpsi_executor_check(p->context, function);
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
+  const mps_status status = mpsi_particles_committed(p, function);
+  return status == MPS_OK ? mpsi_executor_check(p->context, function) : status;
 }
 
 /* ---- adding ---------------------------------------------------------------------------------- */
@@ -192,7 +197,7 @@ static mps_status describe_field(const mps_particles *p, const char *function, c
 }
 
 mps_status mps_particles_add_field(mps_particles *particles, const char *name, int32_t components) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mpsi_field field = {0};
   const mps_status status = describe_field(particles, __func__, name, components, &field);
@@ -229,7 +234,7 @@ static mps_status fail_unknown(const mps_particles *p, const char *function, con
 }
 
 mps_status mps_particles_view(mps_particles *particles, const char *name, mps_view *out) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   if (!name || !out)
     return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      name ? "out" : "name");
@@ -261,7 +266,7 @@ int32_t mps_particles_field_count(const mps_particles *particles) {
 mps_status mps_particles_get_field_info_sized(const mps_particles *particles, int32_t index,
                                               mps_particles_field_info *out, size_t size) {
   static const char function[] = "mps_particles_get_field_info";
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   if (index < 0 || index >= particles->field_count)
     return mpsi_fail(particles->context, function, MPS_ERROR_ARGUMENT,
                      "index is %d, allowed are 0 to %d", index, particles->field_count - 1);

@@ -8,6 +8,7 @@
 #ifndef MPSI_FIELDS_H
 #define MPSI_FIELDS_H
 
+#include <mps/experimental/soil.h>
 #include <stdint.h>
 
 #define MPSI_PER_DIM 0       /* 2 in 2D, 3 in 3D */
@@ -106,6 +107,8 @@
     "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
   X(pore_pressure, F64, 1, "Pa", "pressure of the water in the pores", \
     "the caller (initial state); WLS-MPM with pore water", "after a step or a run") \
+  X(pore_pressure_mean, F64, 1, "Pa", "mean of pore_pressure over some 32 steps, of which implicit pressures need the forces", \
+    "WLS-MPM with implicit pressures of pore water", "after a step or a run") \
   X(pore_pressure_gradient, F64, MPSI_PER_DIM, "Pa/m", "gradient of pore_pressure", \
     "WLS-MPM with pore water", "after a step or a run") \
   X(porosity, F64, 1, "-", "volume of the pores over all volume", \
@@ -135,9 +138,9 @@
   X(shear_velocity, 0.0, 3e8)                                                                      \
   X(pressure_velocity, 0.0, 3e8)                                                                   \
   X(damping, 0.0, 1e6)                                                                             \
-  X(preconsolidation, 0.0, 1e18)                                                                    \
-  X(stiffness_factor, 0.0, 1e9)                                                                     \
-  X(strength_factor, 0.0, 1e9)                                                                      \
+  X(preconsolidation, 0.0, 1e18)                                                                   \
+  X(stiffness_factor, 0.0, 1e9)                                                                    \
+  X(strength_factor, 0.0, 1e9)                                                                     \
   X(void_ratio, 0.0, 1e3)                                                                          \
   X(young, 0.0, 1e24)                                                                              \
   X(poisson, -1.0, 0.5)                                                                            \

@@ -14,6 +14,7 @@
 #include "core/base/hash.h"
 #include "core/base/polygon.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define ON_EDGE 1e-9        /* spacings: a centre this close to a bound lies on it */
@@ -21,6 +22,8 @@
 #define MAX_SITES 0x1p31    /* of one fill, before the shape is cut out */
 #define MAX_CORNERS 1000000 /* of a polygon */
 #define ROUND_OFF 0x1p-50   /* a few units of relative rounding error */
+#define OFF_BALL 0.1        /* of a ball's volume */
+#define OFF_LATTICE 1e-6    /* spacings: a face this far from the sites' own is another size */
 
 /* ---- runs ------------------------------------------------------------------------------------ */
 
@@ -135,6 +138,13 @@ static void put_sites(mps_particles *p, const mpsi_site_runs *fresh, mpsi_slab *
     }
     id += run.end - run.begin;
   }
+}
+
+/* Largest distance of a bound from the nearest face of a site, in spacings. */
+static double off_lattice(const mps_particles *p, int32_t axis, double x) {
+  const double at = (x - p->def.origin[axis]) / p->def.spacing;
+  const double rounded = ROUND_OFF * ((fabs(x) + fabs(p->def.origin[axis])) / p->def.spacing);
+  return fmax(fabs(at - nearbyint(at)) - rounded, 0.0);
 }
 
 /* The calling fill: its function, and the arguments of the shape; what chooses its sites. */
@@ -265,6 +275,27 @@ static mps_status box_runs(const mps_particles *p, filler by, const site_box *bo
   return status;
 }
 
+/* A box has whole sites: where its faces are not theirs, what is made has other faces. */
+static void warn_of_faces(const mps_particles *p, filler by, const site_box *box, const double *lo,
+                          const double *hi) {
+  char asked[200] = "", made[200] = "";
+  double most = 0.0;
+  size_t a = 0, m = 0;
+  for (int32_t c = 0; c < p->def.dim; c++) {
+    const double D = p->def.spacing, origin = p->def.origin[c];
+    most = fmax(most, fmax(off_lattice(p, c, lo[c]), off_lattice(p, c, hi[c])));
+    a += (size_t)snprintf(asked + a, sizeof asked - a, "%s%c %.9g to %.9g", c ? ", " : "", "xyz"[c],
+                          lo[c], hi[c]);
+    m += (size_t)snprintf(made + m, sizeof made - m, "%s%c %.9g to %.9g", c ? ", " : "", "xyz"[c],
+                          origin + (double)box->begin[c] * D, origin + (double)box->end[c] * D);
+  }
+  if (most > OFF_LATTICE)
+    mpsi_log(p->context, MPS_CONTEXT_LOG_WARNING,
+             "%s: the box asked for is %s m, the one made %s m: its faces lie up to %.3g spacings "
+             "off those of the lattice of %g m about the origin",
+             by.function, asked, made, most, p->def.spacing);
+}
+
 /* Only if `status`, of the caller's arguments, is MPS_OK. */
 static mps_status fill_box(mps_particles *p, filler by, mps_status status, const double *lo,
                            const double *hi, int64_t *added) {
@@ -277,18 +308,20 @@ static mps_status fill_box(mps_particles *p, filler by, mps_status status, const
   if (status == MPS_OK) status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, by, lo, hi, &box);
   if (status == MPS_OK) status = box_runs(p, by, &box, &runs, &complete);
-  return put_runs(p, by, status, &runs, complete, added);
+  status = put_runs(p, by, status, &runs, complete, added);
+  if (status == MPS_OK && !by.inside) warn_of_faces(p, by, &box, lo, hi);
+  return status;
 }
 
 mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, const double *hi,
                                   int64_t *added) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   return fill_box(particles, (filler){__func__, "lo, hi", NULL, NULL}, MPS_OK, lo, hi, added);
 }
 
 mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, const double *hi,
                                     mps_particles_predicate_fn inside, void *user, int64_t *added) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_status status = MPS_OK;
   if (!inside)
     status = mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "inside is NULL");
@@ -327,9 +360,22 @@ static mps_status read_ball(const mps_particles *p, const char *function, const 
   return MPS_OK;
 }
 
+/* A ball is made of whole sites: small ones are another size. `sites` NaN: others were there. */
+static void warn_of_ball(const mps_particles *p, const ball *b, double radius, double sites) {
+  const double pi = 3.14159265358979324, D = p->def.spacing;
+  const double asked =
+      b->dim == 3 ? 4.0 / 3.0 * pi * radius * radius * radius : pi * radius * radius;
+  const double made = sites * (b->dim == 3 ? D * D * D : D * D);
+  if (fabs(made - asked) > OFF_BALL * asked)
+    mpsi_log(p->context, MPS_CONTEXT_LOG_WARNING,
+             "mps_particles_fill_ball: the ball asked for has %.6g m%d, the one made %.6g: radius "
+             "is %.3g spacings",
+             asked, b->dim, made, radius / D);
+}
+
 mps_status mps_particles_fill_ball(mps_particles *particles, const double *centre_of_ball,
                                    double radius, int64_t *added) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   ball b = {.dim = 0};
   double lo[3] = {0.0}, hi[3] = {0.0};
   const mps_status status = read_ball(particles, __func__, centre_of_ball, radius, &b);
@@ -337,8 +383,14 @@ mps_status mps_particles_fill_ball(mps_particles *particles, const double *centr
     lo[c] = b.centre[c] - radius;
     hi[c] = b.centre[c] + radius;
   }
-  return fill_box(particles, (filler){__func__, "centre, radius", in_ball, &b}, status, lo, hi,
-                  added);
+  int64_t made = 0;
+  const filler by = {__func__, "centre, radius", in_ball, &b};
+  const double before = runs_sites(&particles->sites);
+  const mps_status filled = fill_box(particles, by, status, lo, hi, &made);
+  if (filled != MPS_OK) return filled;
+  if (added) *added = made;
+  warn_of_ball(particles, &b, radius, before == 0.0 ? (double)made : NAN);
+  return MPS_OK;
 }
 
 /* ---- polygon --------------------------------------------------------------------------------- */
@@ -423,9 +475,28 @@ static mps_status fill_shape(const mps_particles *p, const char *function, const
                    "xy: the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);
 }
 
+/* Of edges along an axis the one farthest off the faces of the sites; oblique ones are stairs. */
+static void warn_of_edges(const mps_particles *p, const polygon *s) {
+  double most = 0.0, at = 0.0;
+  int32_t across = 0;
+  for (int64_t k = 0; k < s->n; k++)
+    for (int32_t c = 0; c < 2; c++) {
+      const double *a = corner(s, k), *b = corner(s, k + 1);
+      if (fabs(a[c] - b[c]) > ON_EDGE * p->def.spacing) continue;
+      const double off = off_lattice(p, c, a[c]);
+      if (off > most) most = off, at = a[c], across = c;
+    }
+  if (!(most > OFF_LATTICE)) return;
+  const double made = p->def.origin[across] + (double)first_site(p, across, at) * p->def.spacing;
+  mpsi_log(p->context, MPS_CONTEXT_LOG_WARNING,
+           "mps_particles_fill_polygon: the edge at %c = %.9g m is made at %.9g m: it lies %.3g "
+           "spacings off the faces of the lattice of %g m about the origin",
+           "xyz"[across], at, made, most, p -> def.spacing);
+}
+
 mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices, const double *xy,
                                       int64_t *added) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   const polygon shape = {.xy = xy, .n = vertices};
   mpsi_site_runs runs = {0};
   bool complete = true;
@@ -434,5 +505,8 @@ mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices
   status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
   if (status == MPS_OK) status = fill_shape(particles, __func__, &shape, &runs, &complete);
-  return put_runs(particles, (filler){__func__, "xy", NULL, NULL}, status, &runs, complete, added);
+  status =
+      put_runs(particles, (filler){__func__, "xy", NULL, NULL}, status, &runs, complete, added);
+  if (status == MPS_OK) warn_of_edges(particles, &shape);
+  return status;
 }

@@ -8,17 +8,15 @@
  * and rows are sorted, so the result is the same for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
-#include <mps/neighbours.h>
+#include <mps/experimental/neighbours.h>
 
 #include <string.h>
 
 #define MAX_BLOCKS 128
 #define MIN_BLOCK 2048 /* particles */
 #define MAX_COUNT UINT32_MAX
-#define MIN_RADIUS 1e-150 /* m: its square and that of the maximum are normal numbers */
-#define MAX_RADIUS 1e150
 
 /* Cells are counted from a particle in the middle of the others. Up to 2^30 cells away, rounding
  * moves a quotient by less than 2^-20, so a cell 2^-18 larger than the radius keeps neighbours in
@@ -297,30 +295,6 @@ static void find_pairs(void *data, int64_t block, int32_t worker) {
 
 /* ---- the object ------------------------------------------------------------------------------ */
 
-static const mps_neighbours_def neighbours_defaults = {
-    .struct_size = sizeof(mps_neighbours_def), .dim = 2, .radius = NAN};
-
-mps_status mps_neighbours_def_init(mps_neighbours_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_neighbours_def, def, size, &neighbours_defaults);
-}
-
-static mps_status check_def(mps_context *context, const char *function,
-                            const mps_neighbours_def *def) {
-  if (def->dim != 2 && def->dim != 3)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
-  if (!(def->radius >= MIN_RADIUS && def->radius <= MAX_RADIUS))
-    return mpsi_fail(
-        context, function, MPS_ERROR_ARGUMENT, "radius is %s m, must be > 0, from %g to %g",
-        mpsi_outside(def->radius, MIN_RADIUS, MAX_RADIUS).text, MIN_RADIUS, MAX_RADIUS);
-  if (def->half != 0 && def->half != 1)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "half is %d, must be 0 or 1",
-                     def->half);
-  if (def->reserved != 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "reserved is %d, must be 0",
-                     def->reserved);
-  return MPS_OK;
-}
-
 /* Memory for `count` items without the former contents, in place of `memory`, or NULL; with an
  * eighth to spare, so that lists which change a little from step to step do not allocate at each.
  */
@@ -336,12 +310,11 @@ static void *make_room(mps_context *context, void *memory, int64_t *capacity, in
 
 mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def *def,
                                  mps_neighbours **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_neighbours_def known = neighbours_defaults;
+  mps_neighbours_def known;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known);
-  if (status == MPS_OK) status = check_def(context, __func__, &known);
   if (status != MPS_OK) return status;
   mps_neighbours *nb = mpsi_alloc(context, 1, sizeof *nb);
   void *offsets = mpsi_alloc(context, 1, sizeof(int64_t));
@@ -408,7 +381,7 @@ static bool make_scratch(mps_neighbours *nb, int64_t n, int64_t blocks) {
 }
 
 mps_status mps_neighbours_build(mps_neighbours *neighbours, const mps_view *position) {
-  if (!neighbours) return MPS_ERROR_ARGUMENT;
+  if (!neighbours) return mpsi_null(__func__, "neighbours");
   mps_neighbours *nb = neighbours;
   mps_status status = check_view(nb, __func__, position);
   if (status != MPS_OK) return status;
@@ -448,7 +421,7 @@ mps_status mps_neighbours_build(mps_neighbours *neighbours, const mps_view *posi
 
 mps_status mps_neighbours_lists(const mps_neighbours *neighbours, int64_t *count,
                                 const int64_t **offsets, const int64_t **indices) {
-  if (!neighbours) return MPS_ERROR_ARGUMENT;
+  if (!neighbours) return mpsi_null(__func__, "neighbours");
   if (count) *count = neighbours->lists.count;
   if (offsets) *offsets = neighbours->lists.offsets;
   if (indices) *indices = neighbours->lists.indices;

@@ -10,26 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const mps_particles_def particles_defaults = {
-    .struct_size = sizeof(mps_particles_def), .dim = 2, .spacing = NAN};
-
-mps_status mps_particles_def_init(mps_particles_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_particles_def, def, size, &particles_defaults);
-}
-
 /* ---- life ------------------------------------------------------------------------------------ */
-
-static mps_status check_def(mps_context *context, const char *function,
-                            const mps_particles_def *def) {
-  if (def->dim != 2 && def->dim != 3)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
-  mps_status status =
-      mpsi_check_range(context, function, "spacing", def->spacing, MPSI_RANGE_SPACING);
-  static const char *const names[] = {"origin[0]", "origin[1]", "origin[2]"};
-  for (int c = 0; c < 3 && status == MPS_OK; c++)
-    status = mpsi_check_range(context, function, names[c], def->origin[c], MPSI_RANGE_PLACE);
-  return status;
-}
 
 static void free_set(mps_particles *p) {
   mps_context *context = p->context;
@@ -49,12 +30,11 @@ static void free_set(mps_particles *p) {
 
 mps_status mps_particles_create(mps_context *context, const mps_particles_def *def,
                                 mps_particles **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_particles_def known = particles_defaults;
+  mps_particles_def known;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known);
-  if (status == MPS_OK) status = check_def(context, __func__, &known);
   if (status != MPS_OK) return status;
   mps_particles *p = mpsi_alloc(context, 1, sizeof *p);
   if (!p) return mpsi_fail_memory(context, __func__, sizeof *p);
@@ -203,6 +183,8 @@ int64_t mpsi_particles_made(const mps_particles *p) { return p->next_id; }
 static mps_status check_select(const mps_particles *p, const char *function, const double *lo,
                                const double *hi, int64_t capacity, const int64_t *ids,
                                const int64_t *count) {
+  const mps_status status = mpsi_particles_committed(p, function);
+  if (status != MPS_OK) return status;
   if (!lo || !hi || !count)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
                      !lo   ? "lo"
@@ -255,7 +237,7 @@ static mps_status select_few(const mps_particles *p, const char *function, const
 mps_status mps_particles_select_box(const mps_particles *particles, const double *lo,
                                     const double *hi, int64_t capacity, int64_t *count,
                                     int64_t *ids) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
   if (status != MPS_OK) return status;
   if (particles->ids.sparse) return select_few(particles, __func__, lo, hi, capacity, ids, count);
@@ -294,7 +276,7 @@ mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const
 }
 
 int64_t mps_particles_nearest(const mps_particles *particles, const double *x) {
-  if (!particles || !x) return -1;
+  if (!particles || !x || mpsi_particles_committed(particles, __func__) != MPS_OK) return -1;
   const int64_t *id = particles->fields[MPSI_FIELD_ID]->data;
   int64_t best = -1;
   double best_square = INFINITY;

@@ -135,7 +135,10 @@ void mpsi_particles_release(mps_particles *particles, mpsi_holder *holder); /* s
  * an error. */
 mps_status mpsi_particles_notify(mps_particles *particles, const char *function, const char *field,
                                  const double *former);
-/* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
+/* MPS_ERROR_STATE while the caller edits a field: for functions that read values of the set, which
+ * may not be in range yet. */
+mps_status mpsi_particles_committed(const mps_particles *particles, const char *function);
+/* At the beginning of each step: the same, and after a fault of the caller's executor. */
 mps_status mpsi_particles_ready(const mps_particles *particles, const char *function);
 
 /* Before the caller changes values or number of the particles: MPS_ERROR_STATE in a callback of a
@@ -185,6 +188,16 @@ void mpsi_particles_take_out(mps_particles *particles, const uint8_t *gone);
 /* MPS_ERROR_STATE when particles cannot be added: a holder does not allow it, or a field is being
  * edited. */
 mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
+
+/* crowding.c: MPS_ERROR_ARGUMENT where a particle from index `from` on shares its place with
+ * another one; logs a warning where space is filled above 1.5 of its volume. `amount`: of a solver
+ * that reads the field `volume`; NULL: each particle has the volume of the spacing. */
+typedef struct mpsi_amount {
+  double measure; /* thickness (m) or angle of the sector (rad) */
+  bool axisymmetric;
+} mpsi_amount;
+mps_status mpsi_particles_check_crowding(mps_particles *particles, const char *function,
+                                         int64_t from, const mpsi_amount *amount);
 
 /* Number of particles that the set ever had: ids lie below it. */
 int64_t mpsi_particles_made(const mps_particles *particles);

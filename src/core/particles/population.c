@@ -191,7 +191,7 @@ static mps_status append_part(mps_particles *p, const char *function, mps_status
 }
 
 mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   const int32_t dim = particles->def.dim;
   const int64_t first = particles->count;
   mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
@@ -319,8 +319,8 @@ static mps_status check_removal(const mps_particles *p, const char *function, in
   return MPS_OK;
 }
 
-mps_status mps_particles_remove(mps_particles *particles, int64_t count, const int64_t *ids) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+mps_status mps_particles_remove(mps_particles *particles, const int64_t *ids, int64_t count) {
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = particles->context;
   const mpsi_holder *shared = sharer(particles);
   int64_t known = 0, all = count;

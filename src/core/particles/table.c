@@ -9,12 +9,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 #include "core/base/nearest.h"
 #include "core/base/symmetric.h"
 #include "fields.h"
 
-#include <mps/geostatic.h>
+#include <mps/soil.h>
+#include <mps/experimental/soil.h>
 
 enum { MOST_NEAR = 256, BLOCK = 1024, HULL_STEPS = 64 };
 #define MAX_POINTS (INT64_C(1) << 31)
@@ -24,12 +25,6 @@ enum { MOST_NEAR = 256, BLOCK = 1024, HULL_STEPS = 64 };
 #define BEYOND 1e-9          /* of R^2: the distance of a plane between a place and the points */
 
 static const char function[] = "mps_particles_set_table";
-
-static const mps_table_def table_defaults = {.struct_size = sizeof(mps_table_def), .reach = NAN};
-
-mps_status mps_table_def_init(mps_table_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_table_def, def, size, &table_defaults);
-}
 
 typedef struct table {
   mps_particles *set;
@@ -224,7 +219,7 @@ static void set_block(void *data, int64_t block, int32_t worker) {
     b->distance = sqrt(f.near[0].square);
     if (b->distance > t->def.reach) {
       b->refused = i;
-    } else if (t->def.interpolation == MPS_TABLE_LINEAR) {
+    } else if (t->def.interpolation == MPS_TABLE_INTERPOLATION_LINEAR) {
       good = interpolate(&f, at, out, &outside);
       if (!good) b->refused = i, b->flat = true;
     } else {
@@ -238,12 +233,13 @@ static void set_block(void *data, int64_t block, int32_t worker) {
 static mps_status refuse(const table *t, const struct block *b) {
   const int64_t *id = t->set->fields[MPSI_FIELD_ID]->data;
   (void)(b->flat
-             ? mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT,
-                         "positions: the %d points nearest to particle %lld lie too near a line "
-                         "or plane for a linear function, others do not: MPS_TABLE_NEAREST "
-                         "takes them",
-                         t->tree.count < MOST_NEAR ? (int)t->tree.count : MOST_NEAR,
-                         (long long)id[b->refused])
+             ? mpsi_fail(
+                   t->context, function, MPS_ERROR_ARGUMENT,
+                   "positions: the %d points nearest to particle %lld lie too near a line "
+                   "or plane for a linear function, others do not: MPS_TABLE_INTERPOLATION_NEAREST "
+                   "takes them",
+                   t->tree.count < MOST_NEAR ? (int)t->tree.count : MOST_NEAR,
+                   (long long)id[b->refused])
              : mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld is %g m from the nearest of positions, reach is %g m",
                          (long long)id[b->refused], b->distance, t->def.reach));
@@ -263,27 +259,6 @@ static mps_status find_values(table *t, int64_t *outside) {
 }
 
 /* ---- arguments ------------------------------------------------------------------------------- */
-
-static mps_status check_def(const table *t) {
-  const mps_table_def *d = &t->def;
-  if (d->interpolation != MPS_TABLE_NEAREST && d->interpolation != MPS_TABLE_LINEAR)
-    return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT,
-                     "interpolation is %d, must be MPS_TABLE_NEAREST (0) or MPS_TABLE_LINEAR (1)",
-                     (int)d->interpolation);
-  if (d->extrapolate != 0 && d->extrapolate != 1)
-    return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT, "extrapolate is %d, must be 0 or 1",
-                     (int)d->extrapolate);
-  if (d->reserved != 0)
-    return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT, "reserved is %d, must be 0",
-                     (int)d->reserved);
-  if (d->reach <= 0.0)
-    return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT,
-                     "reach is %g m, must be > 0, or NaN for any distance", d->reach);
-  if (d->extrapolate && (d->interpolation != MPS_TABLE_LINEAR || isnan(d->reach)))
-    return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT,
-                     "extrapolate is 1, must be 0 without MPS_TABLE_LINEAR and a reach");
-  return MPS_OK;
-}
 
 static mps_status check_points(const table *t, const double *positions) {
   const int64_t n = t->tree.count;
@@ -355,7 +330,8 @@ static mps_status read_table(table *t, const char *field, const double *position
     return mpsi_fail_memory(t->context, function,
                             (size_t)(t->tree.count + n * t->components) * sizeof *t->out);
   mpsi_nearest_build(&t->tree);
-  mps_status status = t->def.interpolation == MPS_TABLE_LINEAR ? find_rank(t, positions) : MPS_OK;
+  mps_status status =
+      t->def.interpolation == MPS_TABLE_INTERPOLATION_LINEAR ? find_rank(t, positions) : MPS_OK;
   if (status == MPS_OK) status = find_values(t, outside);
   return status == MPS_OK ? write_field(t, field) : status;
 }
@@ -364,10 +340,10 @@ mps_status mps_particles_set_table(mps_particles *particles, const char *field, 
                                    const double *positions, int32_t components,
                                    const double *values, const mps_table_def *def,
                                    int64_t *outside) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   table t = {.set = particles,
              .context = particles->context,
-             .def = table_defaults,
+             .def = mps_table_defaults(),
              .tree = {.x = positions, .count = count, .dim = particles->def.dim},
              .components = components,
              .values = values};
@@ -375,7 +351,6 @@ mps_status mps_particles_set_table(mps_particles *particles, const char *field, 
   mps_status status = mpsi_particles_writable(particles, function);
   if (status == MPS_OK && def)
     status = MPSI_DEF_READ(t.context, function, mps_table_def, def, &t.def);
-  if (status == MPS_OK) status = check_def(&t);
   if (status == MPS_OK) status = check_shape(&t, field);
   if (status == MPS_OK) status = check_points(&t, positions);
   if (status != MPS_OK) return status;

@@ -7,12 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Into the memory that `out` has. */
 static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state *out) {
-  *out = (mpsi_state){.context = of->context, .solver = of->solver};
+  *out = (mpsi_state){
+      .context = of->context, .solver = of->solver, .item = out->item, .capacity = out->capacity};
   of->list(out, of->solver);
+  if (of->list_also) of->list_also(out, of->solver);
   if (of->particles && mpsi_state_any_particles(of)) mpsi_particles_list_state(out, of->particles);
   if (!out->refused) return MPS_OK;
-  mpsi_free(of->context, out->item);
   return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
 }
 
@@ -34,28 +36,33 @@ static void read_values(const mpsi_state *s, mps_snapshot *out) {
     memcpy(to->name, from->name, sizeof to->name);
     to->type = from->type;
     to->agrees = from->agrees, to->table = from->table != NULL, to->text = from->text;
+    to->optional = from->optional;
     to->columns = from->columns, to->rows = from->rows;
     mpsi_state_read_item(from, to->data);
   }
   out->state.count = s->count;
 }
 
-/* `status` is that of the call so far: the ranks of a solver that reads edits agree on it. */
+/* `status` is that of the call so far: the ranks of a solver that reads edits agree on it. A
+ * snapshot that is filled again and again keeps the list's memory. */
 static mps_status get(const mpsi_state_of *of, const char *function, mps_status status,
-                      mps_snapshot *out) {
+                      mps_snapshot *out, bool keeps) {
   mpsi_state s = {.item = NULL};
+  if (keeps && out) s.item = out->list, s.capacity = out->list_capacity;
   if (status == MPS_OK && of->particles) status = mpsi_particles_ready(of->particles, function);
   if (status == MPS_OK) status = list(of, function, &s);
-  const bool listed = status == MPS_OK;
-  if (listed) status = reserve_values(of, function, &s, out);
+  if (status == MPS_OK) status = reserve_values(of, function, &s, out);
   if (of->take_in) status = of->take_in(of->solver, function, status);
   if (status == MPS_OK) read_values(&s, out);
-  if (listed) mpsi_free(of->context, s.item);
+  if (keeps && out)
+    out->list = s.item, out->list_capacity = s.capacity;
+  else
+    mpsi_free(of->context, s.item);
   return status;
 }
 
 mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
-  return get(of, function, MPS_OK, out);
+  return get(of, function, MPS_OK, out, false);
 }
 
 /* ---- snapshots ----------------------------------------------------------------------------- */
@@ -103,6 +110,7 @@ void mps_snapshot_destroy(mps_snapshot **snapshot) {
   mpsi_values_free(context, &old->state);
   mpsi_values_free(context, &old->fields);
   mpsi_state_forget(&old->identity);
+  mpsi_free(context, old->list);
   mpsi_free(context, old);
   mpsi_context_release(context);
 }
@@ -129,7 +137,7 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
     status = mpsi_fail_memory(of->context, function, sizeof *made);
   if (status == MPS_OK && of->particles)
     status = mpsi_particles_reserve_state(of->particles, function, made);
-  status = get(of, function, status, made);
+  status = get(of, function, status, made, true);
   if (status == MPS_OK && of->particles) mpsi_particles_get_state(of->particles, made);
   if (status != MPS_OK && snapshot && !*snapshot) mps_snapshot_destroy(&made);
   if (status == MPS_OK) *snapshot = made;
@@ -189,10 +197,28 @@ static const mpsi_value *value_of(const mps_snapshot *from, const mpsi_state *s,
   return mpsi_values_find(&from->state, s->item[k].name);
 }
 
+/* Of a table that both have. */
+static mps_status match_optional(const way_back *w, const mpsi_state_item *now,
+                                 const mpsi_value *then) {
+  const bool text = now->type == MPSI_STATE_BYTES;
+  if (then->rows == 0 || now->fits(now->owner, then->rows, then->data)) return MPS_OK;
+  return mpsi_fail(w->of->context, w->function, text ? w->status : MPS_ERROR_FORMAT,
+                   "in %s %s is %.*s, not that of this solver", w->source, now->name,
+                   (int)(text ? then->rows : 9), text ? (const char *)then->data : "malformed");
+}
+
 static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapshot *from) {
+  int32_t needed = 0, there = 0;
+  for (int32_t k = 0; k < from->state.count; k++) there += !from->state.item[k].optional;
   for (int32_t k = 0; k < s->count; k++) {
     const mpsi_state_item *now = &s->item[k];
     const mpsi_value *then = value_of(from, s, k);
+    if (now->optional) {
+      const mps_status status = then ? match_optional(w, now, then) : MPS_OK;
+      if (status != MPS_OK) return status;
+      continue;
+    }
+    needed++;
     const bool same = then && then->type == now->type && then->columns == now->columns &&
                       (now->table || then->rows == now->rows);
     if (!same)
@@ -201,19 +227,22 @@ static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapsh
                        then ? "another number of" : "no", now->name);
     const mps_status status = now->agrees ? compare(w, now, then) : MPS_OK;
     if (status != MPS_OK) return status;
+    if (!mpsi_state_bounded(now, then))
+      return mpsi_fail(w->of->context, w->function, MPS_ERROR_FORMAT,
+                       "%s is malformed: its '%s' is beyond what a run can count", w->source,
+                       now->name);
   }
-  if (from->state.count == s->count) return MPS_OK;
+  if (there == needed) return MPS_OK;
   return mpsi_fail(w->of->context, w->function, w->status, "%s has %d items, this solver %d",
-                   w->source, from->state.count, s->count);
+                   w->source, there, needed);
 }
 
 mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
                             const char *source, mps_status disagreement) {
   const way_back w = {of, function, source, disagreement};
-  mpsi_state s;
+  mpsi_state s = {.item = NULL};
   mps_status status = list(of, function, &s);
-  if (status != MPS_OK) return status;
-  status = match(&w, &s, from);
+  if (status == MPS_OK) status = match(&w, &s, from);
   mpsi_free(of->context, s.item);
   return status;
 }
@@ -222,7 +251,8 @@ static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
   for (int32_t k = 0; k < s->count; k++) {
     const mpsi_state_table *table = s->item[k].table;
     const mpsi_value *then = value_of(from, s, k);
-    if (table && table->reserve && !table->reserve(s->item[k].owner, then->rows, then->data))
+    if (table && table->reserve && then &&
+        !table->reserve(s->item[k].owner, then->rows, then->data))
       return false;
   }
   return true;
@@ -232,11 +262,10 @@ mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
                               const mps_snapshot *from, const char *source, mps_status disagreement,
                               mpsi_state_prepared *out) {
   const way_back w = {of, function, source, disagreement};
-  mpsi_state s;
+  mpsi_state s = {.item = NULL};
   *out = (mpsi_state_prepared){.from = from};
   mps_status status = list(of, function, &s);
-  const bool listed = status == MPS_OK;
-  if (listed) status = match(&w, &s, from);
+  if (status == MPS_OK) status = match(&w, &s, from);
   const bool room =
       status == MPS_OK && reserve(&s, from) &&
       (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
@@ -254,7 +283,7 @@ mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
     mpsi_particles_drop_prepared(of->particles, out->scratch);
     mpsi_particles_drop_fields(of->particles, fields);
   }
-  if (listed && status != MPS_OK) mpsi_free(of->context, s.item);
+  if (status != MPS_OK) mpsi_free(of->context, s.item);
   if (status != MPS_OK) return status;
   out->item = s.item;
   out->count = s.count;

@@ -15,22 +15,15 @@
  *     mpsi_state_f64(s, "force", foo->boundary[k].force, 3);
  *     mpsi_state_leave(s);
  *   }
- *   static mpsi_state_of state_of(mps_foo *foo) {
+ *   static mpsi_state_of state_of(void *foo) {
  *     return (mpsi_state_of){.solver = foo, .name = "foo", .context = foo->context,
  *                            .particles = foo->particles, .identity = &foo->identity,
  *                            .list = list_state, .bind = bind_fields,
  *                            .time = foo->time, .dt = foo->dt, .steps = foo->steps};
  *   }
- *   mps_status mps_foo_snapshot(mps_foo *foo, mps_snapshot **snapshot) {
- *     if (!foo) return MPS_ERROR_ARGUMENT;
- *     const mpsi_state_of of = state_of(foo);
- *     return mpsi_state_snapshot(&of, __func__, snapshot);
- *   }
- *   // mps_foo_rollback: mpsi_state_rollback; mps_foo_save: mpsi_checkpoint_save;
- *   // mps_foo_restore: mpsi_checkpoint_restore
  *
- * and `mpsi_state_forget(&foo->identity)` where foo is destroyed. Values whose number changes in
- * steps, or that are kept in another form, are a mpsi_state_table.
+ * which is the `state` of its kind (solver/solver_base.h): snapshots, rollback and files follow.
+ * Values whose number changes in steps, or that are kept in another form, are a mpsi_state_table.
  *
  * A rollback has two phases: first everything is compared and all memory is allocated; then values
  * are written, which cannot fail. So an error changes nothing.
@@ -38,23 +31,28 @@
 #ifndef MPSI_STATE_H
 #define MPSI_STATE_H
 
-#include "core/internal.h"
+#include "core/base/exact.h"
 
 #include <mps/particles.h>
 #include <mps/solver.h>
 
 #include <string.h>
 
-#define MPSI_STATE_NAME 96 /* bytes of an item's name, with the terminating zero */
+#define MPSI_STATE_MOST (INT64_C(1) << 53) /* of a counter in a file */
+#define MPSI_STATE_NAME 96                 /* bytes of an item's name, with the terminating zero */
 
 typedef struct mpsi_state mpsi_state; /* a list */
 
 /* ---- listing ------------------------------------------------------------------------------- */
 
 /* Values of fixed number, `count` of them at an address that is valid until the list is used.
- * Copied out and in. In a file all are float64 or int64. */
+ * Copied out and in. In a file all are float64 or int64. Integers count something, and those of a
+ * file must be within 2^53, so that none overflows in any run; `bits` may have all values, and the
+ * limbs of exact sums those that additions leave. */
 void mpsi_state_f64(mpsi_state *state, const char *name, double *values, int64_t count);
 void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_t count);
+void mpsi_state_bits(mpsi_state *state, const char *name, int64_t *values, int64_t count);
+void mpsi_state_exact(mpsi_state *state, const char *name, mpsi_exact *sums, int64_t count);
 void mpsi_state_bool(mpsi_state *state, const char *name, bool *value);
 
 /* The members of a reaction. */
@@ -92,6 +90,12 @@ void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_
 /* A table of another object than the solver, which is passed to its functions instead. */
 void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_state_table *table,
                              void *owner);
+/* The same, of a state that may have another list of such tables: a table that it lacks has no rows
+ * then, one that only it has is left out. `fits`: whether rows of a state, one or more, can be its
+ * own. On ranks all have the same rows. */
+typedef bool (*mpsi_state_fits_fn)(const void *owner, int64_t rows, const void *values);
+void mpsi_state_add_optional(mpsi_state *state, const char *name, const mpsi_state_table *table,
+                             mpsi_state_fits_fn fits, void *owner);
 
 /* ---- a solver's description ---------------------------------------------------------------- */
 
@@ -104,6 +108,7 @@ typedef struct mpsi_state_of {
   mps_particles *particles; /* NULL: none goes along */
   mpsi_identity **identity; /* a member of the solver, NULL at first */
   void (*list)(mpsi_state *state, void *solver);
+  void (*list_also)(mpsi_state *state, void *solver); /* optional tables after these; may be NULL */
   /* Of a file only, may be NULL: do the values fit, such as indices into arrays? False: the file is
    * malformed, `*what` names the fault. It may correct a value in place. */
   bool (*fits)(void *solver, mps_snapshot *values, const char **what);
@@ -171,7 +176,7 @@ void mpsi_state_forget(mpsi_identity **identity);
 typedef struct mpsi_value {
   char name[MPSI_STATE_NAME];
   mpsi_state_type type;
-  bool agrees, table, text; /* text: terminated bytes */
+  bool agrees, table, text, optional; /* text: terminated bytes */
   int32_t columns;
   int64_t rows;
   void *data;
@@ -188,6 +193,8 @@ struct mps_snapshot {
   mpsi_identity *identity; /* of the solver that filled it */
   int64_t particles;
   mpsi_values state, fields;
+  struct mpsi_state_item *list; /* memory of the last list, for the next one */
+  int32_t list_capacity;
 };
 
 static inline int64_t mpsi_state_size(mpsi_state_type type) {

@@ -40,6 +40,14 @@ void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_
   add_at(state, name, MPSI_STATE_I64, MPSI_STATE_WIDE, values, count);
 }
 
+void mpsi_state_bits(mpsi_state *state, const char *name, int64_t *values, int64_t count) {
+  add_at(state, name, MPSI_STATE_I64, MPSI_STATE_BITS, values, count);
+}
+
+void mpsi_state_exact(mpsi_state *state, const char *name, mpsi_exact *sums, int64_t count) {
+  add_at(state, name, MPSI_STATE_I64, MPSI_STATE_EXACT, sums, count * MPSI_EXACT_LIMBS);
+}
+
 void mpsi_state_bool(mpsi_state *state, const char *name, bool *value) {
   add_at(state, name, MPSI_STATE_I64, MPSI_STATE_BOOL, value, 1);
 }
@@ -102,6 +110,15 @@ void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_sta
   made->owner = owner;
 }
 
+void mpsi_state_add_optional(mpsi_state *state, const char *name, const mpsi_state_table *table,
+                             mpsi_state_fits_fn fits, void *owner) {
+  const int32_t before = state->count;
+  mpsi_state_add_table_of(state, name, table, owner);
+  if (state->count == before) return;
+  state->item[before].optional = true;
+  state->item[before].fits = fits;
+}
+
 void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table) {
   mpsi_state_add_table_of(state, name, table, state->solver);
 }
@@ -156,11 +173,23 @@ void mpsi_state_read_item(const mpsi_state_item *from, void *to) {
   }
 }
 
+bool mpsi_state_bounded(const mpsi_state_item *of, const mpsi_value *from) {
+  const int64_t count = from->rows * from->columns, *integer = from->data;
+  if (of->type != MPSI_STATE_I64 || of->table || of->width == MPSI_STATE_BITS) return true;
+  for (int64_t k = 0; k < count && of->width == MPSI_STATE_EXACT; k += MPSI_EXACT_LIMBS)
+    if (!mpsi_exact_is_sum(integer + k)) return false;
+  for (int64_t k = 0; k < count && of->width != MPSI_STATE_EXACT; k++)
+    if (integer[k] > MPSI_STATE_MOST || integer[k] < -MPSI_STATE_MOST) return false;
+  return true;
+}
+
 void mpsi_state_write_item(const mpsi_state_item *to, const mpsi_value *from) {
-  const int64_t count = from->rows * from->columns;
-  const int64_t *integer = from->data;
+  const int64_t count = from ? from->rows * from->columns : 0;
+  const int64_t *integer = from ? from->data : NULL;
   if (to->agrees) return;
-  if (to->table) {
+  if (!from) {
+    to->table->set(to->owner, 0, NULL);
+  } else if (to->table) {
     to->table->set(to->owner, from->rows, from->data);
   } else if (to->width == MPSI_STATE_BOOL) {
     for (int64_t k = 0; k < count; k++) ((bool *)to->data)[k] = integer[k] != 0;

@@ -146,12 +146,16 @@ static bool follows(const mpsi_site_run *a, const mpsi_site_run *b) {
   return a->j != b->j ? a->j < b->j : a->end < b->begin;
 }
 
+/* Twice the distance of a fill from the origin, in spacings. */
+static bool near(int64_t site) { return site >= -(INT64_C(1) << 41) && site <= INT64_C(1) << 41; }
+
 static mps_status check_sites(const mps_particles *p, const char *function,
                               const mps_snapshot *from) {
   const mpsi_value *value = mpsi_values_find(&from->state, OCCUPIED);
   const mpsi_site_run *run = value ? value->data : NULL;
   for (int64_t k = 0; value && k < value->rows; k++)
-    if (run[k].begin >= run[k].end || (k > 0 && !follows(&run[k - 1], &run[k])))
+    if (run[k].begin >= run[k].end || !near(run[k].begin) || !near(run[k].end) || !near(run[k].j) ||
+        !near(run[k].k) || (k > 0 && !follows(&run[k - 1], &run[k])))
       return malformed(p, function, "its lattice sites");
   return MPS_OK;
 }

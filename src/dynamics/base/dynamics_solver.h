@@ -16,8 +16,10 @@
 #include "dynamics/pairs/layout.h"
 #include "dynamics/pairs/mesh.h"
 #include "dynamics/pairs/structure.h"
+#include "dynamics/step/bound.h"
 #include "dynamics/step/budget.h"
 #include "dynamics/step/kernels.h"
+#include "solver/solver_base.h"
 
 #include <mps/dynamics.h>
 #include <mps/io.h>
@@ -27,13 +29,10 @@
 #define MPSI_DYN_MOST_SPACINGS 1e9 /* extent of a set: positions keep a millionth of a spacing */
 
 struct mps_dynamics {
-  mps_context *context;
-  mps_particles *particles;
-  mpsi_holder holder;              /* of the particles */
+  MPSI_SOLVER_BASE;
   mps_dynamics_def def;            /* with a share in the material */
   mps_kernel *kernel;              /* w(r), shared */
   double spacing, radius, density; /* D, re (m), n0 */
-  mps_domain *domain;              /* shared; NULL: none */
   int64_t count;                   /* particles, free-field columns included */
   int64_t body;                    /* particles of the body: 0 .. body - 1 */
   int64_t ghosts;                  /* of other ranks: count .. count + ghosts - 1 */
@@ -53,10 +52,7 @@ struct mps_dynamics {
   mpsi_dynamics_damping damping;
   double torque; /* factor on all torques: 1, or 2 as printed */
 
-  /* boundaries and loads: by number, NULL where free */
-  mpsi_dynamics_boundary **boundary;
-  mpsi_dynamics_load **load;
-  int32_t boundary_room, load_room;
+  /* what boundaries and loads do */
   mpsi_dynamics_bound *bound;            /* in order of component and memory */
   mpsi_dynamics_dashpot *dashpot;        /* columns first, then edges; from the far end of memory */
   mpsi_dynamics_dashpot *column_dashpot; /* those of the free-field columns */
@@ -76,10 +72,10 @@ struct mps_dynamics {
   int64_t base_step, steps;
   bool fresh;   /* no step since creation or restart: no history */
   bool checked; /* dt has been compared with the linear limit */
+  bool chosen;  /* dt is the caller's by mps_dynamics_set_dt: it may be above the limit */
   bool diverged;
-  bool begun;   /* works.start is known */
-  bool no_rate; /* restoring_old is of former moduli: damping has no rate yet */
-  mpsi_guard guard;
+  bool begun;            /* works.start is known */
+  bool no_rate;          /* restoring_old is of former moduli: damping has no rate yet */
   bool unread;           /* material fields have been edited, and are not consistent so far */
   bool cautious;         /* a rank has a signal that may fail: ranks agree before each step */
   bool begins;           /* the motion was edited on a rank; the next step starts from it */
@@ -88,9 +84,26 @@ struct mps_dynamics {
   bool have_limit;
   mps_dynamics_linear_limit limit; /* valid when have_limit */
   mpsi_dynamics_works works;
-  struct mpsi_identity *identity;      /* state.c */
   struct mpsi_dynamics_change *change; /* Under way, or NULL */
   mps_snapshot *present;               /* of mps_dynamics_refresh, NULL before the first */
+  mpsi_dynamics_bound_state limits;
+  const mpsi_dynamics_keeper *keeper; /* life/state.c */
 };
+
+/* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
+static inline int32_t mpsi_dynamics_boundary_count(const mps_dynamics *dynamics) {
+  return dynamics->conditions[MPSI_BOUNDARIES].room;
+}
+static inline mpsi_dynamics_boundary *mpsi_dynamics_boundary_of(const mps_dynamics *dynamics,
+                                                                int32_t number) {
+  return dynamics->conditions[MPSI_BOUNDARIES].own[number];
+}
+static inline int32_t mpsi_dynamics_load_count(const mps_dynamics *dynamics) {
+  return dynamics->conditions[MPSI_LOADS].room;
+}
+static inline mpsi_dynamics_load *mpsi_dynamics_load_of(const mps_dynamics *dynamics,
+                                                        int32_t number) {
+  return dynamics->conditions[MPSI_LOADS].own[number];
+}
 
 #endif

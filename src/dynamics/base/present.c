@@ -5,19 +5,21 @@
 #include "dynamics/base/dynamics_solver.h"
 
 mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function) {
-  return mpsi_guard_check(&dynamics->guard, dynamics->context, function);
+  const mps_status status = mpsi_guard_check(&dynamics->guard, dynamics->context, function);
+  dynamics->limits.changed = dynamics->limits.changed || status == MPS_OK;
+  return status;
 }
 
 double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int32_t component) {
   return mpsi_particles_column(dynamics->particles, name, component);
 }
 
-double mps_dynamics_time(const mps_dynamics *dynamics) {
-  if (!dynamics) return 0.0;
+double mpsi_dynamics_time(const void *solver) {
+  const mps_dynamics *dynamics = solver;
   return dynamics->base_time + (double)(dynamics->steps - dynamics->base_step) * dynamics->length;
 }
 
-int64_t mps_dynamics_steps(const mps_dynamics *dynamics) { return dynamics ? dynamics->steps : 0; }
+int64_t mpsi_dynamics_steps(const void *solver) { return ((const mps_dynamics *)solver)->steps; }
 
 double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k) {
   const mpsi_dynamics_state *s = &dynamics->state;

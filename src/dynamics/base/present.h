@@ -23,4 +23,7 @@ bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics);
 /* Arrays for the dissipation of Rayleigh damping. */
 mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function);
 
+double mpsi_dynamics_time(const void *dynamics); /* s */
+int64_t mpsi_dynamics_steps(const void *dynamics);
+
 #endif

@@ -5,17 +5,17 @@
 
 #include "core/base/exact.h"
 #include "dynamics/base/selection.h"
+#include "solver/conditions.h"
 
 #include <mps/dynamics.h>
 
 #include <stdbool.h>
 
 typedef struct mpsi_dynamics_boundary {
+  const mps_dynamics_boundary_def *def;
   mpsi_dynamics_part part;
   int32_t kind;
-  uint32_t dofs;                   /* held or driven */
-  int32_t normal;                  /* viscous */
-  double density, shear, pressure; /* viscous: of the half space, NaN: of each particle */
+  uint32_t dofs; /* held or driven */
   /* At the end of the step under way, driven: factor times displacement and velocity of the signal;
    * at its start: factor times acceleration; viscous: factor times velocity. 0 without signal. */
   double reach[3], speed[3], gain[3], incoming[3];
@@ -72,5 +72,9 @@ void mpsi_dynamics_use_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *room);
 void mpsi_dynamics_free_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *lists);
 /* Rates of all dashpots, from the fields. */
 void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
+
+extern const mpsi_condition_kind mpsi_dynamics_boundaries;
+mps_status mpsi_dynamics_get_reaction(void *dynamics, const char *function, mps_status status,
+                                      int32_t number, mps_reaction *out);
 
 #endif

@@ -26,8 +26,8 @@ static motion component(const mps_dynamics *dynamics, int32_t c) {
 
 mps_status mpsi_dynamics_evaluate_signals(mps_dynamics *dynamics, const char *function, double now,
                                           double then) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    mpsi_dynamics_boundary *b = dynamics->boundary[k];
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
+    mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, k);
     for (int c = 0; b && c < 2; c++) {
       mpsi_signal_motion start, end;
       const double factor = b->part.factor[c];
@@ -53,17 +53,18 @@ mps_status mpsi_dynamics_agree_signals(mps_dynamics *dynamics, const char *funct
                                        mps_status status, int32_t count, double *values) {
   mpsi_given list;
   mpsi_given_begin(&list);
-  for (int32_t k = 0; status == MPS_OK && k < dynamics->boundary_room; k++) {
-    const mpsi_dynamics_boundary *b = dynamics->boundary[k];
+  for (int32_t k = 0; status == MPS_OK && k < mpsi_dynamics_boundary_count(dynamics); k++) {
+    const mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, k);
     if (!b) continue;
     mpsi_give_vector(&list, "the displacement of a boundary", 2, b->reach);
     mpsi_give_vector(&list, "the velocity of a boundary", 2, b->speed);
     mpsi_give_vector(&list, "the acceleration of a boundary", 2, b->gain);
     mpsi_give_vector(&list, "the incoming velocity of a boundary", 2, b->incoming);
   }
-  for (int32_t k = 0; status == MPS_OK && k < dynamics->load_room; k++)
-    if (dynamics->load[k])
-      mpsi_give_vector(&list, "the present factor on a load", 2, dynamics->load[k]->now);
+  for (int32_t k = 0; status == MPS_OK && k < mpsi_dynamics_load_count(dynamics); k++)
+    if (mpsi_dynamics_load_of(dynamics, k))
+      mpsi_give_vector(&list, "the present factor on a load", 2,
+                       mpsi_dynamics_load_of(dynamics, k)->now);
   return mpsi_domain_agree_given_max(dynamics->domain, function, status, &list, count, values);
 }
 
@@ -86,7 +87,8 @@ void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics) {
 /* Velocity of the far end of a dashpot, m/s. */
 static double target(const mps_dynamics *dynamics, const mpsi_dynamics_dashpot *q,
                      const motion *m) {
-  if (q->partner < 0) return 2.0 * dynamics->boundary[q->boundary]->incoming[q->component];
+  if (q->partner < 0)
+    return 2.0 * mpsi_dynamics_boundary_of(dynamics, q->boundary)->incoming[q->component];
   const double after = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER
                            ? q->partner_before
                            : velocity_after(dynamics, m, q->partner);
@@ -119,22 +121,24 @@ static void flush_boundary(mpsi_dynamics_boundary *b) {
 }
 
 void mpsi_dynamics_begin_counting(mps_dynamics *dynamics) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k])
-      memset(dynamics->boundary[k]->pushed, 0, sizeof dynamics->boundary[k]->pushed);
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    if (mpsi_dynamics_boundary_of(dynamics, k))
+      memset(mpsi_dynamics_boundary_of(dynamics, k)->pushed, 0,
+             sizeof mpsi_dynamics_boundary_of(dynamics, k)->pushed);
 }
 
 /* After a list: the next one starts with sums of its own, also where a rank has a single block. */
 static void flush_all(mps_dynamics *dynamics) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k]) flush_boundary(dynamics->boundary[k]);
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    if (mpsi_dynamics_boundary_of(dynamics, k))
+      flush_boundary(mpsi_dynamics_boundary_of(dynamics, k));
   flush(&dynamics->works.boundaries, &dynamics->works.part);
 }
 
 void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick) {
   flush_all(dynamics);
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k]) dynamics->boundary[k]->kick = kick;
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    if (mpsi_dynamics_boundary_of(dynamics, k)) mpsi_dynamics_boundary_of(dynamics, k)->kick = kick;
 }
 
 /* The work of boundaries and dashpots on a particle of the body. */
@@ -173,8 +177,8 @@ static void count_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot *q, doub
     count_work(dynamics, q->particle, 0.5 * impulse * (before + after));
     return;
   }
-  count_impulse(dynamics, dynamics->boundary[q->boundary], q->component, q->particle, impulse,
-                before, after);
+  count_impulse(dynamics, mpsi_dynamics_boundary_of(dynamics, q->boundary), q->component,
+                q->particle, impulse, before, after);
 }
 
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output) {
@@ -221,7 +225,7 @@ void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output)
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     mpsi_dynamics_bound *q = &dynamics->bound[k];
     if (k == 0 || q->component != q[-1].component) flush_all(dynamics);
-    mpsi_dynamics_boundary *b = dynamics->boundary[q->boundary];
+    mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, q->boundary);
     const int32_t i = q->particle, c = q->component;
     const motion m = component(dynamics, c);
     const double to = q->rest + b->reach[c];

@@ -23,14 +23,14 @@ static mps_status find_edge(mps_context *context, mps_particles *particles, int3
   const double *x = mpsi_particles_column(particles, "position", 0);
   const int64_t *mark = mpsi_particles_integers(particles, "free_field");
   const double D = mps_particles_spacing(particles);
-  out->x = side == MPS_DYNAMICS_SIDE_LEFT ? INFINITY : -INFINITY;
+  out->x = side == MPS_SIDE_X_LOWER ? INFINITY : -INFINITY;
   for (int64_t k = 0; k < n; k++) {
-    if (mark && mark[k] == (int64_t)side)
+    if (mark && mark[k] == 1 + (int64_t)side)
       return mpsi_fail(context, "mps_dynamics_add_free_field", MPS_ERROR_STATE,
                        "the set already has a %s free-field column",
-                       side == MPS_DYNAMICS_SIDE_LEFT ? "left" : "right");
+                       side == MPS_SIDE_X_LOWER ? "left" : "right");
     if (mark && mark[k]) continue;
-    out->x = side == MPS_DYNAMICS_SIDE_LEFT ? fmin(out->x, x[k]) : fmax(out->x, x[k]);
+    out->x = side == MPS_SIDE_X_LOWER ? fmin(out->x, x[k]) : fmax(out->x, x[k]);
   }
   out->index = mpsi_alloc(context, n, sizeof *out->index);
   if (!out->index) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)n * 8);
@@ -55,7 +55,7 @@ static mps_status copy_fields(mps_particles *particles, const edge *e, int64_t f
     int64_t *number = mpsi_particles_integers(particles, info.name);
     const bool mark = strcmp(info.name, "free_field") == 0;
     for (int64_t k = 0; number && k < e->count; k++)
-      number[first + k] = mark ? side : number[e->index[k]];
+      number[first + k] = mark ? 1 + side : number[e->index[k]];
   }
   return MPS_OK;
 }
@@ -65,7 +65,7 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
   const double *x = mpsi_particles_column(particles, "position", 0);
   const double *y = mpsi_particles_column(particles, "position", 1);
   const double D = mps_particles_spacing(particles);
-  const double shift = (side == MPS_DYNAMICS_SIDE_LEFT ? -D : D) * gap;
+  const double shift = (side == MPS_SIDE_X_LOWER ? -D : D) * gap;
   double *at = mpsi_alloc(context, 2 * e->count, sizeof *at);
   if (!at) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)e->count * 16);
   for (int64_t k = 0; k < e->count; k++) {
@@ -84,11 +84,12 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
 }
 
 mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side, int32_t gap) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = mpsi_particles_context(particles);
-  if (side != MPS_DYNAMICS_SIDE_LEFT && side != MPS_DYNAMICS_SIDE_RIGHT)
+  if (side != MPS_SIDE_X_LOWER && side != MPS_SIDE_X_UPPER)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "side is %d, allowed are 1 (left) and 2 (right)", (int)side);
+                     "side is %d, allowed are MPS_SIDE_X_LOWER (0) and MPS_SIDE_X_UPPER (1)",
+                     (int)side);
   if (gap < 2 || gap > 1000000)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "gap is %d spacings, must be 2 to 1000000", gap);

@@ -70,10 +70,12 @@ static void renumber_bounds(mps_dynamics *dynamics, const int32_t *now) {
 void mpsi_dynamics_use_change(mps_dynamics *dynamics) {
   mpsi_dynamics_change *c = dynamics->change;
   mpsi_dynamics_use_structure(dynamics, &c->structure);
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k]) mpsi_dynamics_find_part(dynamics, &dynamics->boundary[k]->part);
-  for (int32_t k = 0; k < dynamics->load_room; k++)
-    if (dynamics->load[k]) mpsi_dynamics_find_part(dynamics, &dynamics->load[k]->part);
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    if (mpsi_dynamics_boundary_of(dynamics, k))
+      mpsi_dynamics_find_part(dynamics, &mpsi_dynamics_boundary_of(dynamics, k)->part);
+  for (int32_t k = 0; k < mpsi_dynamics_load_count(dynamics); k++)
+    if (mpsi_dynamics_load_of(dynamics, k))
+      mpsi_dynamics_find_part(dynamics, &mpsi_dynamics_load_of(dynamics, k)->part);
   renumber_bounds(dynamics, c->now);
   dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
   mpsi_dynamics_use_lists(dynamics, &c->lists);
@@ -136,11 +138,11 @@ static mps_status check_boundaries(mps_dynamics *dynamics, const char *function,
                                    mps_status disagreement, tally *t) {
   const mpsi_value *held = mpsi_values_find(&from->state, "held_values");
   const mpsi_value *dashpots = mpsi_values_find(&from->state, "dashpot_forces");
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    if (!dynamics->boundary[k]) continue;
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
+    if (!mpsi_dynamics_boundary_of(dynamics, k)) continue;
     char name[64];
     snprintf(name, sizeof name, "boundary%d/particles", (int)k);
-    const int64_t present = tally_part(dynamics, t, dynamics->boundary[k]);
+    const int64_t present = tally_part(dynamics, t, mpsi_dynamics_boundary_of(dynamics, k));
     const mpsi_value *then = mpsi_values_find(&from->state, name);
     if (*(const int64_t *)then->data != present)
       return mpsi_fail(dynamics->context, function, disagreement,

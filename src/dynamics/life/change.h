@@ -23,6 +23,8 @@ mps_status mpsi_dynamics_prepare_change(mps_dynamics *dynamics, const char *func
 /* Replaces the present structure, once the set has those particles: cannot fail. */
 void mpsi_dynamics_use_change(mps_dynamics *dynamics);
 void mpsi_dynamics_drop_change(mps_dynamics *dynamics);
+/* state.c: for steps that are undone (step/bound.h). */
+extern const struct mpsi_dynamics_keeper mpsi_dynamics_keep;
 /* Structure of a former state (core/state.h). */
 mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
                                        const char *source, mps_status disagreement);

@@ -3,6 +3,9 @@
 #include "dynamics/base/dynamics_solver.h"
 #include "dynamics/life/change.h"
 #include "dynamics/life/removal.h"
+#include "dynamics/life/state.h"
+#include "dynamics/limit/dt.h"
+#include "dynamics/step/run.h"
 #include "dynamics/ranks/partition.h"
 #include "dynamics/step/begin.h"
 #include "dynamics/step/ground.h"
@@ -11,78 +14,12 @@
 #include "core/context/retain.h"
 #include "core/state/state.h"
 #include "material/material_internal.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
-#include <mps/experimental.h>
-
-static const mps_dynamics_def dynamics_defaults = {
-    .struct_size = sizeof(mps_dynamics_def),
-    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
-    .rotation = MPS_DYNAMICS_ROTATION_MEAN_MATRIX,
-    .damping = MPS_DYNAMICS_DAMPING_PAIR,
-    .dt = NAN,
-    .courant = 0.9,
-    .radius_ratio = 1.5,
-    .f1 = 1.0,
-    .f2 = 14.0,
-    .period_x = NAN,
-    .divergence = 1e15,
-    .measure = 1.0,
-};
-
-mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_dynamics_def, def, size, &dynamics_defaults);
-}
+#include <mps/experimental/papers.h>
+#include <mps/experimental/domain.h>
 
 /* ---- checks ---------------------------------------------------------------------------------- */
-
-static mps_status check_choices(mps_context *context, const mps_dynamics_def *def) {
-  static const char *const function = "mps_dynamics_create";
-  const struct {
-    const char *name, *allowed;
-    int32_t value, most;
-  } checks[] = {
-      {"integrator", "0 (Verlet), 1 (leapfrog), 2 (Euler)", def->integrator, 2},
-      {"rotation", "0 (mean matrix), 1 (mean angle)", def->rotation, 1},
-      {"damping", "0 (pair), 1 (particle)", def->damping, 1},
-      {"watch_damping", "0 and 1", def->watch_damping, 1},
-      {"reserved", "0", def->reserved, 0},
-  };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (checks[k].value < 0 || checks[k].value > checks[k].most)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
-                       checks[k].name, checks[k].value, checks[k].allowed);
-  return MPS_OK;
-}
-
-static mps_status check_numbers(mps_context *context, const mps_dynamics_def *def) {
-  const struct {
-    const char *name, *unit;
-    double value, least, most;
-    bool open, may_lack; /* `least` itself is not allowed; NaN is */
-  } checks[] = {
-      {"dt", " s, or NaN (chosen by the library)", def->dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT,
-       false, true},
-      {"courant", "", def->courant, 0.0, 1.0, true, false},
-      {"radius_ratio", "", def->radius_ratio, 1.0, 4.0, true, false},
-      {"f1", " Hz", def->f1, 1e-20, 1e9, false, false},
-      {"f2", " Hz", def->f2, 1e-20, 1e9, false, false},
-      {"period_x", " m, or NaN (none)", def->period_x, 0.0, 1e300, true, true},
-      {"divergence", " m/s2", def->divergence, 0.0, 1e300, true, false},
-      {"measure", " m", def->measure, 1e-9, 1e9, false, false},
-  };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++) {
-    const double value = checks[k].value;
-    const bool above = checks[k].open ? value > checks[k].least : value >= checks[k].least;
-    if ((above && value <= checks[k].most) || (isnan(value) && checks[k].may_lack)) continue;
-    return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
-                     "%s is %s, must be %s %g and at most %g%s", checks[k].name,
-                     mpsi_outside(value, checks[k].least, checks[k].most).text,
-                     checks[k].open ? "above" : "at least", checks[k].least, checks[k].most,
-                     checks[k].unit);
-  }
-  return MPS_OK;
-}
 
 /* Positions and fields of the initial state, where present, must be finite. */
 static mps_status check_state(mps_context *context, mps_particles *particles) {
@@ -135,7 +72,7 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                      mpsi_outside(re, D, 4.0 * D).text, D);
   int64_t body = 0;
   for (int64_t k = 0; k < n; k++) {
-    if (side && (side[k] < 0 || side[k] > MPS_DYNAMICS_SIDE_RIGHT))
+    if (side && (side[k] < 0 || side[k] > 1 + MPS_SIDE_X_UPPER))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "free_field of particle %lld is %lld, allowed are 0, 1 (left), 2 (right)",
                        (long long)mpsi_particles_integers(particles, "id")[k], (long long)side[k]);
@@ -155,10 +92,11 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "all %lld particles belong to free-field columns, a body is needed",
                      (long long)n);
-  if (def->period_x > 0.0 && body < n)
+  const bool periodic = !isnan(def->period_x);
+  if (periodic && body < n)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "period_x is %g m, must be NaN with free-field columns", def->period_x);
-  if (def->period_x > 0.0 && (def->period_x <= re || def->period_x <= hi[0] - lo[0]))
+  if (periodic && (def->period_x <= re || def->period_x <= hi[0] - lo[0]))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "period_x is %s m, must be above re = %g m and the body's width %g m "
                      "between outer particle centres",
@@ -198,8 +136,8 @@ static mps_status choose_kernel(mps_dynamics *dynamics) {
         "radius_ratio");
   }
   if (status != MPS_OK) return status;
-  return mps_kernel_density(dynamics->context, dynamics->kernel, 2, dynamics->spacing,
-                            &dynamics->density);
+  dynamics->density = mpsi_kernel_density(dynamics->kernel, dynamics->spacing);
+  return MPS_OK;
 }
 
 static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_backup *backup) {
@@ -224,21 +162,87 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   mpsi_dynamics_use_structure(dynamics, &made);
   status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
   if (status == MPS_OK) status = mpsi_dynamics_reserve_watch(dynamics, function);
+  dynamics->forces_stale = true;
+  if (status == MPS_OK && (dynamics->def.gravity[0] != 0.0 || dynamics->def.gravity[1] != 0.0))
+    status = mpsi_dynamics_reserve_forces(dynamics, function);
   if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
   status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
+static void destroy(void *solver) {
+  mps_dynamics *dynamics = solver;
+  mps_context *context = dynamics->context;
+  mps_snapshot_destroy(&dynamics->present);
+  mps_snapshot_destroy(&dynamics->limits.before);
+  mpsi_dynamics_drop_change(dynamics);
+  mpsi_dynamics_mesh_free(context, &dynamics->mesh);
+  mpsi_halo_destroy(context, &dynamics->halo);
+  mpsi_dynamics_free_boundaries(dynamics);
+  mpsi_dynamics_free_loads(dynamics);
+  void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
+                   dynamics->before, dynamics->drag,    dynamics->part};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  mps_kernel_destroy(&dynamics->kernel);
+  mps_material_destroy(&dynamics->def.material);
+}
+
+/* ---- as one of all solvers ------------------------------------------------------------------- */
+
+static mps_status agree(void *solver, const char *function, mps_status status) {
+  return mpsi_domain_agree(((mps_dynamics *)solver)->domain, function, status);
+}
+
+static void changing(void *solver) { ((mps_dynamics *)solver)->limits.changed = true; }
+
+static void get_def(const void *solver, void *out) {
+  const mps_dynamics *dynamics = solver;
+  mps_dynamics_def *def = out;
+  *def = dynamics->def;
+  def->dt = dynamics->dt;
+}
+
+static const mpsi_solver_kind dynamics_kind = {
+    .name = MPSI_SOLVER_NAMES("dynamics"),
+    .task = "dynamics",
+    .time = mpsi_dynamics_time,
+    .steps = mpsi_dynamics_steps,
+    .dt = mpsi_dynamics_dt,
+    .limit = mpsi_dynamics_limit,
+    .changing = changing,
+    .agree = agree,
+    .check_dt = mpsi_dynamics_check_dt,
+    .use_dt = mpsi_dynamics_use_dt,
+    .get_totals = mpsi_dynamics_get_totals,
+    .get_reaction = mpsi_dynamics_get_reaction,
+    .boundary = &mpsi_dynamics_boundaries,
+    .load = &mpsi_dynamics_loads,
+    .def_kind = MPS_DEF_DYNAMICS,
+    .get_def = get_def,
+    .begin = mpsi_dynamics_begin_march,
+    .batch = mpsi_dynamics_batch,
+    .advance = mpsi_dynamics_advance_march,
+    .end = mpsi_dynamics_end_march,
+    .state = mpsi_dynamics_describe,
+    .settle = mpsi_dynamics_settle,
+    .returned = mpsi_dynamics_returned,
+    .save = mpsi_dynamics_save,
+    .destroy = destroy,
+};
+
 /* Holds the set, which may be held, and copies the definition. */
-static void describe(mps_dynamics *dynamics, const mps_dynamics_def *def) {
-  dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
-                                   .self = dynamics,
-                                   .kind = MPSI_USE_MOVE,
-                                   .guard = &dynamics->guard,
-                                   .commit = mpsi_dynamics_commit,
-                                   .remove = mpsi_dynamics_remove,
-                                   .renew = mpsi_dynamics_renew};
-  (void)mpsi_particles_hold(dynamics->particles, "mps_dynamics_create", &dynamics->holder);
+static void describe(mps_dynamics *dynamics, mps_context *context, mps_particles *particles,
+                     const mps_dynamics_def *def) {
+  const mpsi_holder holder = {.name = "a solver of elastodynamics (mps_dynamics)",
+                              .kind = MPSI_USE_MOVE,
+                              .commit = mpsi_dynamics_commit,
+                              .remove = mpsi_dynamics_remove,
+                              .renew = mpsi_dynamics_renew};
+  mpsi_solver_start(&dynamics->base, "mps_dynamics_create", &dynamics_kind, context, particles,
+                    def->domain, &holder);
+  dynamics->keeper = &mpsi_dynamics_keep;
+  dynamics->limits.changed = true;
+  dynamics->limits.saved = -1;
   dynamics->def = *def;
   if (def->kernel)
     dynamics->def.radius_ratio =
@@ -248,30 +252,31 @@ static void describe(mps_dynamics *dynamics, const mps_dynamics_def *def) {
   dynamics->dt = def->dt;
   dynamics->fresh = true;
   if (def->material) dynamics->def.material = mpsi_material_retain(def->material);
-  dynamics->domain = mpsi_domain_retain(def->domain);
   dynamics->lead = true;
 }
 
 mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                                const mps_dynamics_def *user_def, mps_dynamics **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_dynamics_def def = dynamics_defaults;
+  mps_dynamics_def def = mps_dynamics_defaults();
   mps_status status = mpsi_particles_check_context(particles, context, __func__);
-  if (status == MPS_OK && user_def)
-    status = MPSI_DEF_READ(context, __func__, mps_dynamics_def, user_def, &def);
-  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status != MPS_OK) return status;
-  if (def.kernel) def.radius_ratio = dynamics_defaults.radius_ratio; /* not read */
-  if (status == MPS_OK) status = check_choices(context, &def);
-  if (status == MPS_OK) status = check_numbers(context, &def);
+  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_dynamics_def, user_def, &def);
+  if (mpsi_domain_check(context, __func__, def.domain) != MPS_OK) return MPS_ERROR_ARGUMENT;
+  if (def.kernel) def.radius_ratio = mps_dynamics_defaults().radius_ratio; /* not read */
+  const bool bounded = isnan(def.divergence);
+  if (bounded) def.divergence = MPSI_DYN_DIVERGENCE;
   if (status == MPS_OK) status = check_state(context, particles);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, def.domain);
   double lo[2], hi[2];
   status = find_extent(particles, def.domain, status, lo, hi);
   if (status == MPS_OK) status = check_geometry(context, particles, &def, lo, hi);
+  if (status == MPS_OK)
+    status = mpsi_fail_of(context, mpsi_particles_check_crowding(particles, __func__, 0, NULL),
+                          "particles");
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_dynamics *dynamics = NULL;
@@ -286,14 +291,13 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
     mpsi_free(context, dynamics);
     return status;
   }
-  dynamics->context = mpsi_context_retain(context);
-  dynamics->particles = particles;
-  describe(dynamics, &def);
+  describe(dynamics, context, particles, &def);
+  dynamics->limits.bounded = bounded;
   if ((status = build(dynamics, &former, &backup)) != MPS_OK) {
     mpsi_particles_take_back(particles, &former);
     mpsi_particles_go_back(particles, &backup);
     mpsi_particles_drop_fields(particles, fields);
-    mps_dynamics_destroy(&dynamics);
+    mpsi_solver_end(&dynamics->base);
     return status;
   }
   mpsi_backup_drop(particles, &backup);
@@ -302,32 +306,12 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   return MPS_OK;
 }
 
-void mps_dynamics_destroy(mps_dynamics **pointer) {
-  if (!pointer || !*pointer) return;
-  mps_dynamics *dynamics = *pointer;
-  mps_context *context = dynamics->context;
-  if (mpsi_dynamics_enter(dynamics, __func__) != MPS_OK) return;
-  *pointer = NULL;
-  mps_snapshot_destroy(&dynamics->present);
-  mpsi_dynamics_drop_change(dynamics);
-  mpsi_state_forget(&dynamics->identity);
-  mpsi_dynamics_mesh_free(context, &dynamics->mesh);
-  mpsi_halo_destroy(context, &dynamics->halo);
-  mpsi_dynamics_free_boundaries(dynamics);
-  mpsi_dynamics_free_loads(dynamics);
-  void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
-                   dynamics->before, dynamics->drag,    dynamics->part};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  mps_kernel_destroy(&dynamics->kernel);
-  mps_material_destroy(&dynamics->def.material);
-  mpsi_particles_release(dynamics->particles, &dynamics->holder);
-  mps_domain_destroy(&dynamics->domain);
-  mpsi_free(context, dynamics);
-  mpsi_context_release(context);
+mps_solver *mps_dynamics_solver(const mps_dynamics *dynamics) {
+  return dynamics ? (mps_solver *)&dynamics->base : NULL;
 }
 
 mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (!dynamics) return mpsi_null(__func__, "dynamics");
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_domain_agree(dynamics->domain, __func__, status);
   if (status != MPS_OK) return status;
@@ -343,20 +327,3 @@ mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
 
 /* ---- questions ------------------------------------------------------------------------------- */
 
-mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics, mps_dynamics_def *out,
-                                      size_t size) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_dynamics_def def = dynamics->def;
-  def.dt = dynamics->dt;
-  return mpsi_def_write(dynamics->context, "mps_dynamics_get_def", out, size, &def, sizeof def);
-}
-
-mps_particles *mps_dynamics_particles(const mps_dynamics *dynamics) {
-  return dynamics ? dynamics->particles : NULL;
-}
-
-mps_context *mps_dynamics_context(const mps_dynamics *dynamics) {
-  return dynamics ? dynamics->context : NULL;
-}
-
-int64_t mps_dynamics_pairs(const mps_dynamics *dynamics) { return dynamics ? dynamics->pairs : 0; }

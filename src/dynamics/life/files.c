@@ -20,7 +20,7 @@ typedef enum merging {
 } merging;
 
 static merging merging_of(const mpsi_value *value) {
-  if (value->agrees) return SAME;
+  if (value->agrees || value->optional) return SAME;
   if (value->table) return mpsi_state_name_ends(value->name, "sites") ? SAME : ROWS;
   if (strncmp(value->name, "work_", 5) == 0 || mpsi_state_name_ends(value->name, "/pushed") ||
       mpsi_state_name_ends(value->name, "/impulse") || mpsi_state_name_ends(value->name, "/work"))
@@ -41,19 +41,12 @@ static int64_t body_rows(const mps_dynamics *dynamics, const mpsi_value *value) 
   return rows;
 }
 
-/* Particles of a boundary that are counted here. */
-static int64_t counted(const mps_dynamics *dynamics, const mpsi_dynamics_part *part) {
-  int64_t count = 0;
-  for (int64_t k = 0; k < part->count; k++)
-    count += part->particle[k] < dynamics->body || dynamics->lead;
-  return count;
-}
-
 static const mpsi_dynamics_part *part_of(const mps_dynamics *dynamics, const char *name) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
     char own[MPSI_STATE_NAME];
     snprintf(own, sizeof own, "boundary%d/particles", (int)k);
-    if (dynamics->boundary[k] && strcmp(own, name) == 0) return &dynamics->boundary[k]->part;
+    if (mpsi_dynamics_boundary_of(dynamics, k) && strcmp(own, name) == 0)
+      return &mpsi_dynamics_boundary_of(dynamics, k)->part;
   }
   return NULL;
 }
@@ -73,7 +66,7 @@ static mps_status merge(mps_dynamics *dynamics, const char *function, mpsi_value
           mpsi_domain_gather_rows(dynamics->domain, function,
                                   dynamics->lead ? value->rows : body_rows(dynamics, value), value);
     if (how != COUNT) continue;
-    *(int64_t *)value->data = counted(dynamics, part_of(dynamics, value->name));
+    *(int64_t *)value->data = mpsi_dynamics_counted(dynamics, part_of(dynamics, value->name));
     status = mpsi_domain_sum(dynamics->domain, function, 1, value->data);
   }
   return status;
@@ -165,7 +158,8 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
     const merging how = merging_of(value);
     if (how == SUM && rank > 0) memset(value->data, 0, (size_t)(value->rows * value->columns) * 8);
     if (how == COUNT) {
-      int64_t all = counted(dynamics, part_of(dynamics, value->name)), *kept = value->data;
+      int64_t all = mpsi_dynamics_counted(dynamics, part_of(dynamics, value->name)),
+              *kept = value->data;
       status = mpsi_domain_sum(domain, function, 1, &all);
       if (status == MPS_OK && all != *kept) status = misfit(dynamics, function, value->name);
       *kept = part_of(dynamics, value->name)->count;

@@ -7,13 +7,13 @@
 #include "dynamics/base/dynamics_solver.h"
 #include "dynamics/life/change.h"
 #include "dynamics/life/files.h"
+#include "dynamics/life/state.h"
+#include "io/checkpoint.h"
 #include "dynamics/ranks/partition.h"
 #include "dynamics/step/begin.h"
 #include "dynamics/step/ground.h"
 #include "dynamics/step/run.h"
 #include "dynamics/step/step.h"
-#include "io/checkpoint.h"
-#include "domain/moment.h"
 
 #include <string.h>
 
@@ -112,9 +112,9 @@ static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t numb
   mpsi_state_agree_integer(s, "kind", b->kind);
   mpsi_state_agree_integer(s, "dofs", b->dofs);
   mpsi_state_i64(s, "particles", &b->part.count, 1);
-  mpsi_state_i64(s, "pushed", b->pushed[0].limb, 3 * MPSI_EXACT_LIMBS);
-  mpsi_state_i64(s, "impulse", b->impulse[0].limb, 3 * MPSI_EXACT_LIMBS);
-  mpsi_state_i64(s, "work", b->work.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_exact(s, "pushed", b->pushed, 3);
+  mpsi_state_exact(s, "impulse", b->impulse, 3);
+  mpsi_state_exact(s, "work", &b->work, 1);
   mpsi_state_f64(s, "kick", &b->kick, 1);
   mpsi_state_leave(s);
 }
@@ -123,10 +123,12 @@ static void list_state(mpsi_state *s, void *solver) {
   mps_dynamics *dynamics = solver;
   list_setting(s, dynamics);
   int64_t boundaries = 0;
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) boundaries += dynamics->boundary[k] != NULL;
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    boundaries += mpsi_dynamics_boundary_of(dynamics, k) != NULL;
   mpsi_state_agree_integer(s, "boundaries", boundaries);
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k]) list_boundary(s, dynamics->boundary[k], k);
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+    if (mpsi_dynamics_boundary_of(dynamics, k))
+      list_boundary(s, mpsi_dynamics_boundary_of(dynamics, k), k);
   mpsi_state_f64(s, "dt", &dynamics->dt, 1);
   mpsi_state_f64(s, "length", &dynamics->length, 1);
   mpsi_state_f64(s, "kept", &dynamics->kept, 1);
@@ -138,9 +140,9 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "diverged", &dynamics->diverged);
   mpsi_state_bool(s, "begun", &dynamics->begun);
   mpsi_state_bool(s, "no_rate", &dynamics->no_rate);
-  mpsi_state_i64(s, "work_loads", dynamics->works.loads.limb, MPSI_EXACT_LIMBS);
-  mpsi_state_i64(s, "work_boundaries", dynamics->works.boundaries.limb, MPSI_EXACT_LIMBS);
-  mpsi_state_i64(s, "work_damping", dynamics->works.damping.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_exact(s, "work_loads", &dynamics->works.loads, 1);
+  mpsi_state_exact(s, "work_boundaries", &dynamics->works.boundaries, 1);
+  mpsi_state_exact(s, "work_damping", &dynamics->works.damping, 1);
   mpsi_state_f64(s, "energy_start", &dynamics->works.start, 1);
   mpsi_state_add_table(s, "held_values", &bounds_table);
   mpsi_state_add_table(s, "dashpot_forces", &dashpots_table);
@@ -172,7 +174,7 @@ static void after(void *solver) {
     q->c = s->c[q->particle];
     q->s = s->s[q->particle];
   }
-  dynamics->checked = !isnan(dynamics->dt);
+  dynamics->checked = dynamics->chosen = !isnan(dynamics->dt); /* steps of it have been taken */
 }
 
 static mps_status agree_to_restore(void *solver, const char *function, mps_status status) {
@@ -191,22 +193,18 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .take_share = mpsi_dynamics_take_values,
                          .bind = bind,
                          .after = after,
-                         .time = mps_dynamics_time(dynamics),
+                         .time = mpsi_dynamics_time(dynamics),
                          .dt = isnan(dynamics->dt) ? 0.0 : dynamics->dt,
                          .steps = dynamics->steps};
 }
 
 /* ---- what the caller does -------------------------------------------------------------------- */
 
-/* A state is kept between steps only, not of a run that has diverged, and of a set without an open
- * edit, on all ranks. The guard is checked on each rank alone, since a callback may run on one
- * rank. */
-static mps_status check_whole(const mps_dynamics *dynamics, const char *function) {
-  mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
-  if (status == MPS_OK) status = mpsi_dynamics_check_diverged(dynamics, function);
-  if (status != MPS_OK) return status;
-  return mpsi_domain_agree(dynamics->domain, function,
-                           mpsi_particles_ready(dynamics->particles, function));
+/* A state is kept not of a run that has diverged, and of a set without an open edit. */
+mps_status mpsi_dynamics_settle(void *solver, const char *function) {
+  const mps_dynamics *dynamics = solver;
+  const mps_status status = mpsi_dynamics_check_diverged(dynamics, function);
+  return status == MPS_OK ? mpsi_particles_ready(dynamics->particles, function) : status;
 }
 
 static mps_status take_in(void *solver, const char *function, mps_status status) {
@@ -214,19 +212,10 @@ static mps_status take_in(void *solver, const char *function, mps_status status)
 }
 
 /* The state with the edited fields, once no error is possible. */
-static mpsi_state_of edited_state_of(mps_dynamics *dynamics) {
-  mpsi_state_of of = state_of(dynamics);
+mpsi_state_of mpsi_dynamics_describe(void *solver) {
+  mpsi_state_of of = state_of(solver);
   of.take_in = take_in;
   return of;
-}
-
-mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_whole(dynamics, __func__);
-  if (status != MPS_OK) return status;
-  const mpsi_state_of of = edited_state_of(dynamics);
-  return mpsi_domain_agree(dynamics->domain, __func__,
-                           mpsi_state_snapshot(&of, __func__, snapshot));
 }
 
 /* Quantities that follow from a state and lie on other ranks. */
@@ -240,32 +229,36 @@ static mps_status agree_on_restore(mps_dynamics *dynamics, const char *function,
   return status;
 }
 
-mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *snapshot) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK)
-    status = mpsi_domain_agree_moment(dynamics->domain, __func__, status, snapshot);
-  if (status != MPS_OK) return status;
+/* ---- the state before a step ---------------------------------------------------------------- */
+
+static mps_status save_before(mps_dynamics *dynamics, const char *function,
+                              mps_snapshot **snapshot) {
   const mpsi_state_of of = state_of(dynamics);
-  return agree_on_restore(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
+  return mpsi_state_snapshot(&of, function, snapshot);
 }
 
-mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_whole(dynamics, __func__);
-  if (status != MPS_OK) return status;
-  const mpsi_state_of of = edited_state_of(dynamics);
-  if (mpsi_domain_many(dynamics->domain))
-    return mpsi_dynamics_save_partitions(dynamics, &of, __func__, path, info);
-  return mpsi_checkpoint_save(&of, __func__, path, info);
+/* The steps' own state: the choice of dt stays. Collective. */
+static mps_status go_back(mps_dynamics *dynamics, const char *function,
+                          const mps_snapshot *snapshot) {
+  const mpsi_state_of of = state_of(dynamics);
+  const bool checked = dynamics->checked, chosen = dynamics->chosen;
+  const mps_status status =
+      agree_on_restore(dynamics, function, mpsi_state_rollback(&of, function, snapshot));
+  dynamics->checked = checked, dynamics->chosen = chosen;
+  return status;
 }
 
-mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_checkpoint *info) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status != MPS_OK) return status;
-  const mpsi_state_of of = state_of(dynamics);
-  return agree_on_restore(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
+const mpsi_dynamics_keeper mpsi_dynamics_keep = {save_before, go_back};
+
+mps_status mpsi_dynamics_returned(void *solver, const char *function) {
+  return agree_on_restore(solver, function, MPS_OK);
+}
+
+mps_status mpsi_dynamics_save(void *solver, const mpsi_state_of *of, const char *function,
+                              const char *path, const mps_checkpoint *info) {
+  return mpsi_domain_many(((mps_dynamics *)solver)->domain)
+             ? mpsi_dynamics_save_partitions(solver, of, function, path, info)
+             : mpsi_checkpoint_save(of, function, path, info);
 }
 
 /* ---- the step to come ------------------------------------------------------------------------ */
@@ -312,12 +305,12 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
 }
 
 mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (!dynamics) return mpsi_null(__func__, "dynamics");
   mps_status status = mpsi_dynamics_ready(dynamics, __func__);
   if (status != MPS_OK) return status;
   double *kept = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *kept);
   if (dynamics->begins)
-    status = mpsi_dynamics_begin(dynamics, __func__, mps_dynamics_time(dynamics));
+    status = mpsi_dynamics_begin(dynamics, __func__, mpsi_dynamics_time(dynamics));
   if (status == MPS_OK && !kept)
     status =
         mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 3 * sizeof *kept);

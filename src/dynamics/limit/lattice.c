@@ -7,7 +7,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "lattice.h"
 #include "dynamics/base/dynamics_solver.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
+
+#include <mps/experimental/dynamics_predict.h>
 
 #define WAVES 96 /* wave vectors a direction in [0, pi/D] */
 /* A body has edges, where neighbours are missing. The spin mode has a lower frequency there; modes
@@ -17,20 +19,6 @@
 static double edge_factor(const mps_dynamics_predict_def *def) {
   if (def->pressure_velocity <= 3.3 * def->shear_velocity) return 1.0;
   return def->radius_ratio <= 1.5 ? 1.06 : 1.14;
-}
-
-static const mps_dynamics_predict_def predict_defaults = {
-    .struct_size = sizeof(mps_dynamics_predict_def),
-    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
-    .spacing = NAN,
-    .shear_velocity = NAN,
-    .pressure_velocity = NAN,
-    .f1 = 1.0,
-    .f2 = 14.0,
-    .radius_ratio = 1.5};
-
-mps_status mps_dynamics_predict_def_init(mps_dynamics_predict_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_dynamics_predict_def, def, size, &predict_defaults);
 }
 
 /* Symbol of the tangent at wave numbers (a, b)/D, with lengths in D and velocities in Vs: real
@@ -111,42 +99,13 @@ double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
   return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
 }
 
-static mps_status check(mps_context *context, const mps_dynamics_predict_def *def) {
-  static const char *const function = "mps_dynamics_predict";
-  const struct {
-    const char *name, *unit;
-    double value, least, most;
-  } checks[] = {
-      {"spacing", " m", def->spacing, 1e-9, 1e9},
-      {"shear_velocity", " m/s", def->shear_velocity, 1e-6, 1e9},
-      {"pressure_velocity", " m/s (sqrt(2) times shear_velocity or more)", def->pressure_velocity,
-       sqrt(2.0) * def->shear_velocity * (1.0 - 1e-12), 1e9},
-      {"damping", "", def->damping, 0.0, 1000.0},
-      {"f1", " Hz", def->f1, 1e-20, 1e9},
-      {"f2", " Hz", def->f2, 1e-20, 1e9},
-      {"radius_ratio", "", def->radius_ratio, 1.0 + 1e-9, 4.0},
-  };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!(checks[k].value >= checks[k].least && checks[k].value <= checks[k].most))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s, must be in %g..%g%s",
-                       checks[k].name,
-                       mpsi_outside(checks[k].value, checks[k].least, checks[k].most).text,
-                       checks[k].least, checks[k].most, checks[k].unit);
-  if (def->integrator != MPS_DYNAMICS_INTEGRATOR_VERLET &&
-      def->integrator != MPS_DYNAMICS_INTEGRATOR_LEAPFROG)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "integrator is %d, allowed are 0 (Verlet) and 1 (leapfrog)", def->integrator);
-  return MPS_OK;
-}
-
 mps_status mps_dynamics_predict_sized(mps_context *context,
                                       const mps_dynamics_predict_def *user_def,
                                       mps_dynamics_prediction *out, size_t size) {
   static const char *const function = "mps_dynamics_predict";
-  if (!context) return MPS_ERROR_ARGUMENT;
-  mps_dynamics_predict_def def = predict_defaults;
+  if (!context) return mpsi_null(__func__, "context");
+  mps_dynamics_predict_def def;
   mps_status status = MPSI_DEF_READ(context, function, mps_dynamics_predict_def, user_def, &def);
-  if (status == MPS_OK) status = check(context, &def);
   if (status != MPS_OK) return status;
   const double pi = 3.14159265358979323846, h = def.damping;
   const double omega2 = mpsi_dynamics_lattice_omega2(
@@ -155,5 +114,11 @@ mps_status mps_dynamics_predict_sized(mps_context *context,
   const double edge = edge_factor(&def) * p.omega;
   p.dt = mpsi_dynamics_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
                                     h / (pi * (def.f1 + def.f2)));
+  if (!(isfinite(p.omega) && p.omega > 0.0 && isfinite(p.dt) && p.dt > 0.0))
+    return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
+                     "omega is %g rad/s and dt %g s with radius_ratio %.12g, velocities %g and %g "
+                     "m/s and spacing %g m: beyond double precision",
+                     p.omega, p.dt, def.radius_ratio, def.shear_velocity, def.pressure_velocity,
+                     def.spacing);
   return mpsi_out_write(context, function, out, size, &p, sizeof p);
 }

@@ -12,4 +12,8 @@ double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, do
 /* Largest stable dt of Verlet and leapfrog for a mode of frequency^2 omega2 (rad/s)^2. */
 double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta);
 
+/* Bound of the limit (s) from the infinite lattice of the stiffest and lightest material in the
+ * set. */
+double mpsi_dynamics_lattice_bound(const mps_dynamics *dynamics);
+
 #endif

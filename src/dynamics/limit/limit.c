@@ -8,9 +8,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/base/dynamics_solver.h"
+#include "dynamics/limit/dt.h"
 #include "dynamics/limit/lattice.h"
 #include "dynamics/limit/tangent.h"
 
+#include <fenv.h>
 #include <lapacke.h>
 #include <string.h>
 
@@ -25,11 +27,18 @@
 
 /* ---- Lanczos --------------------------------------------------------------------------------- */
 
+/* The tridiagonal matrix, and memory to solve it. */
+typedef struct tridiagonal {
+  double diagonal[LANCZOS_MOST], off[LANCZOS_MOST];
+  double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST], z[LANCZOS_MOST];
+} tridiagonal;
+
 /* The operator 2 dt A + dt^2 S + 2 dt S_beta in symmetric form; dt = 0 stands for S itself. */
 typedef struct operator_data {
   mps_dynamics *dynamics;
   double dt;
   double *weight, *scaled, *work; /* m, 3 n, 4 m; m with ghosts */
+  tridiagonal *of;
 } operator_data;
 
 static mps_status apply(operator_data *op, const double *x, double *y) {
@@ -93,22 +102,27 @@ typedef struct ritz {
 
 /* Highest eigenvalue of the tridiagonal matrix, and the last component of its vector. Rank 0 finds
  * them: processors of several kinds may not find the same bits. */
-static mps_status highest(const mps_dynamics *dynamics, int m, const double *diagonal,
-                          const double *off, double *value, double *last) {
-  double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST], z[LANCZOS_MOST];
+static mps_status highest(const mps_dynamics *dynamics, int m, tridiagonal *t, double *value,
+                          double *last) {
   double found[2] = {-INFINITY, -INFINITY};
   mps_status status = MPS_OK;
   if (mps_domain_rank(dynamics->domain) <= 0) {
     lapack_int count = 0, support[2];
-    memcpy(d, diagonal, (size_t)m * sizeof *d);
-    memcpy(e, off, (size_t)m * sizeof *e);
-    const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, d, e, 0.0, 0.0, m, m, 0.0,
-                                           &count, w, z, m, support);
+    memcpy(t->d, t->diagonal, (size_t)m * sizeof *t->d);
+    memcpy(t->e, t->off, (size_t)m * sizeof *t->e);
+    fenv_t traps; /* LAPACK tries out at first whether the processor has infinities and NaN */
+    (void)feholdexcept(&traps);
+    const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, t->d, t->e, 0.0, 0.0, m,
+                                           m, 0.0, &count, t->w, t->z, m, support);
+    (void)fesetenv(&traps);
     if (info == 0 && count == 1)
-      found[0] = w[0], found[1] = z[m - 1];
+      found[0] = t->w[0], found[1] = t->z[m - 1];
     else
-      status = mpsi_fail(dynamics->context, FUNCTION, MPS_ERROR_NUMERIC,
-                         "LAPACK could not solve the tridiagonal eigenproblem");
+      status = mpsi_fail(
+          dynamics->context, FUNCTION,
+          info == LAPACK_WORK_MEMORY_ERROR ? MPS_ERROR_MEMORY : MPS_ERROR_NUMERIC,
+          "LAPACK %s the tridiagonal eigenproblem of %d rows",
+          info == LAPACK_WORK_MEMORY_ERROR ? "was refused the memory for" : "could not solve", m);
   }
   status = mpsi_domain_agree_max(dynamics->domain, FUNCTION, status, 2, found);
   *value = found[0], *last = found[1];
@@ -118,7 +132,7 @@ static mps_status highest(const mps_dynamics *dynamics, int m, const double *dia
 static mps_status lanczos(operator_data *op, double bound, double *basis, ritz *out) {
   const int64_t n = 3 * op->dynamics->count;
   double *v = basis, *before = basis + n, *next = basis + 2 * n;
-  double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0, norm, a = 0.0;
+  double value = 0.0, last = 0.0, norm, a = 0.0;
   start_vector(op->dynamics, v);
   mps_status status = dot(op->dynamics, v, v, &norm);
   norm = sqrt(norm);
@@ -131,14 +145,14 @@ static mps_status lanczos(operator_data *op, double bound, double *basis, ritz *
     if (status == MPS_OK) status = dot(op->dynamics, v, next, &a);
     if (status != MPS_OK) return status;
     for (int64_t k = 0; k < n; k++) next[k] -= a * v[k] + norm * before[k];
-    diagonal[m - 1] = a;
+    op->of->diagonal[m - 1] = a;
     status = dot(op->dynamics, next, next, &norm);
     if (status != MPS_OK) return status;
-    norm = off[m - 1] = sqrt(norm);
+    norm = op->of->off[m - 1] = sqrt(norm);
     const bool stuck = !(norm > 1e-14 * fabs(a));
     if (m % LANCZOS_EVERY == 0 || stuck || m == LANCZOS_MOST) {
       const double former = value;
-      status = highest(op->dynamics, m, diagonal, off, &value, &last);
+      status = highest(op->dynamics, m, op->of, &value, &last);
       if (status != MPS_OK) return status;
       *out = (ritz){value, fabs(norm * last), m};
       if (stuck || out->error <= bound * value || value - former <= 1e-3 * bound * value)
@@ -228,18 +242,21 @@ static double euler_limit(double omega2, const range *r, double duration) {
 }
 
 /* Doubles of memory: three Lanczos vectors and a scaled one of 3 n each, 4 m of work for the
- * tangent, weights; m is n with ghosts. */
+ * tangent, weights; m is n with ghosts. Then the tridiagonal matrix. */
 static int64_t memory_size(const mps_dynamics *dynamics) {
-  return 12 * dynamics->count + 5 * (dynamics->count + dynamics->ghosts);
+  return 12 * dynamics->count + 5 * (dynamics->count + dynamics->ghosts) +
+         (int64_t)(sizeof(tridiagonal) / sizeof(double));
 }
 
 static mps_status find_limit(mps_dynamics *dynamics, double duration, double *memory,
                              mps_dynamics_linear_limit *out) {
   const int64_t n = 3 * dynamics->count;
-  operator_data op = {.dynamics = dynamics,
-                      .scaled = memory + 3 * n,
-                      .work = memory + 4 * n,
-                      .weight = memory + 4 * n + 4 * (dynamics->count + dynamics->ghosts)};
+  operator_data op = {
+      .dynamics = dynamics,
+      .scaled = memory + 3 * n,
+      .work = memory + 4 * n,
+      .weight = memory + 4 * n + 4 * (dynamics->count + dynamics->ghosts),
+      .of = (tridiagonal *)(memory + 4 * n + 5 * (dynamics->count + dynamics->ghosts))};
   ritz top;
   const mps_status status = lanczos(&op, LANCZOS_BOUND, memory, &top);
   if (status != MPS_OK) return status;
@@ -263,7 +280,7 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
 mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration,
                                          mps_dynamics_linear_limit *out, size_t size) {
   static const char *const function = FUNCTION;
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (!dynamics) return mpsi_null(__func__, "dynamics");
   mps_context *context = dynamics->context;
   if (!isfinite(duration) || duration < 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -287,8 +304,7 @@ mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration
   return mpsi_out_write(context, function, out, size, &limit, sizeof limit);
 }
 
-/* Bound of the limit from the infinite lattice of the stiffest and lightest material in the set. */
-static double lattice_bound(const mps_dynamics *dynamics) {
+double mpsi_dynamics_lattice_bound(const mps_dynamics *dynamics) {
   const mpsi_dynamics_extremes *e = &dynamics->extremes;
   const double omega2 = mpsi_dynamics_lattice_omega2(
       dynamics->kernel, dynamics->spacing, dynamics->def.radius_ratio, sqrt(e->mu / e->lightest),
@@ -299,9 +315,9 @@ static double lattice_bound(const mps_dynamics *dynamics) {
          mpsi_dynamics_damped_limit(omega2, e->alpha[1], e->beta[1]);
 }
 
-double mps_dynamics_limit(const mps_dynamics *dynamics) {
-  if (!dynamics) return 0.0;
+double mpsi_dynamics_limit(const void *solver) {
+  const mps_dynamics *dynamics = solver;
   if (dynamics->have_limit) return dynamics->limit.dt;
   if (dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER) return 0.0;
-  return dynamics->lattice ? lattice_bound(dynamics) : NAN;
+  return dynamics->lattice ? mpsi_dynamics_lattice_bound(dynamics) : NAN;
 }

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "layout.h"
 
-#include <mps/neighbours.h>
+#include <mps/experimental/neighbours.h>
 
 #include <float.h>
 #include <stdlib.h>

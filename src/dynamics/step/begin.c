@@ -28,8 +28,9 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
   dynamics->rewritten = NULL;
   dynamics->begins = false;
   memset(&dynamics->works, 0, sizeof dynamics->works);
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    mpsi_dynamics_boundary *b = dynamics->boundary[k];
+  dynamics->limits.works = dynamics->limits.accepted = 0.0;
+  for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
+    mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, k);
     if (!b) continue;
     memset(b->pushed, 0, sizeof b->pushed);
     memset(b->impulse, 0, sizeof b->impulse);
@@ -42,7 +43,7 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 }
 
 mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (!dynamics) return mpsi_null(__func__, "dynamics");
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
   if (status != MPS_OK) return status;

@@ -208,8 +208,8 @@ static mps_status read_energies(mps_dynamics *dynamics, const char *function, do
 static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_totals *t) {
   const int64_t room = dynamics->count + dynamics->ghosts + MPSI_PARTICLES_PADDING;
   double *own = mpsi_alloc(dynamics->context, room, sizeof *own);
-  mps_status status =
-      own ? MPS_OK : mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
+  mps_status status = mpsi_particles_committed(dynamics->particles, function);
+  if (!own) status = mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
   status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_choose_dt(dynamics, function);
   if (status == MPS_OK && dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
@@ -219,10 +219,8 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
   return status;
 }
 
-mps_status mps_dynamics_get_totals_sized(const mps_dynamics *handle, mps_totals *out, size_t size) {
-  mps_dynamics *dynamics = (mps_dynamics *)handle; /* scratch and messages only: the state stays */
-  static const char *const function = "mps_dynamics_get_totals";
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_dynamics_get_totals(void *solver, const char *function, mps_totals *out) {
+  mps_dynamics *dynamics = solver;
   mps_totals t;
   const mps_status status = find_totals(dynamics, function, &t);
   if (status != MPS_OK) return status;
@@ -237,5 +235,6 @@ mps_status mps_dynamics_get_totals_sized(const mps_dynamics *handle, mps_totals 
     t.dissipated += rest;
     if (dynamics->damping == MPSI_DYN_UNDAMPED || dynamics->def.watch_damping) t.scheme = rest;
   }
-  return mpsi_out_write(dynamics->context, function, out, size, &t, sizeof t);
+  *out = t;
+  return MPS_OK;
 }

@@ -31,4 +31,6 @@ void mpsi_dynamics_count_works(mpsi_dynamics_account *account);
 mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, double *kinetic,
                                   double *strain);
 
+mps_status mpsi_dynamics_get_totals(void *dynamics, const char *function, mps_totals *out);
+
 #endif

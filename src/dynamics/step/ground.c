@@ -8,7 +8,7 @@
 #include "dynamics/step/begin.h"
 #include "material/material_internal.h"
 #include "signal/signal_internal.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 #include <string.h>
 
@@ -198,8 +198,8 @@ static void put_velocities_back(mps_dynamics *dynamics, const double *kept) {
 }
 
 mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material *material,
-                                     int64_t count, const int64_t *ids) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+                                     const int64_t *ids, int64_t count) {
+  if (!dynamics) return mpsi_null(__func__, "dynamics");
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
   double *kept = status == MPS_OK ? keep_velocities(dynamics, __func__, &status) : NULL;
@@ -264,6 +264,7 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   const char *which = NULL;
   (void)former;
   mps_status status = MPS_OK;
+  dynamics->limits.changed = true;
   const bool of_ground = ONE_OF(field, ground, &which), of_motion = ONE_OF(field, motion, &which);
   const bool of_fabric = ONE_OF(field, fabric, &which), position = strcmp(field, "position") == 0;
   if (!of_ground && !of_motion && !of_fabric && !position) return MPS_OK;
@@ -283,11 +284,14 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
 /* Whether a boundary's or load's signal may fail. */
 static bool has_refusing_signal(const mps_dynamics *dynamics) {
   for (int c = 0; c < 2; c++) {
-    for (int32_t k = 0; k < dynamics->boundary_room; k++)
-      if (dynamics->boundary[k] && mpsi_signal_may_fail(dynamics->boundary[k]->part.signal[c]))
+    for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++)
+      if (mpsi_dynamics_boundary_of(dynamics, k) &&
+          mpsi_signal_may_fail(mpsi_dynamics_boundary_of(dynamics, k)->part.signal[c]))
         return true;
-    for (int32_t k = 0; k < dynamics->load_room; k++)
-      if (dynamics->load[k] && mpsi_signal_may_fail(dynamics->load[k]->part.signal[c])) return true;
+    for (int32_t k = 0; k < mpsi_dynamics_load_count(dynamics); k++)
+      if (mpsi_dynamics_load_of(dynamics, k) &&
+          mpsi_signal_may_fail(mpsi_dynamics_load_of(dynamics, k)->part.signal[c]))
+        return true;
   }
   return false;
 }
@@ -321,5 +325,5 @@ mps_status mpsi_dynamics_read_edits(mps_dynamics *dynamics, const char *function
                                     mps_status status) {
   status = mpsi_dynamics_reread_ground(dynamics, function, status);
   if (status != MPS_OK || !dynamics->begins) return status;
-  return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
+  return mpsi_dynamics_begin(dynamics, function, mpsi_dynamics_time(dynamics));
 }

@@ -11,6 +11,7 @@
 #include "dynamics/boundary/constrain.h"
 #include "dynamics/ranks/partition.h"
 #include "dynamics/step/begin.h"
+#include "dynamics/step/bound.h"
 
 #include <float.h>
 #include <string.h>
@@ -28,13 +29,14 @@ static void start_history(mps_dynamics *dynamics, double length) {
 /* Makes `length` that of the steps to come. */
 static void set_length(mps_dynamics *dynamics, double length) {
   if (dynamics->length == length) return;
-  dynamics->base_time = mps_dynamics_time(dynamics);
+  dynamics->base_time = mpsi_dynamics_time(dynamics);
   dynamics->base_step = dynamics->steps;
   dynamics->length = length;
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
+#define ALARM2 (MPSI_DYNAMICS_ALARM * MPSI_DYNAMICS_ALARM)
 #define SMALL_BODY 40 /* blocks, about 20 000 particles */
 
 typedef struct work {
@@ -77,6 +79,12 @@ static void second_pass(void *data, int64_t unit, int32_t worker) {
   }
 }
 
+static const char *is_above_limit(const mps_dynamics *dynamics) {
+  return dynamics->have_limit && dynamics->length > dynamics->limit.dt
+             ? ", above the linear stability limit"
+             : "";
+}
+
 /* The particle of this rank with the greatest acceleration beyond the limit, -1: none; NaN is the
  * greatest. */
 static int64_t find_worst(const mps_dynamics *dynamics, double *most) {
@@ -95,16 +103,43 @@ static int64_t find_worst(const mps_dynamics *dynamics, double *most) {
   return worst;
 }
 
+/* The fastest particle of a body that has more energy than it can have. Collective. */
+static mps_status report_energy(mps_dynamics *dynamics, const char *function) {
+  double most = -1.0;
+  int64_t at = 0;
+  for (int64_t k = 0; k < dynamics->body; k++) {
+    const double v =
+        hypot(mpsi_dynamics_velocity(dynamics, 0, k), mpsi_dynamics_velocity(dynamics, 1, k));
+    if (v > most) most = v, at = k;
+  }
+  double fastest = most;
+  mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &fastest);
+  if (status != MPS_OK) return status;
+  if (most < fastest || dynamics->body == 0)
+    return mpsi_domain_agree(dynamics->domain, function, MPS_OK);
+  const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[at];
+  status = mpsi_fail(
+      dynamics->context, function, MPS_ERROR_DIVERGED,
+      "diverged at step %lld, t = %.6g s: the kinetic energy is %.4g J, beyond %.4g J, %g times "
+      "the energy at the start and the work done since; particle %lld at (%.6g, %.6g) m is the "
+      "fastest with %.4g m/s; dt is %.6g s%s: take a smaller time step",
+      (long long)dynamics->steps, mps_dynamics_time(dynamics), dynamics->limits.excess,
+      dynamics->limits.most, dynamics->limits.factor, id, dynamics->state.rx[at],
+      dynamics->state.ry[at], most, dynamics->length, is_above_limit(dynamics));
+  mpsi_fail_where(dynamics->context, dynamics->steps, id);
+  return mpsi_domain_agree(dynamics->domain, function, status);
+}
+
 /* The particle beyond the limit, its acceleration and position: of several ranks that with the
  * greatest acceleration reports. */
 static mps_status report_divergence(mps_dynamics *dynamics, const char *function) {
   const mpsi_dynamics_state *s = &dynamics->state;
-  const double now = mps_dynamics_time(dynamics) - dynamics->length;
+  const double now = mpsi_dynamics_time(dynamics) - dynamics->length;
   double most;
   const int64_t worst = find_worst(dynamics, &most);
   double key = worst < 0 ? -1.0 : isnan(most) ? INFINITY : most, greatest = key;
+  if (dynamics->limits.excess > 0.0) return report_energy(dynamics, function);
   mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &greatest);
-  dynamics->diverged = true;
   if (status != MPS_OK) return status;
   if (worst >= 0 && key == greatest) {
     const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[worst];
@@ -113,10 +148,7 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
         "diverged at step %lld, t = %.6g s: |acceleration| of particle %lld at (%.6g, %.6g) m is "
         "%.4g m/s2, beyond %g; dt is %.6g s%s: take a smaller time step",
         (long long)dynamics->steps, now, id, s->rx[worst], s->ry[worst], most,
-        dynamics->def.divergence, dynamics->length,
-        dynamics->have_limit && dynamics->length > dynamics->limit.dt
-            ? ", above the linear stability limit"
-            : "");
+        dynamics->def.divergence, dynamics->length, is_above_limit(dynamics));
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }
   return mpsi_domain_agree(dynamics->domain, function, status);
@@ -174,13 +206,12 @@ static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
               MPSI_DYNAMICS_FASTEST))
           found = k;
   mps_status status = MPS_OK;
-  dynamics->diverged = true;
   if (found >= 0) {
     const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[found];
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_DIVERGED,
                        "diverged at step %lld, t = %.6g s: particle %lld at (%.6g, %.6g) m moves "
                        "with (%.4g, %.4g) m/s and turns with %.4g rad/s, beyond %g m/s",
-                       (long long)dynamics->steps, mps_dynamics_time(dynamics), id, s->rx[found],
+                       (long long)dynamics->steps, mpsi_dynamics_time(dynamics), id, s->rx[found],
                        s->ry[found], mpsi_dynamics_velocity(dynamics, 0, found),
                        mpsi_dynamics_velocity(dynamics, 1, found),
                        mpsi_dynamics_velocity(dynamics, 2, found), MPSI_DYNAMICS_FASTEST);
@@ -225,16 +256,18 @@ static void drive_accelerations(mps_dynamics *dynamics) {
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     const mpsi_dynamics_bound *q = &dynamics->bound[k];
     if (q->component < 2)
-      a[q->component][q->particle] = dynamics->boundary[q->boundary]->gain[q->component];
+      a[q->component][q->particle] =
+          mpsi_dynamics_boundary_of(dynamics, q->boundary)->gain[q->component];
   }
 }
 
-/* Whether an acceleration is beyond the limit, given by its square. */
-static bool diverges(mps_dynamics *dynamics, double limit2) {
+/* Whether an acceleration is beyond the limit, given by its square; of the blocks that the loops
+ * have found near it. */
+static int find_level(mps_dynamics *dynamics, double limit2) {
   const mpsi_dynamics_state *s = &dynamics->state;
   bool any = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
-  if (!any) return false;
+  if (!any) return MPSI_DYNAMICS_CALM;
   drive_accelerations(dynamics);
   any = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
@@ -244,27 +277,33 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
       if (!(s->ax[k] * s->ax[k] + s->ay[k] * s->ay[k] <= limit2)) dynamics->bad[b] = 1;
     any = any || dynamics->bad[b];
   }
-  return any;
+  return any ? MPSI_DYNAMICS_DIVERGED : MPSI_DYNAMICS_ALARMED;
 }
 
-/* Status of all ranks: `status` of this one, whether its last step has diverged, and, for signals
- * that are functions of the caller, whether they have the same values in the next. */
+/* Notes how the last step ended on all ranks; true: it has diverged. */
+static bool note_level(mps_dynamics *dynamics, double level) {
+  dynamics->limits.alarmed = level >= MPSI_DYNAMICS_ALARMED;
+  return level >= MPSI_DYNAMICS_DIVERGED;
+}
+
+/* Status of all ranks: `status` of this one, how its last step has ended, and, for signals that are
+ * functions of the caller, whether they have the same values in the next. */
 static mps_status agree_on_step(mps_dynamics *dynamics, const char *function, mps_status status,
-                                bool *diverged) {
-  double any = *diverged;
+                                int level) {
+  double any = level;
   status = dynamics->cautious ? mpsi_dynamics_agree_signals(dynamics, function, status, 1, &any)
                               : mpsi_domain_agree_max(dynamics->domain, function, status, 1, &any);
-  if (status != MPS_OK || any == 0.0) return status;
+  if (status != MPS_OK || !note_level(dynamics, any)) return status;
   return report_divergence(dynamics, function);
 }
 
 /* The same at the end of a call, with the speeds; refresh leaves both to the step itself. */
-static mps_status agree_on_last(mps_dynamics *dynamics, const char *function, bool diverged) {
+static mps_status agree_on_last(mps_dynamics *dynamics, const char *function, int level) {
   const bool looks = isinf(dynamics->def.divergence);
-  double any[2] = {diverged, !diverged && !looks && too_fast(dynamics)};
+  double any[2] = {level, level < MPSI_DYNAMICS_DIVERGED && !looks && too_fast(dynamics)};
   const mps_status status = mpsi_domain_agree_max(dynamics->domain, function, MPS_OK, 2, any);
   if (status != MPS_OK) return status;
-  if (any[0] != 0.0) return report_divergence(dynamics, function);
+  if (note_level(dynamics, any[0])) return report_divergence(dynamics, function);
   return any[1] != 0.0 ? report_speed(dynamics, function) : MPS_OK;
 }
 
@@ -290,25 +329,29 @@ static mps_status pass_blocks(work *w, const char *function) {
 /* The first pass, and the status of the ranks: the reduction of whether the last step has diverged
  * starts before it and ends after it, so that no rank waits for one that is less than a pass
  * behind. Where a signal may fail, ranks agree before. */
-static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+static mps_status pass_all(work *w, const char *function, mps_status status, int level) {
   mps_dynamics *dynamics = w->dynamics;
   if (dynamics->cautious) {
-    status = agree_on_step(dynamics, function, status, diverged);
+    status = agree_on_step(dynamics, function, status, level);
     return status == MPS_OK ? pass_blocks(w, function) : status;
   }
-  double any = *diverged;
+  double any = level;
   if (status == MPS_OK)
     status = mpsi_domain_vote_begin(dynamics->domain, function, status, 1, &any);
-  if (status == MPS_OK && !mpsi_domain_many(dynamics->domain) && any != 0.0)
+  if (status == MPS_OK && !mpsi_domain_many(dynamics->domain) && note_level(dynamics, any))
     return report_divergence(dynamics, function);
   if (status == MPS_OK) status = pass_blocks(w, function);
   if (status == MPS_OK) status = mpsi_domain_vote_end(dynamics->domain, function, 1, &any);
-  return status == MPS_OK && any != 0.0 ? report_divergence(dynamics, function) : status;
+  if (status != MPS_OK || !note_level(dynamics, any)) return status;
+  return report_divergence(dynamics, function);
 }
 
-/* Fields of a run that has diverged: the pressures of all particles at their present positions, at
- * any point of a call and on any number of ranks; and prescribed motions. */
-static mps_status show_diverged(work *w, const char *function, mps_status status) {
+/* After a step that has diverged: the state before it, if it was saved. Else its fields: the
+ * pressures of all particles at their present positions, at any point of a call and on any number
+ * of ranks; and prescribed motions. */
+static mps_status end_diverged(work *w, const char *function, mps_status status) {
+  status = mpsi_dynamics_undo(w->dynamics, function, status);
+  if (!w->dynamics->diverged) return status;
   drive_accelerations(w->dynamics);
   const mps_status lost = mpsi_dynamics_bring_motion(w->dynamics, function);
   if (lost == MPS_OK) pass_turns(w, 0, w->dynamics->mesh.blocks + w->dynamics->mesh.ghosts);
@@ -316,7 +359,7 @@ static mps_status show_diverged(work *w, const char *function, mps_status status
 }
 
 /* The part of a step after the first pass. */
-static void take_step(work *w, bool output, bool *diverged) {
+static mps_status take_step(work *w, const char *function, bool output, int *level) {
   mps_dynamics *dynamics = w->dynamics;
   const double kick = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER || dynamics->fresh
                           ? dynamics->length
@@ -340,12 +383,16 @@ static void take_step(work *w, bool output, bool *diverged) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
     mpsi_dynamics_count_works(&account);
   }
-  *diverged = diverges(dynamics, w->step.limit2);
+  const double limit = dynamics->def.divergence;
+  *level = find_level(dynamics, fmin(limit * limit, DBL_MAX));
+  const mps_status status = mpsi_dynamics_find_excess(dynamics, function);
+  if (dynamics->limits.excess > 0.0) *level = MPSI_DYNAMICS_DIVERGED;
+  return status;
 }
 
 /* Values of the signals for the next step, of `length`. */
 static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function, double length) {
-  const double now = mps_dynamics_time(dynamics);
+  const double now = mpsi_dynamics_time(dynamics);
   const double then =
       length == dynamics->length
           ? dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length
@@ -373,7 +420,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
       dynamics->damping == MPSI_DYN_BY_PAIRS ? MPSI_DYN_DAMPED_FORCES : MPSI_DYN_FORCES;
   work w = {.dynamics = dynamics,
             .step = {.dt = length,
-                     .limit2 = fmin(limit * limit, DBL_MAX), /* never accepts an infinite one */
+                     /* never accepts an infinite one */
+                     .limit2 = fmin(limit * limit * ALARM2, DBL_MAX),
                      .stride = dynamics->count},
             .pass1 = dynamics->kernels->pass1[removal][sums],
             .ghost_pass1 = dynamics->kernels->pass1[removal][MPSI_DYN_PRESSURES],
@@ -381,22 +429,25 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .grain = blocks > 0 ? (blocks + units - 1) / units : 1};
   if (count == 0) return MPS_OK;
   mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
+  if (status == MPS_OK) status = mpsi_dynamics_save_before(dynamics, function);
   if (status != MPS_OK) return status;
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
   status = begin_budget(dynamics, function);
   if (status != MPS_OK) return status;
-  bool diverged = false; /* the step before */
+  int level = MPSI_DYNAMICS_CALM; /* of the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
   for (int64_t k = 0; k < count; k++) {
     if (k > 0) status = evaluate_signals(dynamics, function, length);
-    status = pass_all(&w, function, status, &diverged);
-    if (status == MPS_ERROR_DIVERGED) return show_diverged(&w, function, status);
+    status = pass_all(&w, function, status, level);
+    if (status == MPS_OK && k > 0) status = mpsi_dynamics_save_before(dynamics, function);
+    if (status == MPS_ERROR_DIVERGED) return end_diverged(&w, function, status);
     if (status != MPS_OK) return status;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
-    take_step(&w, output && k == count - 1, &diverged);
+    status = take_step(&w, function, output && k == count - 1, &level);
+    if (status != MPS_OK) return status;
   }
-  status = agree_on_last(dynamics, function, diverged);
-  return status == MPS_ERROR_DIVERGED ? show_diverged(&w, function, status) : status;
+  status = agree_on_last(dynamics, function, level);
+  return status == MPS_ERROR_DIVERGED ? end_diverged(&w, function, status) : status;
 }

@@ -9,18 +9,18 @@ mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {
 }
 
 mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
-  const mps_status status = mpsi_fluid_free(f, function);
-  return status == MPS_OK ? mpsi_fluid_closed(f, function) : status;
+  return mpsi_solver_enter(&f->base, function);
 }
 
-mps_status mpsi_fluid_closed(mps_fluid *f, const char *function) {
-  const mps_status status = mpsi_guard_check_between(&f->guard, f->context, function);
-  if (status != MPS_OK || f->stage == MPSI_FLUID_BETWEEN) return status;
+mps_status mpsi_fluid_closed(void *solver, const char *function) {
+  mps_fluid *f = solver;
+  if (f->stage == MPSI_FLUID_BETWEEN) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                    "a step is open: end or abandon it first");
 }
 
-mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt) {
+mps_status mpsi_fluid_check_dt(void *solver, const char *function, double dt) {
+  const mps_fluid *f = solver;
   const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
   if (isnan(dt) || (dt > 0.0 && dt <= longest && isfinite(dt))) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,

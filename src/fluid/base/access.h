@@ -18,9 +18,9 @@ double mpsi_fluid_energy(const mps_fluid *fluid, double *kinetic);
 /* MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or
  * both (ready). */
 mps_status mpsi_fluid_free(mps_fluid *fluid, const char *function);
-mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_closed(void *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
 /* Checks `dt` (s; NaN: chosen by the library). */
-mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt);
+mps_status mpsi_fluid_check_dt(void *fluid, const char *function, double dt);
 
 #endif

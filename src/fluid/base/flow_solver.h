@@ -21,6 +21,7 @@
 #include "fluid/pressure/classical.h"
 #include "fluid/pressure/pressure.h"
 #include "fluid/pressure/outside.h"
+#include "solver/solver_base.h"
 
 #include <mps/fluid.h>
 
@@ -64,10 +65,17 @@ typedef struct mpsi_fluid_partition mpsi_fluid_partition; /* partition.h */
 typedef struct mpsi_fluid_coarse mpsi_fluid_coarse;       /* coarse.h */
 typedef struct mpsi_fluid_rocks mpsi_fluid_rocks;         /* rock.h */
 
+#define MPSI_FLUID_CROWD 4096 /* most candidates in the cells around a particle */
+
+/* A worker's list of the neighbours of one particle: too large for the stack of a host's thread. */
+typedef struct mpsi_fluid_crowd {
+  _Alignas(64) double value[MPSI_FLUID_CROWD + MPSI_FLUID_WIDE];
+  int32_t index[MPSI_FLUID_CROWD + MPSI_FLUID_WIDE];
+  int32_t count;
+} mpsi_fluid_crowd;
+
 struct mps_fluid {
-  mps_context *context;
-  mps_particles *particles;
-  mpsi_holder holder; /* of the particles */
+  MPSI_SOLVER_BASE;
   mps_fluid_def def;
   const mpsi_fluid_loops *loops;
   mpsi_fluid_weight weight; /* of water without rock near */
@@ -103,19 +111,18 @@ struct mps_fluid {
   mpsi_fluid_local *local;
   /* neighbours */
   int32_t *start;               /* first pair of each particle over MPSI_FLUID_WIDE */
-  uint16_t *near;               /* pairs of each particle, at most CROWD of near.c */
+  uint16_t *near;               /* pairs of each particle, at most MPSI_FLUID_CROWD */
   int64_t most_near;            /* room for pairs, a particle on average over a chunk */
   mpsi_room index_room, w_room; /* int32_t, float: pairs */
+  mpsi_room crowd_room;         /* mpsi_fluid_crowd, of each worker */
   int32_t *index;               /* of the pairs' other ends, ghosts too */
   float *w;                     /* of the pairs: the weight, rounded, wherever it is used */
   mpsi_room fit_room;           /* sums of fits, see probe.c */
   mpsi_room near_wall_room;     /* of a wall, see probe.c */
   int32_t *slot; /* cloud sorted by cells during the neighbour search: in lower_room */
   double *slot_x[2];
-  float *flux[5];           /* of the cloud: b and G of smooth.c, once q is known; in lower_room */
-  bool paired;              /* some b are not 0 */
-  mpsi_fluid_given **given; /* loads by number, NULL: none */
-  int32_t given_room;
+  float *flux[5];         /* of the cloud: b and G of smooth.c, once q is known; in lower_room */
+  bool paired;            /* some b are not 0 */
   mpsi_room push_room;    /* of the following */
   double *push[2], *over; /* of each particle: acceleration by loads and forces, m/s2; pressure on
                              its surface, Pa; NULL: none has any */
@@ -133,19 +140,19 @@ struct mps_fluid {
   int64_t steps;
   mpsi_fluid_stage stage;
   mpsi_fluid_classical classical;
-  mpsi_fluid_outside *outside; /* NULL: none */
-  mpsi_guard guard;            /* of the callbacks of the run and of the solver */
+  mpsi_fluid_outside outside;
   mpsi_fluid_change change;    /* of the set, that is under way; energy_before is that of before */
   bool stale;                  /* the cloud is not that of the fields */
   bool edited;                 /* the caller has written fields, which ranks have not compared */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   uint32_t warned; /* logged already: mpsi_fluid_warning, bits */
-  mpsi_identity *identity;
   mps_fluid_report report, before;     /* before: as the step being made began */
   mps_fluid_report report_before_look; /* of mpsi_fluid_refresh, until mpsi_fluid_show_surface */
   double energy_before;                /* J, before particles are added or removed */
   double energy;                       /* J, kinetic and potential at creation */
   double work_boundaries, work_loads;  /* J, since creation */
+  bool renewed; /* the caller has changed positions or velocities since given_energy was found */
+  double given_energy; /* J, put in so: step/bound.h */
   mpsi_fluid_exchange exchange;
   mpsi_fluid_rocks *rocks; /* NULL: none */
 };
@@ -225,6 +232,14 @@ static inline double mpsi_fluid_least(const mps_fluid *f, int64_t i) {
 static inline bool mpsi_fluid_beside(const mpsi_fluid_body *body, const double *x, double reach) {
   return body->body && x[0] > body->low[0] - reach && x[0] < body->high[0] + reach &&
          x[1] > body->low[1] - reach && x[1] < body->high[1] + reach;
+}
+
+/* Load of a number below the count; NULL where it is free. */
+static inline int32_t mpsi_fluid_load_count(const mps_fluid *f) {
+  return f->conditions[MPSI_LOADS].room;
+}
+static inline mpsi_fluid_given *mpsi_fluid_load_of(const mps_fluid *f, int32_t number) {
+  return f->conditions[MPSI_LOADS].own[number];
 }
 
 #endif

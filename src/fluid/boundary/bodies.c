@@ -221,15 +221,7 @@ bool mpsi_fluid_inside_body(const mps_fluid *f, int besides, const double *x) {
 
 /* ---- the caller's bodies --------------------------------------------------------------------- */
 
-static const mps_fluid_contact_def contact_defaults = {.struct_size = sizeof(mps_fluid_contact_def),
-                                                       .kind = MPS_BOUNDARY_HELD};
-
-mps_status mps_fluid_contact_def_init(mps_fluid_contact_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_fluid_contact_def, def, size, &contact_defaults);
-}
-
-static mps_status check_body(mps_fluid *f, const char *function, const mps_body *body,
-                             int32_t kind) {
+static mps_status check_body(mps_fluid *f, const char *function, const mps_body *body) {
   if (!body) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "body is NULL");
   for (int b = 0; b < f->bodies; b++)
     if (f->body[b].body == body)
@@ -242,10 +234,6 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the body is in contact with another solver, which is axisymmetric: make a "
                      "body for each");
-  if (kind != MPS_BOUNDARY_ROLLER && kind != MPS_BOUNDARY_HELD)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the body is %d, allowed are 0 (HELD: no slip) and 2 (ROLLER: slip)",
-                     kind);
   for (int64_t k = 0; k < body->edges; k++) {
     const double *a = body->xy + 2 * k, *b = a + 2;
     const double *c = k + 1 < body->edges ? b + 2 : body->xy + 2;
@@ -344,10 +332,9 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
-  mpsi_give(&given, "kind", def->kind);
-  mpsi_give(&given, "floats", def->floats);
+  MPSI_GIVE_DEF(&given, mps_fluid_contact_def, def);
   if (status == MPS_OK) mpsi_body_give(&given, body);
-  return mpsi_domain_agree_given(f->def.domain, function, status, &given);
+  return mpsi_domain_agree_given(f->domain, function, status, &given);
 }
 
 /* Body number `b` and the walls of its faces. */
@@ -387,27 +374,14 @@ int32_t mpsi_fluid_body_number(const mps_fluid *f, const mps_contact *contact) {
   return -1;
 }
 
-mps_status mpsi_fluid_check_floats(mps_fluid *f, const char *function, const mps_body *body,
-                                   const mps_contact *contact, int32_t floats) {
-  const mpsi_body_source *mover = mpsi_body_mover(body);
-  if (floats < 0 || floats > 1)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "floats is %d, must be 0 or 1",
-                     floats);
-  if (floats && body->def.motion != MPS_BODY_MOTION_FREE)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "floats is 1 and the body prescribed: a body that floats must be free");
-  if (floats && mover && !(contact && mover == &contact->source))
-    return mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                     "another solver moves the body: make its contact with mover 1 (other)");
-  return MPS_OK;
+static bool is_to_float(const mps_body *body, const mps_fluid_contact_def *def) {
+  return def->mover == MPS_CONTACT_MOVER_SOLVER && body->def.motion == MPS_BODY_MOTION_FREE;
 }
 
-void mpsi_fluid_let_float(mps_fluid *f, int32_t number, int32_t floats) {
+static void let_float(mps_fluid *f, int32_t number) {
   mpsi_fluid_body *own = &f->body[number];
-  if (floats && !own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
-  own->floats = own->source->moves = floats;
-  memset(own->mass, 0, sizeof own->mass);
-  memset(own->rate, 0, sizeof own->rate);
+  memset(&own->body->pending, 0, sizeof own->body->pending);
+  own->floats = own->source->moves = true;
 }
 
 static mps_status check_owner(void *owner, const char *function) {
@@ -450,7 +424,21 @@ static void reaction(const void *owner, const mps_contact *contact, int32_t part
   find_reaction(&f->body[mpsi_fluid_body_number(f, contact)], f, part, out);
 }
 
-static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles, reaction};
+static void get_def(const void *owner, const mps_contact *contact, void *out) {
+  const mps_fluid *f = owner;
+  const mpsi_fluid_body *body = &f->body[mpsi_fluid_body_number(f, contact)];
+  mps_fluid_contact_def *def = out;
+  def->kind = f->wall[body->first].kind;
+  const bool moves = body->floats || body->body->def.motion != MPS_BODY_MOTION_FREE;
+  def->mover = moves ? MPS_CONTACT_MOVER_SOLVER : MPS_CONTACT_MOVER_OTHER;
+}
+
+static const mpsi_contact_owner owner_of_contacts = {.check = check_owner,
+                                                     .end = end,
+                                                     .particles = list_particles,
+                                                     .reaction = reaction,
+                                                     .def_kind = MPS_DEF_FLUID_CONTACT,
+                                                     .get_def = get_def};
 
 /* Lowest free number of a body, and whether there is room for its edges. */
 static mps_status find_room(mps_fluid *f, const char *function, const mps_body *body,
@@ -466,17 +454,17 @@ static mps_status find_room(mps_fluid *f, const char *function, const mps_body *
 
 mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_contact_def *user,
                                  mps_contact **out) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   if (out) *out = NULL;
-  mps_fluid_contact_def def = contact_defaults;
+  mps_fluid_contact_def def = mps_fluid_contact_defaults();
   mps_contact *contact = NULL;
   int32_t b = 0;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  if (user) status = MPSI_DEF_READ(f->context, __func__, mps_fluid_contact_def, user, &def);
-  if (status == MPS_OK) status = check_body(f, __func__, body, def.kind);
+  status = MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
+  if (status == MPS_OK) status = check_body(f, __func__, body);
   if (status == MPS_OK) status = find_room(f, __func__, body, &b);
-  if (status == MPS_OK) status = mpsi_fluid_check_floats(f, __func__, body, NULL, def.floats);
+  if (status == MPS_OK && is_to_float(body, &def)) status = mpsi_body_check_mover(body, __func__);
   if (status == MPS_OK)
     status = mpsi_contact_make(f->context, __func__, body, &owner_of_contacts, f, &contact);
   if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b);
@@ -491,7 +479,7 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
     return status;
   }
   mpsi_contact_join(contact);
-  mpsi_fluid_let_float(f, b, def.floats);
+  if (is_to_float(body, &def)) let_float(f, b);
   f->stale = true, f->unknown = 1;
   if (out)
     *out = contact;

@@ -44,10 +44,6 @@ void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
 void mpsi_fluid_drop_leaving(mps_fluid *fluid); /* once no step is open */
 /* Of the body that a contact is with; -1: none of this fluid's, or it has ended. */
 int32_t mpsi_fluid_body_number(const mps_fluid *fluid, const mps_contact *contact);
-/* Whether the fluid may move a body (`contact`: that with it, NULL before there is one). */
-mps_status mpsi_fluid_check_floats(mps_fluid *fluid, const char *function, const mps_body *body,
-                                   const mps_contact *contact, int32_t floats);
-void mpsi_fluid_let_float(mps_fluid *fluid, int32_t number, int32_t floats);
 
 #define MPSI_FLUID_LEAST_ANGLE 15.0 /* degrees of fluid between a face and what it stands on */
 

@@ -1,73 +1,32 @@
 /* boundaries.c - plane walls: definitions, checks, and how they are added, changed and removed.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/walls.h"
 #include "fluid/base/access.h"
 #include "fluid/boundary/slots.h"
 #include "fluid/boundary/clearance.h"
 #include "fluid/ranks/partition.h"
 
 #include "core/base/boundary_kind.h"
+#include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
 #define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
 
-static const mps_fluid_boundary_def boundary_defaults = {
-    .struct_size = sizeof(mps_fluid_boundary_def), .factor = 1.0};
-
-mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_fluid_boundary_def, def, size, &boundary_defaults);
-}
-
-/* Members of a definition that a polyline has not. */
-static mps_status check_line(mps_fluid *f, const char *function, const mps_fluid_boundary_def *d) {
-  if (d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
+static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
+  mps_fluid *f = solver;
+  const mps_fluid_boundary_def *d = known;
+  const double length = hypot(d->normal[0], d->normal[1]);
+  (void)number;
+  if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
                      d->kind, mpsi_boundary_kind_name(d->kind));
-  if (d->signal || d->node_count != 0)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "the boundary has corners, and a signal or nodes: a polyline does not move");
-  return MPS_OK;
-}
-
-static mps_status check_boundary(mps_fluid *f, const char *function,
-                                 const mps_fluid_boundary_def *d) {
-  const double length = hypot(d->normal[0], d->normal[1]);
-  if (!mpsi_boundary_kind_in(d->kind, 1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN |
-                                          1u << MPS_BOUNDARY_ROLLER | 1u << MPS_BOUNDARY_OPEN))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d (%s), the fluid has 0 (HELD), 1 (DRIVEN), 2 "
-                     "(ROLLER) and 7 (OPEN)",
-                     d->kind, mpsi_boundary_kind_name(d->kind));
-  if (d->kind == MPS_BOUNDARY_HELD && d->signal)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "a held boundary takes no signal: make its kind DRIVEN, or ROLLER for slip");
-  if (d->kind == MPS_BOUNDARY_OPEN && (d->signal || d->node_count > 0))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "the open boundary has a signal or nodes: an open side does not move");
-  if (d->corner_count != 0) return check_line(f, function, d);
-  if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
-    return mpsi_fail(
-        f->context, function, MPS_ERROR_ARGUMENT,
-        "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
-        d->normal[0], d->normal[1], d->normal[2]);
-  if (!(fabs(d->point[0]) <= 1e12 && fabs(d->point[1]) <= 1e12) || !isfinite(d->factor))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
-                     "within 1e12 m",
-                     d->point[0], d->point[1], d->factor);
-  if (d->node_count < 0 || d->node_count > 1000000 || (d->node_count > 0 && !d->nodes) ||
-      (d->node_count > 1 && d->signal))
-    return mpsi_fail(
-        f->context, function, MPS_ERROR_ARGUMENT,
-        "node_count of the boundary is %lld with nodes %s and %s signal: allowed are 0 "
-        "to 1e6 with nodes given, and at most one node with a signal",
-        (long long)d->node_count, d->nodes ? "given" : "NULL", d->signal ? "a" : "no");
-  for (int64_t k = 0; k < 3 * d->node_count; k++)
-    if (!(fabs(d->nodes[k]) <= 1e12))
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "nodes: node %lld has a coordinate of %g m, must be within 1e12 m",
-                       (long long)(k / 3), d->nodes[k]);
-  return MPS_OK;
+  if (d->corner_count != 0)
+    return mpsi_fluid_check_corners(f, function, d->corner_count, d->corners);
+  if (length > 1e-150 && length < 1e150) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                   "normal of the boundary is (%g, %g): it must have a length", d->normal[0],
+                   d->normal[1]);
 }
 
 /* Whether the corner of the wall and boundary b lies behind another boundary. */
@@ -95,11 +54,12 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   for (int64_t i = 0; i < f->count; i++) {
     const double d = mpsi_fluid_distance(w, w->now.s, x[i], y[i]);
     if (d < LEAST_WALL * f->l0)
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "point: particle %lld at (%g, %g) m is %g m inside the boundary, must be at "
-                       "least %g l0 = %g m",
-                       (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
-                       LEAST_WALL, LEAST_WALL * f->l0);
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_ARGUMENT,
+          "point: particle %lld at (%g, %g) m lies %g m %s the boundary, must lie inside "
+          "it by at least %g l0 = %g m",
+          (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], fabs(d),
+          d < 0.0 ? "outside" : "inside", LEAST_WALL, LEAST_WALL * f->l0);
   }
   for (int b = 0; b < f->boundaries; b++) {
     if (b == number || !f->wall[b].line) continue;
@@ -134,137 +94,88 @@ static mps_status start_motion(mps_fluid *f, const char *function, const mps_sig
 
 /* A wall without motion, of which the segments are parts. */
 static mps_status make_line(mps_fluid *f, const char *function, const mps_fluid_boundary_def *def,
-                            int32_t number, mpsi_fluid_wall *out) {
-  mpsi_fluid_wall w = {.kind = def->kind, .factor = 1.0};
-  mps_status status = mpsi_fluid_make_motion(f, function, &w, 0, NULL);
+                            int32_t number, mpsi_fluid_wall *w) {
+  *w = (mpsi_fluid_wall){.kind = def->kind, .factor = 1.0};
+  mps_status status = mpsi_fluid_make_motion(f, function, w, 0, NULL);
   if (status == MPS_OK)
-    status = mpsi_fluid_make_polyline(f, function, number, def->corner_count, def->corners, &w);
-  if (status == MPS_OK) status = mpsi_fluid_check_bodies(f, function, w.line);
+    status = mpsi_fluid_make_polyline(f, function, number, def->corner_count, def->corners, w);
+  return status == MPS_OK ? mpsi_fluid_check_bodies(f, function, w->line) : status;
+}
+
+/* The wall of a definition, with room for it. */
+static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
+  mps_fluid *f = solver;
+  const mps_fluid_boundary_def *def = known;
+  mpsi_fluid_wall *w = own;
+  if (!mpsi_fluid_make_boundary(f, number))
+    return mpsi_fail_memory(f->context, function, ((size_t)f->walls + 1) * sizeof *f->wall);
+  if (def->corner_count != 0) return make_line(f, function, def, number, w);
+  const double length = hypot(def->normal[0], def->normal[1]);
+  const bool open = def->kind == MPS_BOUNDARY_OPEN;
+  *w = (mpsi_fluid_wall){.used = !open, .open = open, .kind = def->kind, .factor = def->factor};
+  for (int c = 0; c < 2; c++) w->at[c] = def->point[c], w->normal[c] = def->normal[c] / length;
+  mps_status status = start_motion(f, function, def->signal, number, w);
   if (status == MPS_OK)
-    *out = w;
-  else
-    mpsi_fluid_drop_wall(f, &w);
+    status = mpsi_fluid_make_motion(f, function, w, def->node_count, def->nodes);
+  if (status == MPS_OK && !open) status = check_place(f, function, w, number);
+  if (def->signal) w->signal = mpsi_signal_retain(def->signal);
   return status;
 }
 
-/* Checks a definition and makes its wall, of `number`. */
-static mps_status make_wall(mps_fluid *f, const char *function,
-                            const mps_fluid_boundary_def *user_def, int32_t number,
-                            mpsi_fluid_wall *out) {
-  if (!user_def) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  mps_fluid_boundary_def def = boundary_defaults;
-  mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_boundary_def, user_def, &def);
-  if (status == MPS_OK) status = check_boundary(f, function, &def);
+/* What a wall has when it gets another definition. */
+static void carry_over(const mpsi_fluid_wall *old, mpsi_fluid_wall *now) {
+  if (now->nodes == old->nodes && !now->line && !old->line)
+    for (int64_t k = 0; k < now->nodes; k++) now->now.u[k] = old->now.u[k];
+  now->load = old->load;
+  for (int c = 0; c < 2; c++) now->impulse[c] = old->impulse[c];
+  now->moment_impulse = old->moment_impulse;
+  now->work = old->work;
+  now->removed = old->removed;
+  now->removed_mass = old->removed_mass;
+}
+
+/* Moves the wall made to its place among the others; bodies may stand on others now. */
+static mps_status apply(void *solver, const char *function, int32_t number, void *def, void *own,
+                        void *former) {
+  mps_fluid *f = solver;
+  mpsi_fluid_wall *now = own, *place = &f->wall[number];
+  (void)def;
+  const mps_status status =
+      mpsi_domain_agree_same(f->domain, function, MPS_OK, "the signal's present displacement",
+                             now ? now->origin : 0.0); /* of functions of the caller */
   if (status != MPS_OK) return status;
-  if (def.corner_count != 0) return make_line(f, function, &def, number, out);
-  const double length = hypot(def.normal[0], def.normal[1]);
-  const bool open = def.kind == MPS_BOUNDARY_OPEN;
-  mpsi_fluid_wall w = {.used = !open, .open = open, .kind = def.kind, .factor = def.factor};
-  for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
-  status = start_motion(f, function, def.signal, number, &w);
-  if (status == MPS_OK) status = mpsi_fluid_make_motion(f, function, &w, def.node_count, def.nodes);
-  if (status == MPS_OK && !open) status = check_place(f, function, &w, number);
-  if (status != MPS_OK) {
-    mpsi_fluid_drop_wall(f, &w);
-    return status;
+  if (now && former) carry_over(place, now);
+  mpsi_fluid_drop_wall(f, place);
+  if (now) {
+    *place = *now;
+    *now = (mpsi_fluid_wall){0};
   }
-  if (def.signal) w.signal = mpsi_signal_retain(def.signal);
-  *out = w;
-  return MPS_OK;
-}
-
-/* Makes the wall on all ranks, or on none; `status` is that of this rank so far. */
-static mps_status make_alike(mps_fluid *f, const char *function, mps_status status,
-                             const mps_fluid_boundary_def *def, int32_t number,
-                             mpsi_fluid_wall *w) {
-  *w = (mpsi_fluid_wall){0};
-  if (status == MPS_OK) status = make_wall(f, function, def, number, w);
-  if (f->partition) {
-    mpsi_given given;
-    mpsi_given_begin(&given);
-    mpsi_give(&given, "number", number);
-    mpsi_give(&given, "kind", w->kind);
-    mpsi_give_vector(&given, "point", 2, w->at);
-    mpsi_give_vector(&given, "normal", 2, w->normal);
-    mpsi_give(&given, "factor", w->factor);
-    mpsi_give(&given, "the signal's present displacement", w->origin);
-    mpsi_give(&given, "node_count", (double)w->nodes);
-    mpsi_give_bytes(&given, "a hash of nodes", w->node, (size_t)w->nodes * 8);
-    mpsi_fluid_give_corners(&given, w->line);
-    mpsi_signal_give(&given, "a hash of signal", w->signal);
-    status = mpsi_domain_agree_given(f->def.domain, function, status, &given);
-  }
-  if (status != MPS_OK) mpsi_fluid_drop_wall(f, w);
-  return status;
-}
-
-/* After a change of boundaries, or an attempt: bodies may stand on others now. */
-static void have_changed(mps_fluid *f, mps_status status) {
   mpsi_fluid_drop_slots(f, 0, 0);
-  if (status != MPS_OK) return;
   mpsi_fluid_place_bodies(f);
   mpsi_fluid_forget_segments(f);
   f->stale = true, f->unknown = 1;
-}
-
-mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *def,
-                                  int32_t *number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  int32_t b = 0;
-  while (MPSI_FLUID_IS_BOUNDARY(f, b)) b++;
-  if (b == MPS_FLUID_MAX_BOUNDARIES)
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                       "the fluid has %d boundaries, the most there can be", b);
-  else if (!mpsi_fluid_make_boundary(f, b))
-    status = mpsi_fail_memory(f->context, __func__, ((size_t)f->walls + 1) * sizeof *f->wall);
-  mpsi_fluid_wall wall;
-  status = make_alike(f, __func__, status, def, b, &wall);
-  if (status == MPS_OK) f->wall[b] = wall;
-  have_changed(f, status);
-  if (status != MPS_OK) return status;
-  if (number) *number = b;
   return MPS_OK;
 }
 
-static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
-  if (!MPSI_FLUID_IS_BOUNDARY(f, number))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "the fluid has no boundary of number %d", number);
-  return MPS_OK;
+static void drop(void *solver, void *own) {
+  mpsi_fluid_drop_wall(solver, own);
+  mpsi_fluid_drop_slots(solver, 0, 0);
 }
 
-mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_boundary_def *def) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  mpsi_fluid_wall wall;
-  status = make_alike(f, __func__, check_number(f, __func__, number), def, number, &wall);
-  if (status != MPS_OK) return status;
-  mpsi_fluid_wall *old = &f->wall[number];
-  if (wall.nodes == old->nodes && !wall.line && !old->line)
-    for (int64_t k = 0; k < wall.nodes; k++) wall.now.u[k] = old->now.u[k];
-  wall.load = old->load;
-  for (int c = 0; c < 2; c++) wall.impulse[c] = old->impulse[c];
-  wall.moment_impulse = old->moment_impulse;
-  wall.work = old->work;
-  wall.removed = old->removed;
-  wall.removed_mass = old->removed_mass;
-  mpsi_fluid_drop_wall(f, old);
-  *old = wall;
-  have_changed(f, status);
-  return MPS_OK;
-}
-
-mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->def.domain, __func__, check_number(f, __func__, number),
-                                  "number", number);
-  if (status != MPS_OK) return status;
-  mpsi_fluid_drop_wall(f, &f->wall[number]);
-  have_changed(f, status);
-  return MPS_OK;
-}
+const mpsi_condition_kind mpsi_fluid_boundaries = {
+    .kind = MPS_DEF_FLUID_BOUNDARY,
+    .definition = &mpsi_definition_of_mps_fluid_boundary_def,
+    .what = "boundary",
+    .add = "mps_fluid_add_boundary",
+    .set = "mps_fluid_set_boundary",
+    .get = "mps_fluid_get_boundary",
+    .remove = "mps_fluid_remove_boundary",
+    .role = MPSI_SIGNAL_MOTION,
+    .list = {{"nodes", "node_count", 3}, {"corners", "corner_count", 3}},
+    .most = MPS_FLUID_MAX_BOUNDARIES,
+    .size = sizeof(mpsi_fluid_wall),
+    .check = check,
+    .make = make,
+    .apply = apply,
+    .drop = drop,
+};

@@ -8,7 +8,6 @@
 
 #define LEAST_ANGLE 15.0 /* degrees of fluid at a corner, and of solid */
 #define PI 3.141592653589793
-#define MOST_CORNERS 10000
 
 static double cross(const double *a, const double *b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -51,7 +50,8 @@ double mpsi_fluid_before_line(const mpsi_fluid_polyline *line, const double *x,
   for (int64_t k = 0; k < line->count; k++) {
     int at;
     const double square = nearest_point(&line->segment[k], x, &at);
-    if (square < least) least = square, found = &line->segment[k], where = at;
+    if (!found || square < least) /* of a point too far for its square, the first */
+      least = square, found = &line->segment[k], where = at;
   }
   if (nearest) *nearest = found;
   return signed_distance(line, found, x, where, least);
@@ -68,7 +68,7 @@ double mpsi_fluid_before_listed(const mps_fluid *f, const mpsi_fluid_listed *lis
     int at;
     if (s->boundary != number) break;
     const double square = nearest_point(s, x, &at);
-    if (square < least) least = square, found = s, where = at;
+    if (!found || square < least) least = square, found = s, where = at;
   }
   *nearest = found;
   return signed_distance(f->wall[number].line, found, x, where, least);
@@ -83,13 +83,8 @@ double mpsi_fluid_before_lines(const mps_fluid *f, const double *x) {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static mps_status check_corners(mps_fluid *f, const char *function, int64_t corners,
-                                const double *xy) {
-  if (corners < 2 || corners > MOST_CORNERS || !xy)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "corner_count of the polyline is %lld with corners %s: allowed are 2 to %d "
-                     "corners, given",
-                     (long long)corners, xy ? "given" : "NULL", MOST_CORNERS);
+mps_status mpsi_fluid_check_corners(mps_fluid *f, const char *function, int64_t corners,
+                                    const double *xy) {
   for (int64_t k = 0; k < 3 * corners; k++)
     if (!(fabs(xy[k]) <= 1e12) || (k % 3 == 2 && xy[k] != 0.0))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
@@ -243,8 +238,6 @@ static mps_status make_segments(mps_fluid *f, const char *function, int32_t numb
 
 mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t number,
                                     int64_t corners, const double *xy, mpsi_fluid_wall *wall) {
-  mps_status status = check_corners(f, function, corners, xy);
-  if (status != MPS_OK) return status;
   const size_t size =
       sizeof(mpsi_fluid_polyline) + (size_t)(corners - 1) * sizeof(mpsi_fluid_segment);
   mpsi_fluid_polyline *line = mpsi_alloc(f->context, 1, size);
@@ -253,7 +246,7 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t 
   line->count = corners - 1;
   line->closed = corners > 3 && xy[0] == xy[3 * corners - 3] && xy[1] == xy[3 * corners - 2];
   wall->line = line; /* dropped with the wall */
-  status = make_segments(f, function, number, xy, wall->kind, line);
+  mps_status status = make_segments(f, function, number, xy, wall->kind, line);
   for (int c = 0; c < 2; c++)
     wall->at[c] = xy[c], wall->normal[c] = line->segment[0].wall.normal[c];
   if (status == MPS_OK) status = check_angles(f, function, line);
@@ -262,12 +255,4 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t 
     if (b != number && f->wall[b].used)
       status = mpsi_fluid_check_meeting(f, function, &f->wall[b], b, line);
   return status == MPS_OK ? check_particles(f, function, line) : status;
-}
-
-/* Ranks compare the corners: coordinates are numbers that they agree on. */
-void mpsi_fluid_give_corners(mpsi_given *given, const mpsi_fluid_polyline *line) {
-  mpsi_give(given, "corner_count", line ? (double)line->count + 1.0 : 0.0);
-  if (line) mpsi_give_vector(given, "the first corner", 2, line->segment[0].end[0]);
-  for (int64_t k = 0; line && k < line->count; k++)
-    mpsi_give_vector(given, "a corner", 2, line->segment[k].end[1]);
 }

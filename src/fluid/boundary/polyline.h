@@ -59,6 +59,9 @@ static inline double mpsi_fluid_past_turn(const mpsi_fluid_segment *s, const dou
   return least;
 }
 
+/* Corners of a definition that are NULL, out of range or too near to each other. */
+mps_status mpsi_fluid_check_corners(mps_fluid *fluid, const char *function, int64_t corners,
+                                    const double *xy);
 /* A polyline's own segments from its corners; of a boundary with this number. */
 mps_status mpsi_fluid_make_polyline(mps_fluid *fluid, const char *function, int32_t number,
                                     int64_t corners, const double *xy, mpsi_fluid_wall *wall);
@@ -66,7 +69,6 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *fluid, const char *function, int3
 mps_status mpsi_fluid_check_meeting(mps_fluid *fluid, const char *function,
                                     const mpsi_fluid_wall *plane, int32_t number,
                                     const mpsi_fluid_polyline *line);
-void mpsi_fluid_give_corners(mpsi_given *given, const mpsi_fluid_polyline *line);
 /* Distance (m) to the nearest point of a polyline, negative behind it; *nearest: that segment
  * (NULL: not asked for). */
 double mpsi_fluid_before_line(const mpsi_fluid_polyline *line, const double *x,

@@ -190,8 +190,8 @@ static bool near_limit(const mps_fluid *f, int64_t i) {
   return false;
 }
 
-bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
-  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = CORNER * f->l0;
+bool mpsi_fluid_within(const mps_fluid *f, int64_t i, double reach) {
+  const double x[2] = {f->x[0][i], f->x[1][i]};
   for (int n = 0; n < f->bodies; n++) {
     const mpsi_fluid_body *body = &f->body[n];
     if (!mpsi_fluid_beside(body, x, 2.0 * reach)) continue;
@@ -202,6 +202,26 @@ bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
     }
   }
   return false;
+}
+
+bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
+  return mpsi_fluid_within(f, i, CORNER * f->l0);
+}
+
+double mpsi_fluid_past_corner(const mps_fluid *f, int64_t i, int64_t ghost) {
+  const int64_t j = f->count + ghost;
+  double least = INFINITY;
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const mpsi_fluid_wall *w = &f->wall[f->flips[ghost].wall[k]];
+    double at[2];
+    if (!w->of_body) continue;
+    const double a[2] = {f->x[0][i], f->x[1][i]}, b[2] = {f->x[0][j], f->x[1][j]};
+    if (!passes(f, w, a, b, at)) continue;
+    const double along = mpsi_fluid_along(w, at[0], at[1]);
+    if (w->from == 0.0) least = fmin(least, along);
+    if (w->to == w->length) least = fmin(least, w->length - along);
+  }
+  return least;
 }
 
 /* Length of the path from a to b around the nearest corner of a body, m; INFINITY without one. */

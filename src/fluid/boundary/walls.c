@@ -85,18 +85,20 @@ void mpsi_fluid_add_impulses(mps_fluid *f) {
   }
 }
 
-mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double *displacement_of,
-                                     const double *velocity) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+mps_status mps_fluid_set_boundary_motion(mps_fluid *f, int32_t number,
+                                         const double *displacement_of, const double *velocity) {
+  if (!f) return mpsi_null(__func__, "fluid");
   const mps_status status = mpsi_fluid_free(f, __func__);
   if (status != MPS_OK) return status;
   if (MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "number: boundary %d is a polyline, which does not move", number);
-  if (!MPSI_FLUID_IS_BOUNDARY(f, number) || !f->wall[number].used || !velocity)
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number) || !f->wall[number].used)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "boundary is %d and velocity %s: must be one of the fluid's, and given",
-                     number, velocity ? "given" : "NULL");
+                     "number is %d, and the fluid has no boundary of that number: "
+                     "mps_fluid_add_boundary writes it",
+                     number);
+  if (!velocity) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "velocity is NULL");
   mpsi_fluid_wall *w = &f->wall[number];
   if (w->signal)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,

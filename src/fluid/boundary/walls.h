@@ -3,6 +3,8 @@
 #ifndef MPSI_FLUID_WALLS_H
 #define MPSI_FLUID_WALLS_H
 
+#include "solver/conditions.h"
+
 #include <mps/fluid.h>
 
 #include <stdbool.h>
@@ -19,5 +21,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
 void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities */
 void mpsi_fluid_press_ghosts(
     mps_fluid *fluid); /* their pressure offsets, by walls' new velocities */
+
+extern const mpsi_condition_kind mpsi_fluid_boundaries; /* boundaries.c */
 
 #endif

@@ -1,6 +1,10 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/access.h"
+#include "fluid/boundary/walls.h"
+#include "fluid/life/state.h"
+#include "fluid/reading/probe.h"
+#include "fluid/step/step.h"
 #include "fluid/life/properties.h"
 #include "fluid/particles/holder.h"
 #include "fluid/particles/look.h"
@@ -10,51 +14,35 @@
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
-#include "core/base/members.h"
+#include "core/definition/digits.h"
+#include "solver/linear.h"
 
 #include <mps/body.h>
+#include <mps/experimental/domain.h>
 
 #include <string.h>
-
-static const mps_fluid_def defaults = {
-    .struct_size = sizeof(mps_fluid_def),
-    .iterations = 2000,
-    .density = NAN,
-    .viscosity = NAN,
-    .gravity = {0.0, -9.81, 0.0},
-    .level = NAN,
-    .measure = 1.0,
-    .dt = NAN,
-    .radius_ratio = 3.1,
-    .tolerance = 1e-5,
-};
-
-mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_fluid_def, def, size, &defaults);
-}
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
+  static const char function[] = "mps_fluid_create";
   const double g = hypot(d->gravity[0], d->gravity[1]);
   const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;
-  const mpsi_member checks[] = {
-      {"iterations", ">= 1", d->iterations, d->iterations >= 1},
-      {"density", "in [1e-3, 1e6] kg/m3", d->density, within(d->density, 1e-3, 1e6)},
-      {"|gravity|", "at most 1e6 m/s2", g, g <= 1e6},
-      {"gravity[2]", "0: the fluid is in the plane", d->gravity[2], d->gravity[2] == 0.0},
-      {"level", "finite or NaN", d->level, isnan(d->level) || isfinite(d->level)},
-      {"measure", "in [1e-9, 1e9] m", d->measure, within(d->measure, 1e-9, 1e9)},
-      {"dt", "NaN, or > 0 and at most half of (l0/g)^1/2", d->dt,
-       isnan(d->dt) || (d->dt > 0.0 && d->dt <= longest)},
-      {"radius_ratio", "in [2.6, 4]", d->radius_ratio, within(d->radius_ratio, 2.6, 4.0)},
-      {"tolerance", "in [1e-14, 1e-2]", d->tolerance, within(d->tolerance, 1e-14, 1e-2)},
-  };
-  const mps_status status = MPSI_CHECK_MEMBERS(context, "mps_fluid_create", "the fluid", checks);
-  if (status != MPS_OK) return status;
-  return mpsi_fluid_check_viscosity(context, "mps_fluid_create", d->viscosity);
+  if (!within(d->density, 1e-3, 1e6))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "density is %s kg/m3, must be in 0.001 to 1e6",
+                     mpsi_outside(d->density, 1e-3, 1e6).text);
+  if (!(g <= 1e6))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "gravity is (%g, %g) m/s2, must be at most 1e6 long", d->gravity[0],
+                     d->gravity[1]);
+  if (!isnan(d->dt) && d->dt > longest)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be at most %g s, half of (l0/g)^1/2, or NaN", d->dt,
+                     longest);
+  return mpsi_fluid_check_viscosity(context, function, d->viscosity);
 }
 
 /* The radius is that of the kernel, if given. */
@@ -62,7 +50,7 @@ static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0)
   if (!d->kernel) return MPS_OK;
   if (mps_kernel_get_kind(d->kernel) != MPS_KERNEL_SMOOTH)
     return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
-                     "kernel of the fluid is of kind %d, allowed is 3 (MPS_KERNEL_SMOOTH)",
+                     "kernel: its kind is %d, and that of a fluid must be MPS_KERNEL_SMOOTH (3)",
                      mps_kernel_get_kind(d->kernel));
   d->radius_ratio = mps_kernel_radius(d->kernel) / l0;
   if (!within(d->radius_ratio, 2.6, 4.0))
@@ -123,10 +111,11 @@ static mps_status add_fields(mps_particles *particles) {
   return status;
 }
 
-static void release(mps_fluid *f) {
+static void destroy(void *solver) {
+  mps_fluid *f = solver;
   mps_context *context = f->context;
-  mpsi_fluid_drop_solver(f);
-  mpsi_fluid_drop_loads(f);
+  mpsi_fluid_free_outside(f);
+  mpsi_free(context, f->push_room.item);
   mpsi_fluid_drop_exchange(f);
   mpsi_fluid_partition_destroy(f);
   mpsi_fluid_coarse_drop(f);
@@ -136,6 +125,7 @@ static void release(mps_fluid *f) {
                          f->cloud,
                          f->index_room.item,
                          f->w_room.item,
+                         f->crowd_room.item,
                          f->fit_room.item,
                          f->lower_col_room.item,
                          f->lower_room.item,
@@ -153,11 +143,82 @@ static void release(mps_fluid *f) {
   mpsi_free(context, f->body_room.item);
   mpsi_fluid_drop_lines(f);
   mpsi_fluid_drop_rocks(f);
-  mpsi_state_forget(&f->identity);
-  mps_domain_destroy(&f->def.domain);
   mps_kernel_destroy(&f->def.kernel);
-  mpsi_free(context, f);
 }
+
+/* ---- as one of all solvers ------------------------------------------------------------------- */
+
+static double time_of(const void *solver) { return ((const mps_fluid *)solver)->time; }
+static int64_t steps_of(const void *solver) { return ((const mps_fluid *)solver)->steps; }
+
+static mps_status agree(void *solver, const char *function, mps_status status) {
+  return mpsi_fluid_agree(solver, function, status);
+}
+
+static mps_status use_dt(void *solver, const char *function, double dt) {
+  (void)function;
+  ((mps_fluid *)solver)->def.dt = dt;
+  return MPS_OK;
+}
+
+static mps_status get_totals(void *solver, const char *function, mps_totals *out) {
+  const mps_fluid *f = solver;
+  const mps_status status = mpsi_particles_committed(f->particles, function);
+  if (status != MPS_OK) return status;
+  const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
+  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
+  mps_totals t = {.volume = volume * (double)f->count, .mass = mass * (double)f->count};
+  for (int64_t i = 0; i < f->count; i++) {
+    t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
+    t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
+  }
+  for (int c = 0; c < 2; c++) {
+    t.impulse_loads[c] = f->exchange.loads[c];
+    t.impulse_scheme[c] = f->exchange.scheme[c];
+  }
+  const double energy = mpsi_fluid_energy(f, &t.kinetic);
+  t.strain = energy - t.kinetic;
+  t.work_boundaries = f->work_boundaries;
+  t.work_loads = f->work_loads;
+  t.dissipated = t.scheme = f->work_boundaries + f->work_loads - (energy - f->energy);
+  *out = t;
+  return MPS_OK;
+}
+
+static void get_def(const void *solver, void *out) {
+  const mps_fluid *f = solver;
+  mps_fluid_def *def = out;
+  *def = f->def;
+  def->level = f->level;
+}
+
+static const mpsi_solver_kind fluid_kind = {
+    .name = MPSI_SOLVER_NAMES("fluid"),
+    .task = "fluid",
+    .def_kind = MPS_DEF_FLUID,
+    .get_def = get_def,
+    .time = time_of,
+    .steps = steps_of,
+    .dt = mpsi_fluid_dt,
+    .limit = mpsi_fluid_limit,
+    .ready = mpsi_fluid_closed,
+    .agree = agree,
+    .check_dt = mpsi_fluid_check_dt,
+    .use_dt = use_dt,
+    .equation = MPS_LINEAR_EQUATION_PRESSURE,
+    .get_totals = get_totals,
+    .get_reaction = mpsi_fluid_get_reaction,
+    .boundary = &mpsi_fluid_boundaries,
+    .load = &mpsi_fluid_loads,
+    .begin = mpsi_fluid_begin_march,
+    .advance = mpsi_fluid_advance_march,
+    .state = mpsi_fluid_state,
+    .settle = mpsi_fluid_closed,
+    .destroy = destroy,
+};
 
 static mps_status start(mps_fluid *f, const char *function) {
   f->count = mps_particles_count(f->particles);
@@ -188,15 +249,7 @@ static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, m
   mpsi_given given;
   if (!mpsi_domain_many(d->domain)) return status;
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, d, iterations);
-  MPSI_GIVE(&given, d, density);
-  MPSI_GIVE(&given, d, viscosity);
-  MPSI_GIVE_VECTOR(&given, d, gravity, 2);
-  MPSI_GIVE(&given, d, level);
-  MPSI_GIVE(&given, d, measure);
-  MPSI_GIVE(&given, d, dt);
-  MPSI_GIVE(&given, d, radius_ratio);
-  MPSI_GIVE(&given, d, tolerance);
+  MPSI_GIVE_DEF(&given, mps_fluid_def, d);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_agree_particles(d->domain, function, status, particles)
                           : status;
@@ -204,13 +257,13 @@ static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, m
 
 mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
                             const mps_fluid_def *user_def, mps_fluid **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_fluid_def def = defaults;
+  mps_fluid_def def = mps_fluid_defaults();
   mps_status status = mpsi_particles_check_context(particles, context, __func__);
   if (status != MPS_OK) return status;
-  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
+  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   const double l0 = mps_particles_spacing(particles);
   if (status == MPS_OK) status = read_kernel(context, &def, l0);
@@ -219,6 +272,9 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
+  if (status == MPS_OK)
+    status = mpsi_fail_of(context, mpsi_particles_check_crowding(particles, __func__, 0, NULL),
+                          "particles");
   mps_fluid *f = NULL;
   if (status == MPS_OK && !(f = mpsi_alloc(context, 1, sizeof *f)))
     status = mpsi_fail_memory(context, __func__, sizeof *f);
@@ -228,102 +284,42 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
     return status;
   }
   const int32_t fields = mps_particles_field_count(particles);
-  f->context = context;
-  f->particles = particles;
+  const mpsi_holder holder = {.name = "a fluid solver (mps_fluid)",
+                              .kind = MPSI_USE_MOVE,
+                              .commit = mpsi_fluid_commit,
+                              .insert = mpsi_fluid_insert,
+                              .remove = mpsi_fluid_remove,
+                              .renew = mpsi_fluid_renew};
+  mpsi_solver_start(&f->base, __func__, &fluid_kind, context, particles, def.domain, &holder);
   f->def = def;
-  f->def.domain = mpsi_domain_retain(def.domain);
   f->def.kernel = def.kernel ? mpsi_kernel_retain(def.kernel) : NULL;
   status = mpsi_fluid_agree(f, __func__, mpsi_as(context, __func__, add_fields(particles)));
   if (status == MPS_OK) status = start(f, __func__);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, fields);
-    release(f);
+    mpsi_solver_end(&f->base);
     return status;
   }
-  mpsi_context_retain(context);
-  f->holder = (mpsi_holder){.name = "a fluid solver (mps_fluid)",
-                            .self = f,
-                            .kind = MPSI_USE_MOVE,
-                            .guard = &f->guard,
-                            .commit = mpsi_fluid_commit,
-                            .insert = mpsi_fluid_insert,
-                            .remove = mpsi_fluid_remove,
-                            .renew = mpsi_fluid_renew};
-  (void)mpsi_particles_hold(particles, __func__, &f->holder); /* checked above */
   *out = f;
   return MPS_OK;
 }
 
-void mps_fluid_destroy(mps_fluid **fluid) {
-  if (!fluid || !*fluid) return;
-  mps_fluid *f = *fluid;
-  if (mpsi_fluid_free(f, __func__) != MPS_OK) return;
-  mps_context *context = f->context;
-  mps_particles *particles = f->particles;
-  *fluid = NULL;
-  mpsi_particles_release(particles, &f->holder); /* a member of f */
-  release(f);
-  mpsi_context_release(context);
-}
+mps_solver *mps_fluid_solver(const mps_fluid *f) { return f ? (mps_solver *)&f->base : NULL; }
 
 /* ---- questions ------------------------------------------------------------------------------- */
-
-mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->def.domain, __func__, mpsi_fluid_check_dt(f, __func__, dt),
-                                  "dt", dt);
-  if (status == MPS_OK) f->def.dt = dt;
-  return status;
-}
-
-mps_status mps_fluid_get_def_sized(const mps_fluid *f, mps_fluid_def *out, size_t size) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_fluid_def def = f->def;
-  def.level = f->level;
-  return mpsi_def_write(f->context, "mps_fluid_get_def", out, size, &def, sizeof def);
-}
-
-mps_particles *mps_fluid_particles(const mps_fluid *f) { return f ? f->particles : NULL; }
-
-mps_context *mps_fluid_context(const mps_fluid *f) { return f ? f->context : NULL; }
-
-mps_status mps_fluid_get_totals_sized(const mps_fluid *f, mps_totals *out, size_t size) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
-  const double *x = mpsi_particles_column(f->particles, "position", 0);
-  const double *y = mpsi_particles_column(f->particles, "position", 1);
-  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
-  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
-  mps_totals t = {.volume = volume * (double)f->count, .mass = mass * (double)f->count};
-  for (int64_t i = 0; i < f->count; i++) {
-    t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
-    t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
-  }
-  for (int c = 0; c < 2; c++) {
-    t.impulse_loads[c] = f->exchange.loads[c];
-    t.impulse_scheme[c] = f->exchange.scheme[c];
-  }
-  const double energy = mpsi_fluid_energy(f, &t.kinetic);
-  t.strain = energy - t.kinetic;
-  t.work_boundaries = f->work_boundaries;
-  t.work_loads = f->work_loads;
-  t.dissipated = t.scheme = f->work_boundaries + f->work_loads - (energy - f->energy);
-  return mpsi_out_write(f->context, "mps_fluid_get_totals", out, size, &t, sizeof t);
-}
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
   return 8 * (8 * n + 2 * chunks) + 22 * n + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (5 * 8) + f->ghost_capacity * 16 + f->index_room.capacity * 4 +
-         f->w_room.capacity * 4 + f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
+         f->w_room.capacity * 4 + f->crowd_room.capacity * (int64_t)sizeof(mpsi_fluid_crowd) +
+         f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
          f->exchange.sums.capacity * (int64_t)sizeof(mpsi_exact) + f->lower_col_room.capacity * 2 +
          f->lower_room.capacity * 4 + mpsi_fluid_coarse_bytes(f);
 }
 
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_fluid_report report = f->report;
   report.bytes = bytes_of(f);
   return mpsi_out_write(f->context, "mps_fluid_get_report", out, size, &report, sizeof report);

@@ -2,12 +2,12 @@
  * follow from the particles' positions, neighbours and the surface are computed again when needed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/access.h"
+#include "fluid/life/state.h"
 #include "fluid/particles/holder.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 
 #include "core/state/state.h"
-#include "io/checkpoint.h"
 
 static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
   mpsi_state_agree_integer(s, "kind", w->motion ? w->kind : -1);
@@ -135,7 +135,7 @@ static bool make_room(void *solver, int64_t particles) {
 
 static void after(void *solver) {
   mps_fluid *f = solver;
-  f->stale = true;
+  f->stale = f->renewed = true;
   f->count = mps_particles_count(f->particles);
   f->ghosts = 0; /* of other particles: computed again */
   mpsi_fluid_place_bodies(f);
@@ -152,7 +152,8 @@ static mps_status have_read(void *fluid, const char *function, mps_status status
   return settle(fluid, function, status);
 }
 
-static mpsi_state_of state_of(mps_fluid *f) {
+mpsi_state_of mpsi_fluid_state(void *solver) {
+  mps_fluid *f = solver;
   return (mpsi_state_of){.solver = f,
                          .name = "fluid",
                          .context = f->context,
@@ -167,40 +168,4 @@ static mpsi_state_of state_of(mps_fluid *f) {
                          .time = f->time,
                          .dt = f->dt,
                          .steps = f->steps};
-}
-
-/* Data of a caller's solver of former equations are in no state. */
-static mps_status forget(mps_fluid *f, const char *function, mps_status status) {
-  return status == MPS_OK ? mpsi_fluid_forget(f, function) : status;
-}
-
-mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(f);
-  const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
-  return settle(f, __func__,
-                status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
-}
-
-mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(f);
-  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
-  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
-}
-
-mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(f);
-  mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
-  if (status == MPS_OK && mps_domain_rank(f->def.domain) <= 0) /* all ranks have the same */
-    status = mpsi_checkpoint_save(&of, __func__, path, info);
-  return settle(f, __func__, status);
-}
-
-mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(f);
-  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
-  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
 }

@@ -89,7 +89,7 @@ mps_status mpsi_fluid_commit(void *self, const char *function, const char *field
   mps_fluid *f = self;
   (void)former;
   const mps_status status = mpsi_fluid_ready(f, function);
-  if (status == MPS_OK) f->edited = true;
+  if (status == MPS_OK) f->edited = f->renewed = true;
   if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
   if (strcmp(field, "velocity") != 0) f->stale = true;
   if (strcmp(field, "position") == 0) f->unknown = 1;
@@ -112,6 +112,7 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
                      "%lld particles to add to %lld, a fluid has at most %d", (long long)count,
                      (long long)first, MPSI_FLUID_MOST_PARTICLES);
   if (status == MPS_OK) status = check_places(f, function, first, first + count);
+  if (status == MPS_OK) status = mpsi_particles_check_crowding(f->particles, function, first, NULL);
   if (status != MPS_OK) return status;
   if (!mpsi_fluid_reserve(f, first + count))
     return mpsi_fail_memory(f->context, function, (size_t)(first + count) * sizeof *f->local);

@@ -3,23 +3,22 @@
 #ifndef MPSI_FLUID_LOADS_H
 #define MPSI_FLUID_LOADS_H
 
+#include "solver/conditions.h"
+
 #include <mps/fluid.h>
 
-/* A load of the caller, loads.c. */
+/* A load of the kept definition, whose ids are ascending. */
 typedef struct mpsi_fluid_given {
-  int32_t kind;
-  int64_t count; /* of ids, 0: no list */
-  int64_t *ids;  /* ascending */
-  double lower[2], upper[2];
-  double amount[2]; /* m/s2, or Pa, or 1/s */
-  int32_t side;
-  double factor[2], now[2];
-  mps_signal *signal[2];
+  const mps_fluid_load_def *def;
+  double lower[2], upper[2]; /* of its box, infinite where there is no bound */
+  double amount[2];          /* m/s2, or Pa, or 1/s */
+  double now[2];             /* factor times signal */
 } mpsi_fluid_given;
 
-void mpsi_fluid_drop_loads(mps_fluid *fluid);
 /* push and over as of time t, of the particles in their present order. */
 mps_status mpsi_fluid_find_loads(mps_fluid *fluid, const char *function, double t);
 double mpsi_fluid_work_of_loads(const mps_fluid *fluid); /* J, of the step being made */
+
+extern const mpsi_condition_kind mpsi_fluid_loads;
 
 #endif

@@ -34,6 +34,7 @@
 #define LEAST_RATIO 0.1 /* of the eigenvalues of M */
 #define ZONE 1.6        /* l0 */
 #define FADE 0.5        /* l0, along a segment from a corner around which the water turns */
+#define FADE_FACE 1.0   /* l0, the same along a face of a body, of all images */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -134,6 +135,43 @@ static void fade_divergence(const mps_fluid *f, int64_t i, const double *I, doub
   }
 }
 
+/* Divergence without what images in faces of bodies add whose line of sight passes the face within
+ * a spacing of a corner: all of it at the corner, where such an image appears or vanishes. A moving
+ * body's images differ by twice its velocity, and one that came at once was a blow of pressure:
+ * white noise of 40 N rms on a box of 785 N in heave, 1.7 N with all of them faded. */
+static void fade_faces(const mps_fluid *f, int64_t i, const mpsi_fluid_sums *all,
+                       double *divergence) {
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
+  double M[3] = {all->M[0], all->M[1], all->M[2]}, I[3];
+  double G[4] = {all->G[0], all->G[1], all->G[2], all->G[3]};
+  bool any = false;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t j = index[k];
+    if (j < f->count) continue;
+    const double past = mpsi_fluid_past_corner(f, i, j - f->count);
+    const double part = 1.0 - fmax(past, 0.0) / (FADE_FACE * f->l0);
+    if (!(part > 0.0)) continue;
+    const double d[2] = {f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]};
+    const double du[2] = {f->u[0][j] - f->u[0][i], f->u[1][j] - f->u[1][i]};
+    const double r2 = fmax(d[0] * d[0] + d[1] * d[1], 0.0025 * f->l0 * f->l0);
+    const double c = part * w[k] / r2;
+    M[0] -= c * d[0] * d[0], M[1] -= c * d[0] * d[1], M[2] -= c * d[1] * d[1];
+    for (int q = 0; q < 2; q++) G[q] -= c * du[0] * d[q], G[2 + q] -= c * du[1] * d[q];
+    any = true;
+  }
+  if (!any) return;
+  regularise(M);
+  invert(M, I);
+  *divergence = G[0] * I[0] + (G[1] + G[2]) * I[1] + G[3] * I[2];
+}
+
+/* Whether particle i may see an image past a body's corner. */
+static bool sees_corner(const mps_fluid *f, int64_t i) {
+  return f->faces && (f->company[i] & MPSI_FLUID_NEAR_IMAGES) &&
+         mpsi_fluid_within(f, i, f->reach + FADE_FACE * f->l0);
+}
+
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const bool near_rock = mpsi_fluid_near_rock(f, chunk);
   for (int64_t i = begin; i < end; i++) {
@@ -163,6 +201,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       }
       if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
         fade_divergence(f, i, I, &local.divergence);
+      if (sees_corner(f, i)) fade_faces(f, i, &s, &local.divergence);
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, fill, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);

@@ -17,7 +17,6 @@
 
 #define REACH 2 /* cells that re spans */
 #define MOST_CELLS 0x1p26
-#define CROWD 4096     /* candidates in the cells around a particle */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re, double water) {
@@ -181,22 +180,22 @@ static int32_t corners_near(const mps_fluid *f, int64_t i) {
 
 /* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
 static void find_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
   pass *p = data;
   mps_fluid *f = p->fluid;
+  mpsi_fluid_crowd *crowd = (mpsi_fluid_crowd *)f->crowd_room.item + worker;
+  double *r2 = crowd->value;
+  int32_t *apart = crowd->index; /* where the chunk's memory is too small for all candidates */
   const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, full = (chunk + 1) * p->per_chunk;
   const int64_t limit = full < p->pairs ? full : p->pairs;
   const bool cornered = f->faces > 0 || f->segments > 0; /* bodies and polylines have corners */
   int64_t at = chunk * p->per_chunk;
-  double r2[CROWD + MPSI_FLUID_WIDE];
-  int32_t
-      apart[CROWD + MPSI_FLUID_WIDE]; /* where the chunk's memory is too small for all candidates */
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
     const int64_t left = limit - at;
-    int32_t *index = left >= CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;
+    int32_t *index = left >= MPSI_FLUID_CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;
     float *w = f->w + at;
-    int64_t found = search(f, p->cells, i, mpsi_fluid_search_radius(f, chunk, i), CROWD, index, r2);
-    const bool crowded = found >= CROWD;
+    int64_t found =
+        search(f, p->cells, i, mpsi_fluid_search_radius(f, chunk, i), MPSI_FLUID_CROWD, index, r2);
+    const bool crowded = found >= MPSI_FLUID_CROWD;
     if (crowded || mpsi_fluid_padded((int32_t)found) > left) {
       atomic_store(crowded ? &p->crowded : &p->full, true);
       return;
@@ -226,7 +225,9 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK,
                   pairs = f->most_near * f->count + MPSI_FLUID_CHUNK;
     const bool room = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
-                      mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w);
+                      mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w) &&
+                      mpsi_room_fit(f->context, &f->crowd_room, mps_context_threads(f->context),
+                                    sizeof(mpsi_fluid_crowd));
     if (status == MPS_OK && !room)
       status =
           mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
@@ -240,7 +241,7 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     if (full[1] > 0.0)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "a particle has more than %d others near it: the fluid has collapsed",
-                       CROWD);
+                       MPSI_FLUID_CROWD);
     if (f->most_near > MOST_NEAR)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);

@@ -197,7 +197,7 @@ static void weigh_flow(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   int64_t start;
   const int64_t count = stretch(f, chunk, &start);
   float *flow = flow_of(f, chunk);
-  memcpy(flow, f->w + start, (size_t)count * sizeof *flow);
+  if (count > 0) memcpy(flow, f->w + start, (size_t)count * sizeof *flow);
   for (int64_t i = begin; i < end; i++) {
     const int64_t first = mpsi_fluid_pairs(f, i);
     const mpsi_fluid_pore *a = mpsi_fluid_pore_of(f, i);

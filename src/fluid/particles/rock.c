@@ -6,60 +6,23 @@
  * what stands on the rock are noise. SPDX-License-Identifier: BSD-3-Clause */
 #include "rock.h"
 #include "fluid/base/access.h"
-#include "core/base/digits.h"
 #include "fluid/boundary/clearance.h"
 #include "fluid/particles/near.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
 
-#define MOST_CORNERS 10000
 #define WIDE 2.4   /* spacings of rock: radius of weights in it */
 #define WIDEST 3.6 /* l0 */
 
-static const mps_fluid_rock_def defaults = {.struct_size = sizeof(mps_fluid_rock_def),
-                                            .porosity = NAN,
-                                            .diameter = NAN,
-                                            .alpha = 1000.0,
-                                            .beta = 1.1,
-                                            .KC = NAN,
-                                            .gamma = 0.34,
-                                            .viscosity = 1e-6};
-
-mps_status mps_fluid_rock_def_init(mps_fluid_rock_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_fluid_rock_def, def, size, &defaults);
-}
-
 /* ---- regions --------------------------------------------------------------------------------- */
 
-static mps_status check_number(mps_fluid *f, const char *name, double value, double least,
-                               double most) {
-  if (value >= least && value <= most) return MPS_OK;
-  return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-                   "%s of the rock is %s, must be %g to %g", name,
-                   mpsi_outside(value, least, most).text, least, most);
-}
-
 static mps_status check(mps_fluid *f, const mps_fluid_rock_def *d) {
-  mps_status status = check_number(f, "porosity", d->porosity, 0.1, 1.0);
-  if (status == MPS_OK) status = check_number(f, "diameter", d->diameter, 1e-6, 100.0);
-  if (status == MPS_OK) status = check_number(f, "alpha", d->alpha, 0.0, 1e6);
-  if (status == MPS_OK) status = check_number(f, "beta", d->beta, 0.0, 1e3);
-  if (status == MPS_OK) status = check_number(f, "gamma", d->gamma, 0.0, 10.0);
-  if (status == MPS_OK) status = check_number(f, "viscosity", d->viscosity, 0.0, 1.0);
-  if (status == MPS_OK && !isnan(d->KC)) status = check_number(f, "KC", d->KC, 1e-6, 1e300);
-  if (status != MPS_OK) return status;
-  if (d->corner_count < 3 || d->corner_count > MOST_CORNERS || !d->corners)
-    return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-                     "corner_count of the rock is %d with corners %s: allowed are 3 to %d corners, "
-                     "given",
-                     d->corner_count, d->corners ? "given" : "NULL", MOST_CORNERS);
-  for (int32_t k = 0; k < 3 * d->corner_count; k++)
-    if (!(fabs(d->corners[k]) <= 1e12) || (k % 3 == 2 && d->corners[k] != 0.0))
-      return mpsi_fail(
-          f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-          "corners: number %d of the rock has the coordinate %g m: must be within 1e12 m, z 0",
-          k / 3, d->corners[k]);
+  for (int64_t k = 0; k < d->corner_count; k++)
+    if (d->corners[3 * k + 2] != 0.0)
+      return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
+                       "corners: number %lld of the rock has z %g m, must be 0", (long long)k,
+                       d->corners[3 * k + 2]);
   return MPS_OK;
 }
 
@@ -90,16 +53,16 @@ static double radius_in(const mps_fluid *f, double porosity) {
 
 static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_def *d) {
   const double e = d->porosity, D = d->diameter, solid = 1.0 - e;
-  for (int32_t k = 0; k < d->corner_count; k++)
+  for (int64_t k = 0; k < d->corner_count; k++)
     rock->xy[2 * k] = d->corners[3 * k], rock->xy[2 * k + 1] = d->corners[3 * k + 1];
   for (int c = 0; c < 2; c++) {
     rock->low[c] = INFINITY, rock->high[c] = -INFINITY;
-    for (int32_t k = 0; k < d->corner_count; k++) {
+    for (int64_t k = 0; k < d->corner_count; k++) {
       rock->low[c] = fmin(rock->low[c], rock->xy[2 * k + c]);
       rock->high[c] = fmax(rock->high[c], rock->xy[2 * k + c]);
     }
   }
-  rock->count = d->corner_count;
+  rock->count = (int32_t)d->corner_count;
   rock->def = *d;
   rock->def.corners = NULL;
   rock->a = d->alpha * solid * solid / (e * e * e) * d->viscosity / (D * D);
@@ -131,18 +94,11 @@ static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status s
   if (!f->partition) return status;
   mpsi_given_begin(&given);
   mpsi_give(&given, "the number of the rock", number);
-  MPSI_GIVE(&given, def, porosity);
-  MPSI_GIVE(&given, def, diameter);
-  MPSI_GIVE(&given, def, alpha);
-  MPSI_GIVE(&given, def, beta);
-  MPSI_GIVE(&given, def, KC);
-  MPSI_GIVE(&given, def, gamma);
-  MPSI_GIVE(&given, def, viscosity);
-  MPSI_GIVE(&given, def, corner_count);
+  MPSI_GIVE_DEF(&given, mps_fluid_rock_def, def);
   if (status == MPS_OK)
     mpsi_give_bytes(&given, "a hash of corners", def->corners,
                     3 * (size_t)def->corner_count * sizeof *def->corners);
-  return mpsi_domain_agree_given(f->def.domain, function, status, &given);
+  return mpsi_domain_agree_given(f->domain, function, status, &given);
 }
 
 static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_rock_def *user,
@@ -158,8 +114,8 @@ static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_
 }
 
 mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int32_t *number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_fluid_rock_def def = defaults;
+  if (!f) return mpsi_null(__func__, "fluid");
+  mps_fluid_rock_def def = mps_fluid_rock_defaults();
   double *xy = NULL;
   int32_t k = -1;
   mps_status status = mpsi_fluid_ready(f, __func__);
@@ -167,7 +123,7 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   status = read_rock(f, __func__, user, &def);
   if (status == MPS_OK) {
     const size_t size = 2 * (size_t)def.corner_count * sizeof *xy;
-    xy = mpsi_alloc(f->context, 2 * (int64_t)def.corner_count, sizeof *xy);
+    xy = mpsi_alloc(f->context, 2 * def.corner_count, sizeof *xy);
     k = xy ? find_room(f) : -1;
     if (k < 0) status = mpsi_fail_memory(f->context, __func__, size);
   }
@@ -193,11 +149,11 @@ static mps_status check_rock(mps_fluid *f, const char *function, int32_t number)
 }
 
 mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->def.domain, __func__, check_rock(f, __func__, number),
-                                  "number", number);
+  status = mpsi_domain_agree_same(f->domain, __func__, check_rock(f, __func__, number), "number",
+                                  number);
   if (status != MPS_OK) return status;
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};

@@ -4,7 +4,7 @@
 
 #include "fluid/base/flow_solver.h"
 
-#include <mps/fluid_rock.h>
+#include <mps/experimental/fluid_rock.h>
 
 typedef struct mpsi_fluid_rock {
   bool used;

@@ -1,6 +1,6 @@
 /* classical.c - the scheme of the first papers on MPS (Koshizuka, Tamako and Oka 1995), for
- * comparison only (mps/experimental.h): gravity moves the particles first, then a pressure that
- * follows from their density corrects the density,
+ * comparison only (mps/experimental/papers.h): gravity moves the particles first, then a pressure
+ * that follows from their density corrects the density,
  *
  *   u* = u + dt g,  x* = x + dt u*,
  *   (2 d/(lambda n0)) sum w (p_j - p_i) = -gamma (rho/dt^2) (n* - n0)/n0,  p >= 0,
@@ -13,18 +13,18 @@
 #include "fluid/base/access.h"
 #include "fluid/boundary/walls.h"
 #include "fluid/ranks/partition.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
 
 #define NEAR 2.1 /* l0 */
 #define SURFACE 0.97
 
 mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->def.domain, __func__, status, "gamma", gamma);
+  status = mpsi_domain_agree_same(f->domain, __func__, status, "gamma", gamma);
   if (status != MPS_OK) return status;
   if (!(gamma > 0.0 && gamma <= 1.0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %s, must be in (0, 1]",
@@ -32,7 +32,7 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (f->steps > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE, "the fluid has made %lld steps",
                      (long long)f->steps);
-  if (f->given_room > 0)
+  if (mpsi_fluid_load_count(f) > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the fluid has had loads: choose the scheme first");
   mpsi_fluid_classical c = {.gamma = gamma};

@@ -7,13 +7,12 @@
 
 #include <string.h>
 
-#define LEAST 5000       /* particles: below, the solution is faster without */
-#define TILE 8.0         /* l0, side of an aggregate */
-#define COARSER 1.5      /* of the side, where there are too many aggregates */
-#define MOST_WORK 300    /* additions of a factorisation, a particle */
-#define CLOSED 1e-6      /* tolerance of a fluid without surface, at least */
-#define NOTHING 1e-8     /* of the diagonal: a row sum below is taken as 0 */
-#define MOST_BESIDE 4096 /* aggregates that a row has neighbours in: as many as these (near.c) */
+#define LEAST 5000    /* particles: below, the solution is faster without */
+#define TILE 8.0      /* l0, side of an aggregate */
+#define COARSER 1.5   /* of the side, where there are too many aggregates */
+#define MOST_WORK 300 /* additions of a factorisation, a particle */
+#define CLOSED 1e-6   /* tolerance of a fluid without surface, at least */
+#define NOTHING 1e-8  /* of the diagonal: a row sum below is taken as 0 */
 
 /* ---- aggregates ------------------------------------------------------------------------------ */
 
@@ -91,14 +90,9 @@ static void number_block(mps_fluid *f, int64_t begin, int64_t end, int64_t block
 
 /* ---- A Z ------------------------------------------------------------------------------------- */
 
-typedef struct beside {
-  int32_t count;
-  int32_t aggregate[MOST_BESIDE];
-  double w[MOST_BESIDE];
-} beside;
-
-/* Weights of row i by the aggregates of its neighbours; returns that of its own. */
-static double split_row(const mps_fluid *f, int64_t i, beside *b) {
+/* Weights of row i by the aggregates of its neighbours, of which there are no more than neighbours;
+ * returns that of its own. */
+static double split_row(const mps_fluid *f, int64_t i, mpsi_fluid_crowd *b) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i), *of = f->coarse->of, here = of[i];
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   double inside = 0.0;
@@ -108,9 +102,9 @@ static double split_row(const mps_fluid *f, int64_t i, beside *b) {
     if (there == here) inside += w[k];
     if (there == here || there == 0) continue;
     int32_t at = 0;
-    while (at < b->count && b->aggregate[at] != there) at++;
-    if (at == b->count) b->aggregate[at] = there, b->w[b->count++] = 0.0;
-    b->w[at] += w[k];
+    while (at < b->count && b->index[at] != there) at++;
+    if (at == b->count) b->index[at] = there, b->value[b->count++] = 0.0;
+    b->value[at] += w[k];
   }
   return f->system.diagonal[i] - inside;
 }
@@ -150,29 +144,29 @@ static block_rows begin_rows(mpsi_fluid_coarse *c, int64_t b) {
 }
 
 static void find_rows(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   row_pass *p = data;
   mps_fluid *f = p->fluid;
+  mpsi_fluid_crowd *row = (mpsi_fluid_crowd *)f->crowd_room.item + worker;
   mpsi_fluid_coarse *c = f->coarse;
   const int64_t first = b * c->block,
                 end = first + c->block < f->count ? first + c->block : f->count;
   const bool alone = !f->any_apart && f->classical.gamma == 0.0;
   block_rows r = begin_rows(c, b);
-  beside row;
   for (int64_t i = first; i < end; i++) {
     const int32_t here = c->of[i];
     if (here == 0) continue;
     if (alone && f->local[i].h == 0.0 && !f->loops->mixed(f, i, c->of)) continue;
-    const double own = split_row(f, i, &row);
-    if (row.count == 0 && own <= NOTHING * f->system.diagonal[i]) continue;
-    const bool full = r.count + row.count + 1 > c->room, crowded = r.slots + row.count > UINT16_MAX;
+    const double own = split_row(f, i, row);
+    if (row->count == 0 && own <= NOTHING * f->system.diagonal[i]) continue;
+    const bool full = r.count + row->count + 1 > c->room,
+               crowded = r.slots + row->count > UINT16_MAX;
     if (full) atomic_store(&p->full, true);
     if (crowded) atomic_store(&p->crowded, true);
     if (full || crowded) return;
     add_entry(&r, i, here, own);
-    for (int32_t k = 0; k < row.count; k++) {
-      const int32_t a = row.aggregate[k];
-      add_entry(&r, i, a, -row.w[k]);
+    for (int32_t k = 0; k < row->count; k++) {
+      const int32_t a = row->index[k];
+      add_entry(&r, i, a, -row->value[k]);
       if (a < c->matrix.first[here - 1] + 1) c->matrix.first[here - 1] = a - 1;
     }
   }

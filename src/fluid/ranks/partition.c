@@ -38,11 +38,11 @@ static bool is_own(const mps_fluid *f, int64_t i) { return i >= f->own[0] && i <
 /* ---- life ------------------------------------------------------------------------------------ */
 
 mps_status mpsi_fluid_partition_create(mps_fluid *f, const char *function) {
-  if (!mpsi_domain_many(f->def.domain)) return MPS_OK;
+  if (!mpsi_domain_many(f->domain)) return MPS_OK;
   f->partition = mpsi_alloc(f->context, 1, sizeof *f->partition);
   const mps_status status =
       f->partition ? MPS_OK : mpsi_fail_memory(f->context, function, sizeof *f->partition);
-  if (f->partition) *f->partition = (mpsi_fluid_partition){.domain = f->def.domain, .count = -1};
+  if (f->partition) *f->partition = (mpsi_fluid_partition){.domain = f->domain, .count = -1};
   return status;
 }
 
@@ -74,12 +74,12 @@ void mpsi_fluid_partition_destroy(mps_fluid *f) {
 /* ---- errors ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_fluid_agree(mps_fluid *f, const char *function, mps_status status) {
-  return mpsi_domain_agree(f->def.domain, function, status);
+  return mpsi_domain_agree(f->domain, function, status);
 }
 
 mps_status mpsi_fluid_agree_max(mps_fluid *f, const char *function, mps_status status,
                                 int32_t count, double *values) {
-  return mpsi_domain_agree_max(f->def.domain, function, status, count, values);
+  return mpsi_domain_agree_max(f->domain, function, status, count, values);
 }
 
 /* Values that all ranks must agree on: motions of walls and bodies, and loads, in the step. */
@@ -98,8 +98,9 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
   }
   for (int b = 0; b < f->bodies; b++)
     if (f->body[b].body) mpsi_body_give_state(list, f->body[b].body);
-  for (int32_t k = 0; k < f->given_room; k++)
-    if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
+  for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++)
+    if (mpsi_fluid_load_of(f, k))
+      mpsi_give_vector(list, "the present factor on a load", 2, mpsi_fluid_load_of(f, k)->now);
 }
 
 mps_status mpsi_fluid_agree_same(mps_fluid *f, const char *function, mps_status status) {

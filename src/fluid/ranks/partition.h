@@ -1,7 +1,7 @@
-/* partition.h - the ranks of a domain (mps/domain.h) that compute a fluid together. Each has all of
- * it: the set, walls, bodies, images. Quantities by rows (neighbours, sums over them, rows of the
- * matrix, its factor and iterations, velocities) each rank computes for its own particles, whole
- * blocks of the preconditioner (pcg.c), and sends to the others:
+/* partition.h - the ranks of a domain (mps/experimental/domain.h) that compute a fluid together.
+ * Each has all of it: the set, walls, bodies, images. Quantities by rows (neighbours, sums over
+ * them, rows of the matrix, its factor and iterations, velocities) each rank computes for its own
+ * particles, whole blocks of the preconditioner (pcg.c), and sends to the others:
  *
  *   of particles near those of other ranks  x, z (at each iteration), m, velocities
  *   of all particles                        state, q, positions, velocities, pressures

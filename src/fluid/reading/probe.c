@@ -282,10 +282,11 @@ static mps_status check_wall(const mps_fluid *f, const char *function, int32_t n
   return MPS_OK;
 }
 
-mps_status mps_fluid_get_reaction_sized(const mps_fluid *f, int32_t number, mps_reaction *out,
-                                        size_t size) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  if (!MPSI_FLUID_IS_BOUNDARY(f, number)) return check_wall(f, "mps_fluid_get_reaction", number);
+mps_status mpsi_fluid_get_reaction(void *solver, const char *function, mps_status status,
+                                   int32_t number, mps_reaction *out) {
+  const mps_fluid *f = solver;
+  (void)function;
+  if (status != MPS_OK) return status;
   const mpsi_fluid_wall *w = &f->wall[number];
   mps_reaction reaction = {.count = w->load.wetted,
                            .work = w->work,
@@ -295,8 +296,8 @@ mps_status mps_fluid_get_reaction_sized(const mps_fluid *f, int32_t number, mps_
     reaction.force[c] = w->load.force[c], reaction.impulse[c] = w->impulse[c];
   reaction.moment[2] = w->load.moment;
   reaction.moment_impulse[2] = w->moment_impulse;
-  return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction,
-                        sizeof reaction);
+  *out = reaction;
+  return MPS_OK;
 }
 
 /* Pressures belong to a state: of the last step, or of the last solution in an open step. */
@@ -305,7 +306,9 @@ static mps_status check_pressure(mps_fluid *f, const char *function) {
   if (f->stage == MPSI_FLUID_BEGUN)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "the open step's pressure has not been solved");
-  return mpsi_fluid_refresh(f, function);
+  const mps_status status =
+      mpsi_fluid_agree(f, function, mpsi_particles_committed(f->particles, function));
+  return status == MPS_OK ? mpsi_fluid_refresh(f, function) : status;
 }
 
 /* ---- pressures ------------------------------------------------------------------------------- */
@@ -332,16 +335,16 @@ static mps_status list_points(mps_fluid *f, const char *function, const mpsi_flu
   return status;
 }
 
-mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t capacity,
-                              int64_t *count, double *x, double *pressure) {
+mps_status mps_fluid_get_boundary_points(const mps_fluid *handle, int32_t number, int64_t capacity,
+                                         int64_t *count, double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = check_wall(f, __func__, number);
   if (status != MPS_OK) return status;
-  if (capacity < 0 || !count)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "capacity is %lld and count %s: must be >= 0 and given", (long long)capacity,
-                     count ? "given" : "NULL");
+  if (!count) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is NULL");
+  if (capacity < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
+                     (long long)capacity);
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
   status = check_pressure(f, __func__);
   if (status == MPS_OK) status = list_points(f, __func__, &f->wall[number], &list);
@@ -395,9 +398,11 @@ static const mpsi_fluid_wall *find_place(const mps_fluid *f, const place_of *of,
 
 static mps_status check_points(mps_fluid *f, const char *function, const place_of *of,
                                int64_t count, const double *x, const double *pressure) {
-  if (count < 0 || (count > 0 && (!x || !pressure)))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld, x and pressure must be given", (long long)count);
+  if (count < 0)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (count > 0 && (!x || !pressure))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "%s is NULL", x ? "pressure" : "x");
   for (int64_t k = 0; k < count; k++) {
     double off;
     if (!find_place(f, of, x + 3 * k, &off))
@@ -457,7 +462,7 @@ static mps_status get_pressures(mps_fluid *f, const char *function, mps_status s
 mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64_t count,
                                   const double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   const mps_status status = check_wall(f, __func__, number);
   const place_of of = {.wall = status == MPS_OK ? &f->wall[number] : NULL};
   return get_pressures(f, __func__, status, &of, count, x, pressure);
@@ -466,25 +471,28 @@ mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64
 mps_status mps_fluid_get_body_pressure(const mps_fluid *handle, const mps_contact *contact,
                                        int64_t count, const double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   const int32_t number = mpsi_fluid_body_number(f, contact);
   const place_of of = {.body = number < 0 ? NULL : &f->body[number]};
   mps_status status = MPS_OK;
   if (number < 0)
     status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                       "contact is %s: it must be one of the fluid's",
+                       "contact is %s: give one that mps_fluid_add_contact has made for this fluid",
                        contact ? "that of another solver, or has ended" : "NULL");
   return get_pressures(f, __func__, status, &of, count, x, pressure);
 }
 
 mps_status mps_fluid_get_segments(const mps_fluid *f, int32_t number, int64_t capacity,
                                   int64_t *count, double *force, double *moment) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   const bool line = MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line;
-  if (!line || capacity < 0 || !count)
+  if (!line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number is %d, capacity %lld and count %s: must be a polyline's, >= 0, given",
-                     number, (long long)capacity, count ? "given" : "NULL");
+                     "number is %d, and only a polyline has segments", number);
+  if (capacity < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
+                     (long long)capacity);
+  if (!count) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is NULL");
   const mpsi_fluid_polyline *of = f->wall[number].line;
   *count = of->count;
   for (int64_t k = 0; k < of->count && k < capacity; k++) {
@@ -500,15 +508,20 @@ mps_status mps_fluid_get_segments(const mps_fluid *f, int32_t number, int64_t ca
 mps_status mps_fluid_get_levels(const mps_fluid *handle, int64_t count, const double *station,
                                 double *level) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
-  if (!f) return MPS_ERROR_ARGUMENT;
-  if (count < 0 || (count > 0 && (!station || !level)))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld, station and level must be given", (long long)count);
+  if (!f) return mpsi_null(__func__, "fluid");
+  if (count < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (count > 0 && (!station || !level))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     station ? "level" : "station");
   for (int64_t k = 0; k < count; k++)
     if (!isfinite(station[k]))
       return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                        "station %lld is %g m, must be finite", (long long)k, station[k]);
-  const mps_status status = mpsi_fluid_ensure_surface(f, __func__);
+  mps_status status =
+      mpsi_fluid_agree(f, __func__, mpsi_particles_committed(f->particles, __func__));
+  if (status == MPS_OK) status = mpsi_fluid_ensure_surface(f, __func__);
   if (status != MPS_OK) return status;
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);

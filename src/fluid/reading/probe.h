@@ -7,4 +7,8 @@
 
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 
+/* What boundary `number` exerts. */
+mps_status mpsi_fluid_get_reaction(void *fluid, const char *function, mps_status status,
+                                   int32_t number, mps_reaction *out);
+
 #endif

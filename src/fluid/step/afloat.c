@@ -24,26 +24,6 @@
 #define FLOOR 2e-5      /* of gravity */
 #define FIRST_ADDED 1.0 /* of the displaced mass: initial added mass */
 
-mps_status mps_fluid_float_body(mps_fluid *f, mps_contact *contact, int32_t floats) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  const int32_t number = mpsi_fluid_body_number(f, contact);
-  mpsi_given given;
-  mpsi_given_begin(&given);
-  mpsi_give(&given, "the number of the contact", number);
-  mpsi_give(&given, "floats", floats);
-  status = mpsi_domain_agree_given(f->def.domain, __func__, status, &given);
-  if (status != MPS_OK) return status;
-  if (number < 0)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "contact is %s, must be one of this fluid's that has not ended",
-                     contact ? "another" : "NULL");
-  status = mpsi_fluid_check_floats(f, __func__, f->body[number].body, contact, floats);
-  if (status == MPS_OK) mpsi_fluid_let_float(f, number, floats);
-  return status;
-}
-
 bool mpsi_fluid_any_afloat(const mps_fluid *f) {
   for (int b = 0; b < f->bodies; b++)
     if (f->body[b].floats) return true;

@@ -275,17 +275,21 @@ static int64_t keep_off_walls(const mps_fluid *f, const planes *near, int64_t i,
 }
 
 #define FASTEST 1e100 /* m/s: kinetic energies are numbers */
+#define MOST_WAY 0.5  /* l0: of a particle in a step, besides that of the walls */
 
 static bool finite(const double *x, const double *u) {
   return isfinite(x[0]) && isfinite(x[1]) && fabs(u[0]) <= FASTEST && fabs(u[1]) <= FASTEST;
 }
 
 static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  const double *before[2];
+  const double *before[2], *start[2];
   planes near;
   int64_t pushed = 0;
   double far2 = 0.0, gain[2] = {0.0, 0.0};
-  for (int c = 0; c < 2; c++) before[c] = mpsi_particles_column(f->particles, "velocity", c);
+  for (int c = 0; c < 2; c++) {
+    before[c] = mpsi_particles_column(f->particles, "velocity", c);
+    start[c] = mpsi_particles_column(f->particles, "position", c); /* before the classical u* */
+  }
   find_planes(f, begin, end, &near);
   for (int64_t i = begin; i < end; i++) {
     double shift[2], x[2], u[2];
@@ -303,7 +307,7 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     }
     pushed += keep_off_walls(f, &near, i, x, u);
     mpsi_fluid_rises(f)[i] = mpsi_fluid_rise(f, i);
-    const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
+    const double way[2] = {x[0] - start[0][i], x[1] - start[1][i]};
     const double way2 = way[0] * way[0] + way[1] * way[1];
     far2 = finite(x, u) ? mpsi_fluid_larger(way2, far2) : (double)INFINITY;
     for (int c = 0; c < 2; c++) {
@@ -327,7 +331,7 @@ static double wall_travel(const mps_fluid *f) {
   return most;
 }
 
-int64_t mpsi_fluid_advance(mps_fluid *f) {
+int64_t mpsi_fluid_advance(mps_fluid *f, double *way) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
   mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   mpsi_fluid_send_all(
@@ -339,10 +343,23 @@ int64_t mpsi_fluid_advance(mps_fluid *f) {
     f->report.pushed += (int64_t)f->system.sums[2 * k];
     far2 = fmax(far2, f->system.sums[2 * k + 1]);
   }
-  f->travel = sqrt(far2) + wall_travel(f);
-  for (int64_t i = 0; far2 == (double)INFINITY && i < f->count; i++) {
+  const double walls = wall_travel(f), most = MOST_WAY * f->l0 + walls;
+  f->travel = sqrt(far2) + walls;
+  *way = 0.0;
+  if (far2 <= most * most) return -1;
+  const double *start[2];
+  int64_t farthest = -1;
+  for (int c = 0; c < 2; c++) start[c] = mpsi_particles_column(f->particles, "position", c);
+  for (int64_t i = 0; i < f->count; i++) {
     const double x[2] = {f->x[0][i], f->x[1][i]}, u[2] = {f->u[0][i], f->u[1][i]};
-    if (!finite(x, u)) return i;
+    const double moved = hypot(x[0] - start[0][i], x[1] - start[1][i]);
+    if (!finite(x, u)) {
+      *way = INFINITY;
+      return i;
+    }
+    /* a drop by itself flies as far as it flies */
+    const bool alone = f->state[i] == MPSI_FLUID_APART && f->classical.gamma == 0.0;
+    if (!alone && moved > *way) *way = moved, farthest = i;
   }
-  return -1;
+  return *way > most ? farthest : -1;
 }

@@ -6,18 +6,20 @@
 #include "fluid/particles/holder.h"
 #include "fluid/reading/probe.h"
 #include "fluid/step/afloat.h"
+#include "fluid/step/bound.h"
 #include "fluid/step/exchange.h"
 #include "fluid/step/move.h"
+#include "fluid/step/step.h"
 #include "fluid/step/warn.h"
 #include "fluid/particles/pores.h"
 #include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
+#include <mps/experimental/fluid_parts.h>
 #include <string.h>
 
 #define SORT_EVERY 32   /* steps */
 #define EVEN_STEPS 32   /* at the end of a run */
-#define MOST_STEPS 1e15 /* of a run */
 #define LEAST_STEP 1e-4 /* of the step at rest */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
@@ -57,14 +59,14 @@ static void store_cloud(mps_fluid *f) {
 
 /* ---- one step -------------------------------------------------------------------------------- */
 
-static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
+static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i, double way) {
   const long long id = (long long)mpsi_particles_integers(f->particles, "id")[i];
   const mps_status status = mpsi_fail(
       f->context, function, MPS_ERROR_DIVERGED,
-      "step %lld, t = %g s: particle %lld at (%g, %g) m moves with (%g, %g) m/s; dt was "
-      "%g s, %.3g of the recommended limit; the step was not made",
+      "step %lld, t = %g s: particle %lld at (%g, %g) m moves %g m with (%g, %g) m/s, allowed is "
+      "half a spacing, %g m; dt was %g s, %.3g of the recommended limit; the step was not made",
       (long long)f->steps, f->time, id, column(f, "position", 0)[i], column(f, "position", 1)[i],
-      f->u[0][i], f->u[1][i], f->dt, f->dt / mps_fluid_limit(f));
+      way, f->u[0][i], f->u[1][i], 0.5 * f->l0, f->dt, f->dt / mpsi_fluid_limit(f));
   mpsi_fail_where(f->context, f->steps, id);
   return status;
 }
@@ -119,6 +121,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   f->dt = dt;
   note_state(f);
   mpsi_fluid_begin_walls(f, dt);
+  mpsi_fluid_begin_bound(f);
   mpsi_fluid_load_cloud(f);
   status = add_loads(f, function);
   if (status == MPS_OK) status = mpsi_fluid_find_pores(f, function, dt);
@@ -141,13 +144,15 @@ static mps_status finish(mps_fluid *f, const char *function) {
   if (walls != MPS_OK) return walls;
   mpsi_fluid_send_local(f); /* for the work of loads, and for the surface at walls */
   mpsi_fluid_find_velocities(f);
-  const int64_t bad = mpsi_fluid_advance(f);
+  double way;
+  const int64_t bad = mpsi_fluid_advance(f, &way);
   mpsi_fluid_end_exchange(f);
   const mps_status lost = mpsi_fluid_lost(f, function);
   if (lost != MPS_OK) return lost;
-  if (bad >= 0) return went_wrong(f, function, bad);
+  if (bad >= 0) return went_wrong(f, function, bad, way);
   f->stage = MPSI_FLUID_MOVED;
-  return mpsi_fluid_load_walls(f, function);
+  const mps_status loaded = mpsi_fluid_load_walls(f, function);
+  return loaded == MPS_OK ? mpsi_fluid_check_bound(f, function) : loaded;
 }
 
 /* After all parts: keeps the new state and sorts it now and then. */
@@ -188,8 +193,8 @@ static double limit_at_rest(const mps_fluid *f) {
   return limit;
 }
 
-double mps_fluid_limit(const mps_fluid *f) {
-  if (!f) return 0.0;
+double mpsi_fluid_limit(const void *solver) {
+  const mps_fluid *f = solver;
   double limit = limit_at_rest(f);
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 * mpsi_fluid_least_porosity(f) / f->speed);
   for (int b = 0; b < f->walls; b++) {
@@ -202,19 +207,19 @@ double mps_fluid_limit(const mps_fluid *f) {
   return limit;
 }
 
-double mps_fluid_dt(const mps_fluid *f) {
-  if (!f) return 0.0;
-  return isnan(f->def.dt) ? mps_fluid_limit(f) : f->def.dt;
+static double dt_of(const mps_fluid *f) {
+  return isnan(f->def.dt) ? mpsi_fluid_limit(f) : f->def.dt;
 }
 
-double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
-
-int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
+double mpsi_fluid_dt(void *solver, const char *function) {
+  (void)function;
+  return dt_of(solver);
+}
 
 /* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
  * (`span`, s) where nothing limits that: the fluid has diverged, and the run would hardly end. */
 static mps_status check_dt(mps_fluid *f, const char *function, double span) {
-  const double dt = mps_fluid_dt(f), rest = limit_at_rest(f);
+  const double dt = dt_of(f), rest = limit_at_rest(f);
   const double least = LEAST_STEP * (isfinite(rest) ? rest : 1e-3 * span);
   if (isnan(f->def.dt) && isfinite(least) && dt < least)
     return mpsi_fail(
@@ -227,38 +232,37 @@ static mps_status check_dt(mps_fluid *f, const char *function, double span) {
                    "nothing limits the step: without gravity and motion, give dt");
 }
 
-/* On one rank, on all. */
-static mps_status call_cancel(mps_fluid *f, const char *function) {
-  mps_status status = MPS_OK;
-  if (mpsi_cancelled(f->context))
-    status = mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
-                       "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
-                       f->time);
-  return mpsi_fluid_agree(f, function, status);
+/* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
+ * change of the step shows in the pressure. */
+static double even_step(double rest, double full) {
+  const double steps = ceil(rest / full * (1.0 - 1e-9));
+  return steps > EVEN_STEPS ? full : rest / steps;
 }
 
-mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK && count < 0)
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                       (long long)count);
-  status = mpsi_domain_agree_same(f->def.domain, __func__, status, "count", (double)count);
+mps_status mpsi_fluid_begin_march(void *solver, const char *function, mpsi_march *m) {
+  const mps_fluid *f = solver;
+  return isnan(f->def.dt) ? MPS_OK : mpsi_march_check(m, f->context, function, f->def.dt);
+}
+
+mps_status mpsi_fluid_advance_march(void *solver, const char *function, mpsi_march *m,
+                                    int64_t count) {
+  mps_fluid *f = solver;
+  (void)count; /* 1 */
+  const bool run = mpsi_march_is_run(m);
+  mps_status status = check_dt(f, function, run ? m->t_end - m->start : INFINITY);
   if (status != MPS_OK) return status;
-  mpsi_guard_enter(&f->guard, f->context, __func__);
-  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = call_cancel(f, __func__);
-    if (status == MPS_OK) status = check_dt(f, __func__, INFINITY);
-    if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
-  }
-  mpsi_guard_end(&f->guard);
+  const double rest = m->t_end - f->time, full = dt_of(f);
+  if (!run) return take_step(f, function, full);
+  m->last = rest <= full * (1.0 + 1e-9);
+  status = take_step(f, function, m->last ? rest : even_step(rest, full));
+  if (status == MPS_OK && m->last) f->time = m->t_end;
   return status;
 }
 
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status == MPS_OK) status = mpsi_fluid_check_dt(f, __func__, dt);
   if (status != MPS_OK) return status;
@@ -266,10 +270,10 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = call_cancel(f, __func__);
+  status = mpsi_solver_check_cancel(&f->base, __func__);
   if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
   if (status == MPS_OK) {
-    status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
+    status = begin(f, __func__, isnan(dt) ? dt_of(f) : dt);
     if (status != MPS_OK) abandon(f);
   }
   mpsi_guard_end(&f->guard);
@@ -285,7 +289,7 @@ static mps_status check_stage(mps_fluid *f, const char *function, mpsi_fluid_sta
 }
 
 mps_status mps_fluid_solve_pressure(mps_fluid *f) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   for (int b = 0; b < f->walls; b++) f->wall[b].former = f->wall[b].load;
@@ -308,7 +312,7 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
 }
 
 mps_status mps_fluid_end_step(mps_fluid *f) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
   if (status != MPS_OK) return status;
   status = mpsi_fluid_agree(f, __func__, mpsi_particles_ready(f->particles, __func__));
@@ -320,86 +324,10 @@ mps_status mps_fluid_end_step(mps_fluid *f) {
 }
 
 mps_status mps_fluid_abandon_step(mps_fluid *f) {
-  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!f) return mpsi_null(__func__, "fluid");
   const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   abandon(f);
   for (int b = 0; b < f->walls; b++) f->wall[b].given = f->wall[b].placed = false;
   return MPS_OK;
-}
-
-/* ---- runs ------------------------------------------------------------------------------------ */
-
-static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
-  if (!callback) return MPS_OK;
-  mpsi_guard_enter(&f->guard, f->context, "the callback of mps_fluid_run");
-  return mpsi_fluid_agree(
-      f, "mps_fluid_run",
-      mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f)));
-}
-
-/* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
- * change of the step shows in the pressure. */
-static double even_step(double rest, double full) {
-  const double steps = ceil(rest / full * (1.0 - 1e-9));
-  return steps > EVEN_STEPS ? full : rest / steps;
-}
-
-/* A run under way. */
-typedef struct run {
-  double start, t_end;
-  int64_t every;
-  mps_fluid_fn callback;
-  void *user;
-} run;
-
-static mps_status march(mps_fluid *f, const char *function, const run *r) {
-  const double slice = 0.01 * (r->t_end - r->start);
-  int64_t done = 0, reported = 0;
-  mps_status status = call_back(f, r->callback, r->user);
-  while (status == MPS_OK && f->time < r->t_end) {
-    status = check_dt(f, function, r->t_end - r->start);
-    if (status != MPS_OK) break;
-    const double rest = r->t_end - f->time, full = mps_fluid_dt(f);
-    const bool last = rest <= full * (1.0 + 1e-9);
-    status = take_step(f, function, last ? rest : even_step(rest, full));
-    if (status != MPS_OK) break;
-    if (last) f->time = r->t_end;
-    done++;
-    if (done % r->every == 0 || last) status = call_back(f, r->callback, r->user);
-    if (last || f->time >= r->start + slice * (double)(reported + 1)) {
-      reported = last ? 100 : (int64_t)((f->time - r->start) / slice);
-      mpsi_progress(f->context, "fluid", f->steps, f->time - r->start, r->t_end - r->start);
-    }
-    if (status == MPS_OK && !last) status = call_cancel(f, function);
-  }
-  return status;
-}
-
-mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn callback,
-                         void *user) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK && (!isfinite(t_end) || t_end < f->time || every < 1))
-    status =
-        mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                  "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
-                  t_end, (long long)every, f->time);
-  if (status == MPS_OK && (t_end - f->time) / f->def.dt > MOST_STEPS) /* false where dt is NaN */
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                       "t_end is %g s, %g steps of dt = %g s from now: must be at most %g", t_end,
-                       (t_end - f->time) / f->def.dt, f->def.dt, MOST_STEPS);
-  mps_domain *domain = f->def.domain;
-  status = mpsi_domain_agree_same(domain, __func__, status, "t_end", t_end);
-  if (status == MPS_OK)
-    status = mpsi_domain_agree_same(domain, __func__, status, "every", (double)every);
-  if (status == MPS_OK)
-    status =
-        mpsi_domain_agree_same(domain, __func__, status, "having a callback", callback != NULL);
-  if (status != MPS_OK) return status;
-  const run r = {f->time, t_end, every, callback, user};
-  mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = march(f, __func__, &r);
-  mpsi_guard_end(&f->guard);
-  return status;
 }

@@ -8,34 +8,38 @@
 
 /* ---- called within a callback of the solver -------------------------------------------------- */
 
-mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
-  mps_status status = mpsi_guard_check(&e->guard, e->context, function);
+mps_status mpsi_elastic_ready(void *solver, const char *function) {
+  mps_elastic *e = solver;
   e->agreed = false;
-  if (status != MPS_OK) return status;
-  status = mpsi_elastic_agree(e, function, mpsi_particles_ready(e->particles, function));
+  return mpsi_elastic_agree(e, function, mpsi_particles_ready(e->particles, function));
+}
+
+mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
+  const mps_status status = mpsi_solver_enter(&e->base, function);
   if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
   return status;
 }
 
-mps_status mpsi_elastic_agree(mps_elastic *e, const char *function, mps_status status) {
-  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_agree(e->def.domain, function, status);
+mps_status mpsi_elastic_agree(void *solver, const char *function, mps_status status) {
+  mps_elastic *e = solver;
+  if (e->agreed || !mpsi_domain_many(e->domain)) return status;
+  status = mpsi_domain_agree(e->domain, function, status);
   e->agreed = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_elastic_agree_same(mps_elastic *e, const char *function, mps_status status,
                                    const char *name, double value) {
-  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_agree_same(e->def.domain, function, status, name, value);
+  if (e->agreed || !mpsi_domain_many(e->domain)) return status;
+  status = mpsi_domain_agree_same(e->domain, function, status, name, value);
   e->agreed = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_elastic_agree_given(mps_elastic *e, const char *function, mps_status status,
                                     const mpsi_given *list) {
-  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_agree_given(e->def.domain, function, status, list);
+  if (e->agreed || !mpsi_domain_many(e->domain)) return status;
+  status = mpsi_domain_agree_given(e->domain, function, status, list);
   e->agreed = status != MPS_OK;
   return status;
 }
@@ -87,10 +91,14 @@ mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *n
                              int32_t components) {
   for (int32_t c = 0; c < components; c++) {
     const double *column = mpsi_particles_column(e->particles, name, c);
-    if (!column)
+    if (!column) {
+      const bool moduli = strcmp(name, "young") == 0 || strcmp(name, "poisson") == 0;
       return mpsi_fail(e->context, function, MPS_ERROR_FIELD,
-                       "the particles have no field '%s' (component %d of %d)", name, c,
-                       components);
+                       "the particle set has no field '%s': set it with %s", name,
+                       moduli ? "mps_particles_set or mps_particles_set_material, or give the "
+                                "`material` of the definition"
+                              : "mps_particles_set");
+    }
     for (int64_t i = 0; i < e->n; i++)
       values[i * components + c] = column[mps_particles_index(e->particles, e->id[i])];
   }

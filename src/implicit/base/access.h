@@ -5,16 +5,18 @@
 
 #include "domain/domain_internal.h"
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
 /* MPS_ERROR_STATE within a callback of the solver; until `leave` it is busy. */
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
+/* MPS_ERROR_STATE on all ranks while a field is edited on one. */
+mps_status mpsi_elastic_ready(void *elastic, const char *function);
 /* On several ranks: an error of one is that of all. All ranks make the same calls, up to the first
  * that returns an error; `leave` is the last. */
-mps_status mpsi_elastic_agree(mps_elastic *e, const char *function, mps_status status);
+mps_status mpsi_elastic_agree(void *elastic, const char *function, mps_status status);
 /* The same, and MPS_ERROR_ARGUMENT where ranks have different values of `name`. */
 mps_status mpsi_elastic_agree_given(mps_elastic *e, const char *function, mps_status status,
                                     const mpsi_given *list);

@@ -22,8 +22,9 @@
 #include "implicit/ranks/partition.h"
 #include "implicit/solve/cholesky.h"
 #include "implicit/solve/outside.h"
+#include "solver/solver_base.h"
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #define MPSI_ELASTIC_LEAST 1e-30 /* of a positive quantity in SI units */
 #define MPSI_ELASTIC_MOST 1e30
@@ -32,16 +33,14 @@
 #define MPSI_ELASTIC_CHUNK 2048      /* particles of one unit of parallel work */
 
 struct mps_elastic {
-  mps_context *context;
-  mps_particles *particles;
-  mpsi_holder holder; /* of the particles */
+  MPSI_SOLVER_BASE;
   mps_elastic_def def;
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
   bool conservative;  /* method; else the published one */
   bool constant;      /* published: divided by n0, else by n_i */
-  mpsi_guard guard;   /* of the running public function */
   bool within;        /* a step is running */
   bool warned_thin;   /* see thin.c */
+  bool unread;        /* `young` or `poisson` have been edited since they were read */
   bool agreed;        /* of several ranks: they have agreed on the error of this function */
   int64_t *id;        /* of each particle, ascending */
   int64_t n;
@@ -69,8 +68,6 @@ struct mps_elastic {
   int64_t *joint_at;     /* [slot * 2 dim + 2 axis + up], or -1; NULL without joints */
   double *joint_scratch; /* joints * dim */
 
-  mpsi_elastic_boundary *boundaries;
-  int32_t boundary_count;
   mpsi_support *supports;
   int64_t support_count;
   int64_t *support_of; /* index in supports, or -1 */
@@ -78,10 +75,6 @@ struct mps_elastic {
   mpsi_facet *facets;
   int64_t facet_count;
 
-  mpsi_elastic_load *loads;
-  int32_t load_count;
-  mpsi_patch *spare; /* room for the patches of a load that is set */
-  int64_t spare_capacity;
   double *load;         /* nodal forces, n * dim */
   double *displacement; /* n * dim */
   double *reaction;     /* n * dim */
@@ -105,16 +98,30 @@ struct mps_elastic {
   double *mass;           /* n, or NULL until a motion needs it */
   mps_elastic_report report;
 
-  mpsi_elastic_outside *outside; /* NULL: the library's own solvers */
+  mpsi_elastic_outside outside; /* the matrix of a linear solver of the caller */
 
   int64_t fabric[2]; /* Hashes, where known */
   bool fabric_known;
-  mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
   struct mpsi_elastic_motion *motion; /* NULL: no dynamics under way */
   struct mpsi_elastic_motion *ended;  /* by a removal: its numbers without arrays, or NULL */
   struct mpsi_elastic_change *change; /* Under way, or NULL */
 };
+
+/* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
+static inline int32_t mpsi_elastic_boundary_count(const mps_elastic *e) {
+  return e->conditions[MPSI_BOUNDARIES].room;
+}
+static inline mpsi_elastic_boundary *mpsi_elastic_boundary_of(const mps_elastic *e,
+                                                              int32_t number) {
+  return e->conditions[MPSI_BOUNDARIES].own[number];
+}
+static inline int32_t mpsi_elastic_load_count(const mps_elastic *e) {
+  return e->conditions[MPSI_LOADS].room;
+}
+static inline mpsi_elastic_load *mpsi_elastic_load_of(const mps_elastic *e, int32_t number) {
+  return e->conditions[MPSI_LOADS].own[number];
+}
 
 /* Where the operator's arrays have particle i of the window. */
 static inline int64_t mpsi_elastic_slot(const mps_elastic *e, int64_t i) {

@@ -57,6 +57,18 @@ void mpsi_elastic_suspend_motion(mps_elastic *e) {
   e->motion = NULL;
 }
 
-double mps_elastic_time(const mps_elastic *e) { return e && e->motion ? e->motion->time : 0.0; }
-int64_t mps_elastic_steps(const mps_elastic *e) { return e && e->motion ? e->motion->steps : 0; }
-double mps_elastic_dt(const mps_elastic *e) { return e && e->motion ? e->motion->dt : 0.0; }
+double mpsi_elastic_time(const void *solver) {
+  const mps_elastic *e = solver;
+  return e->motion ? e->motion->time : 0.0;
+}
+
+int64_t mpsi_elastic_steps(const void *solver) {
+  const mps_elastic *e = solver;
+  return e->motion ? e->motion->steps : 0;
+}
+
+double mpsi_elastic_dt(void *solver, const char *function) {
+  const mps_elastic *e = solver;
+  (void)function;
+  return e->motion ? e->motion->dt : 0.0;
+}

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_MOTION_STATE_H
 #define MPSI_ELASTIC_MOTION_STATE_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
@@ -36,5 +36,10 @@ mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
                                         mpsi_elastic_motion *m);
 void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to);
 void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
+
+/* 0 without a motion. */
+double mpsi_elastic_time(const void *elastic);
+int64_t mpsi_elastic_steps(const void *elastic);
+double mpsi_elastic_dt(void *elastic, const char *function);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_FABRIC_H
 #define MPSI_ELASTIC_FABRIC_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* ---- fabric.c ---- */
 enum { MPSI_FABRIC_MODULI, MPSI_FABRIC_SUPPORTS };

@@ -41,30 +41,32 @@ void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *l
 
 int64_t mps_elastic_facet_count(const mps_elastic *e) { return e ? e->facet_count : 0; }
 
-static void centre_of(const mps_elastic *e, const mpsi_facet *f, double *centre) {
+void mpsi_elastic_facet_centre(const mps_elastic *e, const mpsi_facet *f, double *centre) {
   double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
   mpsi_elastic_facet_box(e, f, low, high);
   for (int c = 0; c < 3; c++)
     centre[c] = c < e->dim ? e->x[f->particle * e->dim + c] + 0.5 * (low[c] + high[c]) : 0.0;
 }
 
-mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis, int32_t side,
-                                     const double *lo, const double *hi, int64_t capacity,
-                                     int64_t *count, int64_t *facets) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (axis < 0 || axis >= e->dim || side < -1 || side > 1)
+mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t side, const double *lo,
+                                     const double *hi, int64_t capacity, int64_t *count,
+                                     int64_t *facets) {
+  if (!e) return mpsi_null(__func__, "elastic");
+  if (side < MPS_SIDE_ANY || side >= 2 * e->dim)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "axis is %d and side %d, allowed are 0..%d and -1, 0 (any), 1", axis, side,
-                     e->dim - 1);
-  if (!count || capacity < 0 || (capacity > 0 && !facets))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "%s",
-                     !count ? "count is NULL" : "facets is NULL or capacity negative");
+                     "side is %d, allowed are MPS_SIDE_ANY (-1) and 0 to %d", side, 2 * e->dim - 1);
+  if (capacity < 0)
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
+                     (long long)capacity);
+  if (!count || (capacity > 0 && !facets))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     count ? "facets" : "count");
   *count = 0;
   for (int64_t k = 0; k < e->facet_count; k++) {
     const mpsi_facet *f = &e->facets[k];
     double centre[3];
-    if (side != 0 && (f->axis != axis || f->side != side)) continue;
-    centre_of(e, f, centre);
+    if (side != MPS_SIDE_ANY && side != mps_side_of(f->axis, f->side > 0)) continue;
+    mpsi_elastic_facet_centre(e, f, centre);
     bool inside = true;
     for (int c = 0; c < e->dim; c++)
       inside = inside && (!lo || centre[c] >= lo[c]) && (!hi || centre[c] <= hi[c]);
@@ -95,7 +97,7 @@ static void write_shape(const mps_elastic *e, const mpsi_facet *f, int64_t k,
     if (c != f->axis) area *= high[c] - low[c];
   if (a->particle) a->particle[k] = e->id[f->particle];
   if (a->area) a->area[k] = area;
-  if (a->centre) centre_of(e, f, a->centre + 3 * k);
+  if (a->centre) mpsi_elastic_facet_centre(e, f, a->centre + 3 * k);
   for (int c = 0; c < 3; c++) {
     if (a->normal) a->normal[3 * k + c] = c == f->axis ? f->side : 0.0;
     if (a->extent) a->extent[3 * k + c] = high[c] - low[c];
@@ -144,12 +146,12 @@ static mps_status write_motion(mps_elastic *e, const char *function, int64_t cou
   return status;
 }
 
-mps_status mps_elastic_get_facets_sized(const mps_elastic *handle, int64_t count,
-                                        const int64_t *facets,
-                                        const mps_elastic_facet_arrays *arrays, size_t size) {
+mps_status mps_elastic_get_facets_sized(const mps_elastic *handle, const int64_t *facets,
+                                        int64_t count, const mps_elastic_facet_arrays *arrays,
+                                        size_t size) {
   mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_elastic_get_facets";
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_elastic_facet_arrays a = {0};
   if (!arrays || size == 0 || count < 0 || (!facets && count != e->facet_count))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_FACETS_H
 #define MPSI_ELASTIC_FACETS_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 typedef struct mpsi_facet {
   int64_t particle;
@@ -14,6 +14,8 @@ typedef struct mpsi_facet {
 mps_status mpsi_elastic_find_facets(mps_elastic *e, const char *function);
 /* The cell of particle i reaches from low to high (relative to the particle) along `axis`. */
 void mpsi_elastic_reach(const mps_elastic *e, int64_t i, int axis, double *low, double *high);
+/* The middle of the facet (m, 3 components). */
+void mpsi_elastic_facet_centre(const mps_elastic *e, const mpsi_facet *f, double *centre);
 /* The facet as a box relative to its particle. */
 void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *low, double *high);
 

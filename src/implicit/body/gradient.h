@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_GRADIENT_H
 #define MPSI_ELASTIC_GRADIENT_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
 void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);

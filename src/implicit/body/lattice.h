@@ -5,7 +5,7 @@
 
 #include "implicit/ranks/partition.h"
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_THIN_H
 #define MPSI_ELASTIC_THIN_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* Warns once, before the first solution. */
 mps_status mpsi_elastic_warn_of_thin_parts(mps_elastic *e, const char *function);

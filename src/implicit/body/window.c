@@ -4,6 +4,7 @@
 #include "window.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/body/bending.h"
+#include "solver/linear.h"
 
 void mpsi_elastic_measure(mps_elastic *e) {
   const int d = e->dim;
@@ -25,10 +26,7 @@ void mpsi_elastic_measure(mps_elastic *e) {
 
 /* Do all ranks of the domain solve together with the present solver? */
 static bool solves_together(const mps_elastic *e) {
-  const mpsi_elastic_outside *o = e->outside;
-  return o && e->conservative && mpsi_domain_many(e->def.domain) &&
-         o->def.parts == mps_domain_size(e->def.domain) &&
-         o->def.part == mps_domain_rank(e->def.domain);
+  return mpsi_linear_serves(&e->base, e->n * e->dim) && e->conservative && mpsi_domain_many(e->domain);
 }
 
 mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function) {

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_WINDOW_H
 #define MPSI_ELASTIC_WINDOW_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* Volumes and pair stiffnesses from cuts and material. */
 void mpsi_elastic_measure(mps_elastic *e);

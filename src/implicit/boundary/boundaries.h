@@ -3,22 +3,18 @@
 #ifndef MPSI_ELASTIC_BOUNDARIES_H
 #define MPSI_ELASTIC_BOUNDARIES_H
 
-#include <mps/elastic_solver.h>
+#include "solver/conditions.h"
+
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
-/* A boundary of the caller. */
+/* A boundary of the caller, of the kept definition. */
 typedef struct mpsi_elastic_boundary {
-  bool used;
-  int32_t kind;
+  const mps_elastic_boundary_def *def; /* ids: also of removed particles */
   uint32_t dofs;
-  double normal[3]; /* unit */
-  int64_t count;
-  int64_t *id;     /* count, also of removed particles */
-  double *values;  /* count * 3, a roller's count; or NULL */
-  int64_t present; /* of these, in the present body */
-  mps_signal *signal[3];
-  double factor[3];
+  double normal[3];    /* of a roller, unit */
+  int64_t present;     /* of the ids, in the present body */
   double motion[3][3]; /* factor * signal at the time driven to: [derivative][component] */
   mps_reaction reaction;
 } mpsi_elastic_boundary;
@@ -34,8 +30,11 @@ void mpsi_elastic_count_reactions(mps_elastic *e, double dt);
 double mpsi_elastic_count_work(mps_elastic *e, const double *force, const double *du,
                                const double *v0, const double *v1);
 void mpsi_elastic_forget_reactions(mps_elastic *e);
-void mpsi_elastic_drop_boundaries(mps_elastic *e);
 /* Supports from the present boundaries. On an error the former ones stay. */
 mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
+
+extern const mpsi_condition_kind mpsi_elastic_boundaries;
+mps_status mpsi_elastic_get_reaction(void *elastic, const char *function, mps_status status,
+                                     int32_t number, mps_reaction *out);
 
 #endif

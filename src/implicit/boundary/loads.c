@@ -6,13 +6,12 @@
  * so does the stress of the half cell in K u (the trapezoidal rule), which it must balance. A body
  * force on a half cell acts at its middle. The published method takes resultants only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/defs.h"
 #include "loads.h"
 #include "implicit/base/implicit_solver.h"
+#include "implicit/base/motion_state.h"
 #include "implicit/body/gradient.h"
 
 #include "core/particles/particles_internal.h"
-#include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
 #include <string.h>
@@ -21,50 +20,47 @@
 
 static bool on_facets(int32_t kind) { return kind >= MPS_ELASTIC_LOAD_TRACTION; }
 
-static mps_status check_list(const mps_elastic *e, const char *function,
-                             const mps_elastic_load_def *def) {
-  const bool facets = on_facets(def->kind);
-  const int64_t each = def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3;
-  if (def->id_count < 0 || (def->id_count > 0 && !def->ids))
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     def->id_count < 0 ? "id_count is %lld, must be >= 0"
-                                       : "ids is NULL, id_count is %lld",
-                     (long long)def->id_count);
-  for (int64_t k = 0; k < def->id_count; k++) {
-    const int64_t id = def->ids[k];
-    if (facets && (id < 0 || id >= e->facet_count))
-      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, facets are 0..%lld", (long long)k, (long long)id,
-                       (long long)e->facet_count - 1);
-    if (!facets && mpsi_elastic_find(e, id) < 0)
-      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)k,
-                       (long long)id);
-  }
-  for (int64_t k = 0; def->values && k < def->id_count * each; k++)
-    if ((each == 1 || k % 3 < e->dim) && !isfinite(def->values[k]))
-      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "values[%lld] is %g, must be finite", (long long)k, def->values[k]);
-  return MPS_OK;
+/* Values of each item: of a pressure one. */
+static int32_t each(const void *known, int32_t list) {
+  const mps_elastic_load_def *def = known;
+  return list == 0 || def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3;
 }
 
-static mps_status check_def(const mps_elastic *e, const char *function,
-                            const mps_elastic_load_def *def) {
-  if (def->kind < MPS_ELASTIC_LOAD_BODY || def->kind > MPS_ELASTIC_LOAD_FUNCTION)
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed are MPS_ELASTIC_LOAD_..., 0..5", def->kind);
-  for (int c = 0; c < 3; c++)
-    if (!isfinite(def->force[c]) || !isfinite(def->factor[c]))
+static bool keeps(const void *known, mpsi_selected by) {
+  const mps_elastic_load_def *def = known;
+  return by == MPSI_SELECTED_ALL && def->kind < MPS_ELASTIC_LOAD_FORCE;
+}
+
+static const char *items(const void *def) {
+  return on_facets(((const mps_elastic_load_def *)def)->kind) ? "facet" : "particle";
+}
+
+static bool item(const void *solver, const void *known, int64_t k, double x[3], int64_t *id) {
+  const mps_elastic *e = solver;
+  const bool facets = on_facets(((const mps_elastic_load_def *)known)->kind);
+  if (k >= (facets ? e->facet_count : e->n)) return false;
+  *id = facets ? k : e->id[k];
+  if (facets)
+    mpsi_elastic_facet_centre(e, &e->facets[k], x);
+  else
+    memcpy(x, &e->x[k * e->dim], (size_t)e->dim * sizeof *x);
+  return true;
+}
+
+static mps_status check_ids(void *solver, const char *function, const void *known, int64_t count,
+                            const int64_t *ids) {
+  const mps_elastic *e = solver;
+  const bool facets = on_facets(((const mps_elastic_load_def *)known)->kind);
+  for (int64_t k = 0; k < count; k++) {
+    if (facets && (ids[k] < 0 || ids[k] >= e->facet_count))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "force[%d] is %g and factor[%d] %g, must be finite", c, def->force[c], c,
-                       def->factor[c]);
-  if (def->kind == MPS_ELASTIC_LOAD_FUNCTION && !def->function)
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "function is NULL");
-  if (def->kind > MPS_ELASTIC_LOAD_GRAVITY) return check_list(e, function, def);
-  if (def->ids || def->id_count != 0 || def->values)
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "a load of kind %d acts on the whole body: it takes no ids or values",
-                     def->kind);
+                       "ids[%lld] is %lld, facets are 0..%lld", (long long)k, (long long)ids[k],
+                       (long long)e->facet_count - 1);
+    if (!facets && mpsi_elastic_find(e, ids[k]) < 0)
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)k,
+                       (long long)ids[k]);
+  }
   return MPS_OK;
 }
 
@@ -126,9 +122,10 @@ static mps_status make_patch(const mps_elastic *e, const char *function,
                              const mps_elastic_load_def *def, int64_t k, mpsi_patch *out) {
   const double *value = def->values ? def->values + 3 * k : def->force;
   memset(out, 0, sizeof *out);
-  if (!on_facets(def->kind)) {
+  if (!on_facets(def->kind)) { /* of a force by mass or volume the id alone */
     out->id = def->ids[k];
-    for (int c = 0; c < e->dim; c++) out->force[c] = value[c];
+    for (int c = 0; def->kind == MPS_ELASTIC_LOAD_FORCE && c < e->dim; c++)
+      out->force[c] = value[c];
     return MPS_OK;
   }
   const mpsi_facet *f = &e->facets[def->ids[k]];
@@ -144,128 +141,61 @@ static mps_status make_patch(const mps_elastic *e, const char *function,
   return MPS_OK;
 }
 
-/* The patches of the definition, to e->spare. */
-static mps_status make_patches(mps_elastic *e, const char *function,
-                               const mps_elastic_load_def *def) {
+static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
+  mps_elastic *e = solver;
+  const mps_elastic_load_def *def = known;
+  mpsi_elastic_load *l = own;
   mps_status status = MPS_OK;
-  if (def->kind <= MPS_ELASTIC_LOAD_GRAVITY) return MPS_OK;
-  if (def->id_count > e->spare_capacity) {
-    if (!mpsi_grow(e->context, (void **)&e->spare, e->spare_capacity, def->id_count,
-                   sizeof *e->spare))
-      return mpsi_fail_memory(e->context, function, (size_t)def->id_count * sizeof *e->spare);
-    e->spare_capacity = def->id_count;
-  }
+  (void)number;
+  l->def = def;
+  if (def->id_count == 0) return MPS_OK;
+  if (!(l->patches = mpsi_alloc(e->context, def->id_count, sizeof *l->patches)))
+    return mpsi_fail_memory(e->context, function, (size_t)def->id_count * sizeof *l->patches);
   for (int64_t k = 0; k < def->id_count && status == MPS_OK; k++)
-    status = make_patch(e, function, def, k, &e->spare[k]);
+    status = make_patch(e, function, def, k, &l->patches[k]);
   return status;
 }
 
-static void release(mps_elastic *e, mpsi_elastic_load *l) {
-  mpsi_free(e->context, l->patches);
-  for (int c = 0; c < 3; c++) mps_signal_destroy(&l->signal[c]);
-  *l = (mpsi_elastic_load){.used = false};
-}
-
-/* Checks that all ranks have the same definition, once it is valid. */
-static void give(mpsi_given *list, const mps_elastic_load_def *def) {
-  const size_t each = def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3, count = (size_t)def->id_count;
-  MPSI_GIVE(list, def, kind);
-  MPSI_GIVE(list, def, id_count);
-  MPSI_GIVE_VECTOR(list, def, force, 3);
-  MPSI_GIVE_VECTOR(list, def, factor, 3);
-  mpsi_give_bytes(list, "a hash of ids", def->ids, count * sizeof *def->ids);
-  mpsi_give_bytes(list, "a hash of values", def->values, count * each * sizeof *def->values);
-  for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", def->signal[c]);
-}
-
-/* The load `number` becomes that of `user`, on all ranks or on none. */
-static mps_status put(mps_elastic *e, const char *function, mps_status status, int32_t number,
-                      const mps_elastic_load_def *user) {
-  mps_elastic_load_def def = mpsi_elastic_load_defaults;
-  mpsi_given given;
-  mpsi_given_begin(&given);
-  mpsi_give(&given, "number", number);
-  if (status == MPS_OK)
-    status = MPSI_DEF_READ(e->context, function, mps_elastic_load_def, user, &def);
-  if (status == MPS_OK) status = check_def(e, function, &def);
-  if (status == MPS_OK) give(&given, &def);
-  double *mass = e->mass;
-  if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !mass)
-    status = mpsi_elastic_read_mass(e, function, &mass);
-  if (status == MPS_OK) status = make_patches(e, function, &def);
-  status = mpsi_elastic_agree_given(e, function, status, &given);
+/* The first load by mass reads the masses. */
+static mps_status apply(void *solver, const char *function, int32_t number, void *def, void *own,
+                        void *former) {
+  mps_elastic *e = solver;
+  const mpsi_elastic_load *l = own;
+  (void)number, (void)def, (void)former;
+  if (!l || l->def->kind != MPS_ELASTIC_LOAD_BODY || e->mass) return MPS_OK;
+  double *mass = NULL;
+  const mps_status status =
+      mpsi_elastic_agree(e, function, mpsi_elastic_read_mass(e, function, &mass));
   mpsi_elastic_finish_mass(e, mass, status == MPS_OK);
-  if (status != MPS_OK) return status;
-  mpsi_elastic_load *l = &e->loads[number];
-  if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become scratch memory */
-    mpsi_patch *patches = l->patches;
-    const int64_t capacity = l->capacity;
-    l->patches = e->spare;
-    l->capacity = e->spare_capacity;
-    e->spare = patches;
-    e->spare_capacity = capacity;
-  }
-  l->used = true;
-  l->kind = def.kind;
-  l->count = def.kind > MPS_ELASTIC_LOAD_GRAVITY ? def.id_count : 0;
-  for (int c = 0; c < 3; c++) {
-    mps_signal *signal = def.signal[c] ? mpsi_signal_retain(def.signal[c]) : NULL;
-    mps_signal_destroy(&l->signal[c]);
-    l->signal[c] = signal;
-    l->factor[c] = def.factor[c];
-    l->force[c] = def.force[c];
-  }
-  return MPS_OK;
+  return status;
 }
 
-/* ---- public calls ---------------------------------------------------------------------------- */
-
-static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
-  if (number >= 0 && number < e->load_count && e->loads[number].used) return MPS_OK;
-  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "number is %d: there is no load %d",
-                   number, number);
+static void drop(void *solver, void *own) {
+  mpsi_free(((mps_elastic *)solver)->context, ((mpsi_elastic_load *)own)->patches);
 }
 
-mps_status mps_elastic_add_load(mps_elastic *e, const mps_elastic_load_def *def, int32_t *number) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  int32_t at = 0;
-  while (at < e->load_count && e->loads[at].used) at++;
-  if (at == e->load_count) {
-    if (mpsi_grow(e->context, (void **)&e->loads, at, at + 8, sizeof *e->loads))
-      e->load_count = at + 8;
-    else
-      status = mpsi_fail_memory(e->context, __func__, 8 * sizeof *e->loads);
-  }
-  status = put(e, __func__, status, at, def);
-  if (status == MPS_OK && number) *number = at;
-  return mpsi_elastic_leave(e, status);
-}
-
-mps_status mps_elastic_set_load(mps_elastic *e, int32_t number, const mps_elastic_load_def *def) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = put(e, __func__, check_number(e, __func__, number), number, def);
-  return mpsi_elastic_leave(e, status);
-}
-
-mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status =
-      mpsi_elastic_agree_same(e, __func__, check_number(e, __func__, number), "number", number);
-  if (status == MPS_OK) release(e, &e->loads[number]);
-  return mpsi_elastic_leave(e, status);
-}
-
-void mpsi_elastic_drop_loads(mps_elastic *e) {
-  for (int32_t k = 0; k < e->load_count; k++) release(e, &e->loads[k]);
-  mpsi_free(e->context, e->loads);
-  mpsi_free(e->context, e->spare);
-}
+const mpsi_condition_kind mpsi_elastic_loads = {
+    .kind = MPS_DEF_ELASTIC_LOAD,
+    .definition = &mpsi_definition_of_mps_elastic_load_def,
+    .what = "load",
+    .add = "mps_elastic_add_load",
+    .set = "mps_elastic_set_load",
+    .get = "mps_elastic_get_load",
+    .remove = "mps_elastic_remove_load",
+    .role = MPSI_SIGNAL_NUMBER,
+    .list = {{"ids", "id_count", 1}, {"values", "id_count", 3}},
+    .most = INT32_MAX - 8,
+    .size = sizeof(mpsi_elastic_load),
+    .each = each,
+    .keeps = keeps,
+    .item = item,
+    .items = items,
+    .selects = true,
+    .check_ids = check_ids,
+    .make = make,
+    .apply = apply,
+    .drop = drop,
+};
 
 /* ---- nodal forces ---------------------------------------------------------------------------- */
 
@@ -286,13 +216,15 @@ static void add_patch(mps_elastic *e, int64_t i, const mpsi_patch *patch, const 
     mpsi_elastic_spread(e, i, (const double(*)[3])moment, e->load);
 }
 
-/* The whole body: `force` by volume, or by mass. */
-static void add_body(mps_elastic *e, const mpsi_elastic_load *l, const double *scale) {
-  for (int64_t i = 0; i < e->n; i++) {
+/* `force` by mass or volume, on a list of particles or the whole body. */
+static void add_body(mps_elastic *e, const mps_elastic_load_def *def, const double *scale) {
+  for (int64_t k = 0; k < (def->id_count > 0 ? def->id_count : e->n); k++) {
+    const int64_t i = def->id_count > 0 ? mpsi_elastic_find(e, def->ids[k]) : k;
+    if (i < 0) continue; /* removed */
     mpsi_patch patch = {.id = e->id[i]};
-    const double amount = l->kind == MPS_ELASTIC_LOAD_GRAVITY ? e->mass[i] : e->volume[i];
+    const double amount = def->kind == MPS_ELASTIC_LOAD_BODY ? e->mass[i] : e->volume[i];
     for (int c = 0; c < e->dim; c++) {
-      patch.force[c] = l->force[c] * amount;
+      patch.force[c] = def->force[c] * amount;
       for (int b = 0; e->cut[i] && b < e->dim; b++) {
         double low, high;
         mpsi_elastic_reach(e, i, b, &low, &high);
@@ -323,28 +255,33 @@ static mps_status add_external(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
+static bool has_gravity(const mps_elastic *e) {
+  const double *g = e->def.gravity;
+  return g[0] != 0.0 || g[1] != 0.0 || (e->dim == 3 && g[2] != 0.0);
+}
+
 mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former) {
-  bool weighs = false;
+  bool weighs = has_gravity(e);
   *former = e->mass;
-  for (int32_t k = 0; k < e->load_count; k++)
-    weighs = weighs || (e->loads[k].used && e->loads[k].kind == MPS_ELASTIC_LOAD_GRAVITY);
+  for (int32_t k = 0; k < mpsi_elastic_load_count(e); k++)
+    weighs = weighs || (mpsi_elastic_load_of(e, k) &&
+                        mpsi_elastic_load_of(e, k)->def->kind == MPS_ELASTIC_LOAD_BODY);
   if (!weighs) return MPS_OK;
   return mpsi_elastic_agree(e, function, mpsi_elastic_read_mass(e, function, former));
 }
 
 static mps_status evaluate_signals(mps_elastic *e, const char *function, double t,
                                    bool *by_caller) {
-  for (int32_t k = 0; k < e->load_count; k++) {
-    mpsi_elastic_load *l = &e->loads[k];
-    for (int c = 0; l->used && c < 3; c++) {
-      const int s = l->kind == MPS_ELASTIC_LOAD_PRESSURE ? 0 : c;
-      mpsi_signal_motion m = {.u = 1.0};
+  for (int32_t k = 0; k < mpsi_elastic_load_count(e); k++) {
+    mpsi_elastic_load *l = mpsi_elastic_load_of(e, k);
+    for (int c = 0; l && c < 3; c++) {
+      const int s = l->def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 0 : c;
+      double factor;
       const mpsi_signal_use use = {e->context, function, "load", k, s};
-      const mps_status status =
-          l->signal[s] ? mpsi_signal_evaluate(l->signal[s], use, t, &m) : MPS_OK;
-      *by_caller = *by_caller || mpsi_signal_may_fail(l->signal[s]);
+      const mps_status status = mpsi_signal_factor(l->def->signal[s], use, t, &factor);
+      *by_caller = *by_caller || mpsi_signal_may_fail(l->def->signal[s]);
       if (status != MPS_OK) return status;
-      l->scale[c] = l->factor[s] * m.u;
+      l->scale[c] = l->def->factor[s] * factor;
     }
   }
   return MPS_OK;
@@ -357,9 +294,9 @@ static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   mpsi_given list;
   if (!by_caller) return status;
   mpsi_given_begin(&list);
-  for (int32_t k = 0; status == MPS_OK && k < e->load_count; k++)
-    if (e->loads[k].used)
-      mpsi_give_vector(&list, "the present factor on a load", 3, e->loads[k].scale);
+  for (int32_t k = 0; status == MPS_OK && k < mpsi_elastic_load_count(e); k++)
+    if (mpsi_elastic_load_of(e, k))
+      mpsi_give_vector(&list, "the present factor on a load", 3, mpsi_elastic_load_of(e, k)->scale);
   return mpsi_elastic_agree_given(e, function, status, &list);
 }
 
@@ -381,11 +318,18 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
   mps_status status = find_scales(e, function, t);
   if (status != MPS_OK) return status;
   memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
-  for (int32_t k = 0; k < e->load_count; k++) {
-    const mpsi_elastic_load *l = &e->loads[k];
-    if (!l->used) continue;
-    if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, l->scale);
-    for (int64_t p = 0; p < l->count; p++) {
+  if (has_gravity(e)) {
+    mps_elastic_load_def weight = {.kind = MPS_ELASTIC_LOAD_BODY};
+    const double whole[3] = {1.0, 1.0, 1.0};
+    memcpy(weight.force, e->def.gravity, sizeof weight.force);
+    add_body(e, &weight, whole);
+  }
+  for (int32_t k = 0; k < mpsi_elastic_load_count(e); k++) {
+    const mpsi_elastic_load *l = mpsi_elastic_load_of(e, k);
+    if (!l) continue;
+    const bool body = l->def->kind < MPS_ELASTIC_LOAD_FORCE;
+    if (body) add_body(e, l->def, l->scale);
+    for (int64_t p = 0; !body && p < l->def->id_count; p++) {
       const int64_t i = mpsi_elastic_find(e, l->patches[p].id);
       if (i >= 0) add_patch(e, i, &l->patches[p], l->scale);
     }
@@ -443,13 +387,13 @@ static mps_status give_resultant(const mps_elastic *e, const char *function, con
 mps_status mps_elastic_get_load_resultant(const mps_elastic *handle, const double *about,
                                           double *force, double *moment) {
   mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
   double *mass = e->mass;
   if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
-  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mpsi_elastic_time(e));
   if (status == MPS_OK) status = give_resultant(e, __func__, about, force, moment);
   mpsi_elastic_finish_mass(e, mass, false);
   return mpsi_elastic_leave(e, status);

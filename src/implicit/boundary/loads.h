@@ -3,7 +3,9 @@
 #ifndef MPSI_ELASTIC_LOADS_H
 #define MPSI_ELASTIC_LOADS_H
 
-#include <mps/elastic_solver.h>
+#include "solver/conditions.h"
+
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
@@ -13,26 +15,24 @@ typedef struct mpsi_patch {
   double force[3], moment[3][3];
 } mpsi_patch;
 
+/* A load of the kept definition. */
 typedef struct mpsi_elastic_load {
-  bool used;
-  int32_t kind;
-  double force[3]; /* BODY, GRAVITY */
-  mps_signal *signal[3];
-  double factor[3], scale[3]; /* scale: factor times the signal's value, at the requested time */
-  mpsi_patch *patches;
-  int64_t count, capacity;
+  const mps_elastic_load_def *def;
+  double scale[3];     /* factor times the signal's value, at the requested time */
+  mpsi_patch *patches; /* one for each id of the definition; none: the whole body */
 } mpsi_elastic_load;
 
-/* With a load of gravity: reads `density` again, as mpsi_elastic_read_mass. */
+/* With a load by mass: reads `density` again, as mpsi_elastic_read_mass. */
 mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former);
 /* The nodal forces of all loads and of `external_force` at time t, to e->load. */
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t);
 /* MPS_ERROR_ARGUMENT unless the point of moments (NULL: the origin) is finite. */
 mps_status mpsi_elastic_check_about(const mps_elastic *e, const char *function,
                                     const double *about);
-void mpsi_elastic_drop_loads(mps_elastic *e);
 /* Resultant of nodal forces. */
 void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double *about,
                             double *force, double *moment);
+
+extern const mpsi_condition_kind mpsi_elastic_loads;
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_SUPPORTS_H
 #define MPSI_ELASTIC_SUPPORTS_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 

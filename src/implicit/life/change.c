@@ -6,6 +6,7 @@
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/elastic_body.h"
+#include "implicit/operator/moduli.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,18 +32,16 @@ static mps_status begin(mps_elastic *e, const char *function, int64_t count) {
   mpsi_elastic_drop_change(e);
   mpsi_elastic_change *c = e->change = mpsi_alloc(e->context, 1, sizeof *c);
   if (!c) return mpsi_fail_memory(e->context, function, sizeof *c);
-  c->next = (mps_elastic){.context = e->context,
-                          .particles = e->particles,
+  c->next = (mps_elastic){.base = e->base,
                           .def = e->def,
                           .dim = e->dim,
                           .modes = e->modes,
                           .conservative = e->conservative,
                           .constant = e->constant,
                           .shared = e->shared,
+                          .unread = e->unread,
                           .n = count,
-                          .spacing = e->spacing,
-                          .boundaries = e->boundaries,
-                          .boundary_count = e->boundary_count};
+                          .spacing = e->spacing};
   const mps_status status = mpsi_elastic_allocate(&c->next, function);
   if (status != MPS_OK || !e->mass) return status;
   c->next.mass = mpsi_alloc(e->context, count, sizeof *c->next.mass);
@@ -70,7 +69,8 @@ static mps_status finish(mps_elastic *next, const char *function) {
 
 static int64_t count_present(const mps_elastic *e, const mpsi_elastic_boundary *b) {
   int64_t present = 0;
-  for (int64_t k = 0; k < b->count; k++) present += mpsi_elastic_find(e, b->id[k]) >= 0;
+  for (int64_t k = 0; k < b->def->id_count; k++)
+    present += mpsi_elastic_find(e, b->def->ids[k]) >= 0;
   return present;
 }
 
@@ -79,18 +79,17 @@ static void use(mps_elastic *e) {
   mpsi_elastic_change *c = e->change;
   mps_elastic former = *e;
   *e = c->next;
-  e->holder = former.holder; /* the set knows its address */
-  e->guard = former.guard, e->within = former.within;
-  e->identity = former.identity;
-  e->loads = former.loads, e->load_count = former.load_count;
-  e->spare = former.spare, e->spare_capacity = former.spare_capacity;
+  e->base = former.base;
+  e->within = former.within;
   e->report = former.report;
   e->outside = former.outside;
   e->motion = former.motion, e->ended = former.ended;
   e->change = c;
   c->next = former;
-  for (int32_t k = 0; k < e->boundary_count; k++)
-    e->boundaries[k].present = count_present(e, &e->boundaries[k]);
+  for (int32_t k = 0; k < mpsi_elastic_boundary_count(e); k++) {
+    mpsi_elastic_boundary *b = mpsi_elastic_boundary_of(e, k);
+    if (b) b->present = count_present(e, b);
+  }
 }
 
 /* ---- particles that leave -------------------------------------------------------------------- */
@@ -238,12 +237,12 @@ static bool same_body(const mps_elastic *e, const former *f) {
 static mps_status check_boundaries(const mps_elastic *e, const mps_elastic *body,
                                    const char *function, const mps_snapshot *from,
                                    const char *source, mps_status disagreement) {
-  for (int32_t k = 0; k < e->boundary_count; k++) {
+  for (int32_t k = 0; k < mpsi_elastic_boundary_count(e); k++) {
     char name[64];
-    if (!e->boundaries[k].used) continue;
+    if (!mpsi_elastic_boundary_of(e, k)) continue;
     snprintf(name, sizeof name, "boundary%d/particles", k);
     const int64_t then = *(const int64_t *)mpsi_values_find(&from->state, name)->data;
-    const int64_t present = count_present(body, &e->boundaries[k]);
+    const int64_t present = count_present(body, mpsi_elastic_boundary_of(e, k));
     if (then != present)
       return mpsi_fail(e->context, function, disagreement,
                        "in %s %s is %lld, in this solver %lld of those particles", source, name,

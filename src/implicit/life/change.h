@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_CHANGE_H
 #define MPSI_ELASTIC_CHANGE_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* The holder's functions. */
 mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count, const int64_t *ids);

@@ -1,6 +1,7 @@
 /* elastic.c - the solver object: checks of the definition, creation, destruction.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/defs.h"
+#include "implicit/life/restart.h"
+#include "implicit/motion/motion.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/elastic_body.h"
@@ -9,72 +10,21 @@
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
 #include "material/material_internal.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
+#include "solver/linear.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
+#include <mps/experimental/domain.h>
 
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- definition ------------------------------------------------------------------------------ */
 
-static mps_status check_choice(mps_context *context, const char *function, const char *name,
-                               int32_t value, int32_t low, int32_t high) {
-  if (value >= low && value <= high) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %d..%d", name,
-                   value, low, high);
-}
-
-/* NaN is an error, too. */
-static mps_status check_range(mps_context *context, const char *function, const char *name,
-                              double value, double low, double high) {
-  if (value >= low && value <= high) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s, allowed is %g to %g", name,
-                   mpsi_outside(value, low, high).text, low, high);
-}
-
-static mps_status check_numbers(mps_context *context, const char *function,
-                                const mps_elastic_def *def) {
-  mps_status status = MPS_OK;
-  if (!(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "radius_ratio is %s, must be above 1 and at most 4 (NaN: default)",
-                     mpsi_outside(def->radius_ratio, 1.0, 4.0).text);
-  if (!(def->memory_limit >= 0.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "memory_limit is %g bytes, must be >= 0 (NaN: none)", def->memory_limit);
-  if (def->iterations < 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "iterations is %lld, must be >= 0 (0: default)", (long long)def->iterations);
-  status = check_range(context, function, "measure", def->measure, MPSI_ELASTIC_LEAST,
-                       MPSI_ELASTIC_MOST);
-  if (status == MPS_OK) status = mpsi_domain_check(context, function, def->domain);
-  if (status == MPS_OK) status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
-  if (status == MPS_OK && !isnan(def->bending))
-    status = check_range(context, function, "bending", def->bending, 0.0, 1.0);
-  if (status == MPS_OK)
-    status = check_range(context, function, "tolerance", def->tolerance, 1e-14, 1e-2);
-  return status;
-}
-
 static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
                            int32_t dim, double spacing, bool published, mps_elastic_def *def) {
-  *def = mpsi_elastic_defaults;
-  mps_status status = MPS_OK;
-  if (user) status = MPSI_DEF_READ(context, function, mps_elastic_def, user, def);
-  const struct {
-    const char *name;
-    int32_t value, low, high;
-  } choices[] = {
-      {"state", def->state, MPS_ELASTIC_STATE_PLANE_STRESS, MPS_ELASTIC_STATE_PLANE_STRAIN},
-      {"solver", def->solver, MPS_ELASTIC_SOLVER_AUTO, MPS_ELASTIC_SOLVER_CG},
-      {"ordering", def->ordering, MPS_ELASTIC_ORDERING_BEST, MPS_ELASTIC_ORDERING_METIS},
-      {"refinements", def->refinements, 0, 10},
-      {"blas_threads", def->blas_threads, 0, 1024},
-  };
-  for (size_t k = 0; k < sizeof choices / sizeof *choices && status == MPS_OK; k++)
-    status = check_choice(context, function, choices[k].name, choices[k].value, choices[k].low,
-                          choices[k].high);
+  *def = mps_elastic_defaults();
+  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_elastic_def, user, def);
   if (status != MPS_OK) return status;
   if (def->kernel) def->radius_ratio = mps_kernel_radius(def->kernel) / spacing;
   if (def->kernel && !(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
@@ -86,38 +36,60 @@ static mps_status read_def(mps_context *context, const char *function, const mps
   if (isnan(def->radius_ratio)) def->radius_ratio = published ? 3.0 : 1.5;
   if (isnan(def->memory_limit)) def->memory_limit = INFINITY;
   if (isnan(def->measure) || dim == 3) def->measure = 1.0;
-  if (isnan(def->alpha)) def->alpha = mpsi_elastic_defaults.alpha;
-  if (isnan(def->tolerance)) def->tolerance = mpsi_elastic_defaults.tolerance;
+  if (isnan(def->alpha)) def->alpha = mps_elastic_defaults().alpha;
+  if (isnan(def->tolerance)) def->tolerance = mps_elastic_defaults().tolerance;
   if (published && dim == 3)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the published method is two-dimensional: at surfaces in 3D a rigid rotation "
                      "would cause stress; use mps_elastic_create");
-  return check_numbers(context, function, def);
+  return mpsi_domain_check(context, function, def->domain);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-void mps_elastic_destroy(mps_elastic **elastic) {
-  if (!elastic || !*elastic) return;
-  mps_elastic *e = *elastic;
-  mps_context *context = e->context;
-  /* within a callback: the running function still needs it */
-  if (mpsi_guard_check(&e->guard, context, __func__) != MPS_OK) return;
-  *elastic = NULL;
+static void destroy(void *solver) {
+  mps_elastic *e = solver;
   mpsi_elastic_end_motion(e);
   mpsi_elastic_drop_change(e);
-  mpsi_elastic_drop_boundaries(e);
-  mpsi_state_forget(&e->identity);
-  mpsi_elastic_drop_loads(e);
-  mpsi_elastic_drop_outside(e);
   mpsi_elastic_free_body(e);
   mps_kernel_destroy(&e->def.kernel);
   mps_material_destroy(&e->def.material);
-  mps_domain_destroy(&e->def.domain);
-  mpsi_particles_release(e->particles, &e->holder);
-  mpsi_free(context, e);
-  mpsi_context_release(context);
 }
+
+static void get_def(const void *solver, void *out) {
+  *(mps_elastic_def *)out = ((const mps_elastic *)solver)->def;
+}
+
+static const mpsi_solver_kind elastic_kind = {
+    .name = MPSI_SOLVER_NAMES("elastic"),
+    .task = "elastic",
+    .def_kind = MPS_DEF_ELASTIC,
+    .get_def = get_def,
+    .time = mpsi_elastic_time,
+    .steps = mpsi_elastic_steps,
+    .dt = mpsi_elastic_dt,
+    .limit = mpsi_elastic_limit,
+    .ready = mpsi_elastic_ready,
+    .agree = mpsi_elastic_agree,
+    .check_dt = mpsi_elastic_check_dt,
+    .use_dt = mpsi_elastic_use_dt,
+    .equation = MPS_LINEAR_EQUATION_STIFFNESS,
+    .linear_ready = mpsi_elastic_linear_ready,
+    .linear_changed = mpsi_elastic_linear_changed,
+    .get_totals = mpsi_elastic_get_totals,
+    .get_reaction = mpsi_elastic_get_reaction,
+    .boundary = &mpsi_elastic_boundaries,
+    .load = &mpsi_elastic_loads,
+    .begin = mpsi_elastic_begin_march,
+    .advance = mpsi_elastic_advance_march,
+    .end = mpsi_elastic_end_march,
+    .state = mpsi_elastic_state,
+    .settle = mpsi_elastic_settle,
+    .leave = mpsi_elastic_leave_state,
+    .destroy = destroy,
+};
+
+mps_solver *mps_elastic_solver(const mps_elastic *e) { return e ? (mps_solver *)&e->base : NULL; }
 
 static mps_status build(mps_elastic *e, const char *function) {
   mps_status status = mpsi_elastic_allocate(e, function);
@@ -140,9 +112,10 @@ static mps_status build(mps_elastic *e, const char *function) {
   return status;
 }
 
-/* The lattice is found once: the solver accepts no other positions. */
-static mps_status refuse_positions(void *self, const char *function, const char *field,
-                                   const double *former) {
+/* The lattice is found once: the solver accepts no other positions. Moduli are read before the next
+ * solution or step. */
+static mps_status take_edit(void *self, const char *function, const char *field,
+                            const double *former) {
   mps_elastic *e = self;
   bool same = true;
   (void)former;
@@ -151,6 +124,7 @@ static mps_status refuse_positions(void *self, const char *function, const char 
     for (int64_t i = 0; i < e->n && same; i++)
       same = x[mps_particles_index(e->particles, e->id[i])] == e->x[i * e->dim + c];
   }
+  if (strcmp(field, "young") == 0 || strcmp(field, "poisson") == 0) e->unread = true;
   if (same) return MPS_OK;
   return mpsi_fail(
       e->context, function, MPS_ERROR_STATE,
@@ -164,14 +138,7 @@ static mps_status agree_on_body(const mps_elastic_def *def, const char *function
   mpsi_given given;
   if (!mpsi_domain_many(def->domain)) return status;
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, def, state);
-  MPSI_GIVE(&given, def, solver);
-  MPSI_GIVE(&given, def, radius_ratio);
-  MPSI_GIVE(&given, def, alpha);
-  MPSI_GIVE(&given, def, measure);
-  MPSI_GIVE(&given, def, tolerance);
-  MPSI_GIVE(&given, def, bending);
-  MPSI_GIVE(&given, def, refinements);
+  MPSI_GIVE_DEF(&given, mps_elastic_def, def);
   mpsi_give(&given, "the kind of the kernel", def->kernel ? mps_kernel_get_kind(def->kernel) : -1);
   if (status == MPS_OK) mpsi_material_give(&given, def->material);
   status = mpsi_domain_agree_given(def->domain, function, status, &given);
@@ -182,7 +149,7 @@ static mps_status agree_on_body(const mps_elastic_def *def, const char *function
 static mps_status create(mps_context *context, const char *function, mps_particles *particles,
                          const mps_elastic_def *user_def, bool published, bool constant,
                          mps_elastic **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!context) return mpsi_null(function, "context");
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_status status = mpsi_particles_check_context(particles, context, function);
@@ -194,6 +161,9 @@ static mps_status create(mps_context *context, const char *function, mps_particl
                     mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, function, NULL);
+  if (status == MPS_OK)
+    status = mpsi_fail_of(context, mpsi_particles_check_crowding(particles, function, 0, NULL),
+                          "particles");
   mpsi_backup backup = {0};
   mps_elastic *e = NULL;
   if (status == MPS_OK) status = mpsi_particles_back_up(particles, function, &backup);
@@ -205,20 +175,15 @@ static mps_status create(mps_context *context, const char *function, mps_particl
     mpsi_free(context, e);
     return status;
   }
-  e->context = mpsi_context_retain(context);
-  e->particles = particles;
-  e->holder = (mpsi_holder){.name = "a solver of implicit elasticity (mps_elastic)",
-                            .self = e,
-                            .kind = MPSI_USE_FIX,
-                            .guard = &e->guard,
-                            .commit = refuse_positions,
-                            .remove = mpsi_elastic_remove,
-                            .renew = mpsi_elastic_renew};
-  (void)mpsi_particles_hold(particles, function, &e->holder); /* checked above */
+  const mpsi_holder holder = {.name = "a solver of implicit elasticity (mps_elastic)",
+                              .kind = MPSI_USE_FIX,
+                              .commit = take_edit,
+                              .remove = mpsi_elastic_remove,
+                              .renew = mpsi_elastic_renew};
+  mpsi_solver_start(&e->base, function, &elastic_kind, context, particles, def.domain, &holder);
   e->def = def;
   if (def.kernel) e->def.kernel = mpsi_kernel_retain(def.kernel);
   if (def.material) e->def.material = mpsi_material_retain(def.material);
-  e->def.domain = mpsi_domain_retain(def.domain);
   e->conservative = !published;
   e->constant = constant;
   e->shared = e->conservative && mpsi_domain_many(def.domain); /* until it has another solver */
@@ -229,7 +194,7 @@ static mps_status create(mps_context *context, const char *function, mps_particl
   status = mpsi_domain_agree(def.domain, function, build(e, function));
   if (status != MPS_OK) {
     mpsi_particles_go_back(particles, &backup);
-    mps_elastic_destroy(&e);
+    mpsi_solver_end(&e->base);
     return status;
   }
   mpsi_backup_drop(particles, &backup);
@@ -247,11 +212,3 @@ mps_status mps_experimental_elastic_published(mps_context *context, mps_particle
                                               mps_elastic **out) {
   return create(context, __func__, particles, def, true, constant != 0, out);
 }
-
-mps_status mps_elastic_get_def_sized(const mps_elastic *e, mps_elastic_def *out, size_t size) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  return mpsi_def_write(e->context, "mps_elastic_get_def", out, size, &e->def, sizeof e->def);
-}
-
-mps_particles *mps_elastic_particles(const mps_elastic *e) { return e ? e->particles : NULL; }
-mps_context *mps_elastic_context(const mps_elastic *e) { return e ? e->context : NULL; }

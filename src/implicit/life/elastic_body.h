@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_BODY_H
 #define MPSI_ELASTIC_BODY_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
@@ -14,8 +14,5 @@ mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool mod
 void mpsi_elastic_free_body(mps_elastic *e);
 /* The definition's material to the fields, at creation. */
 mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
-/* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
-mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
-                                   double poisson);
 
 #endif

@@ -3,9 +3,9 @@
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/change.h"
+#include "implicit/life/restart.h"
 
 #include "core/state/state.h"
-#include "io/checkpoint.h"
 #include "domain/moment.h"
 
 #include <string.h>
@@ -85,11 +85,12 @@ static void list_body(mpsi_state *s, mps_elastic *e) {
                                       "mass_damping", "work_left",       "kinetic_start",
                                       "strain_start"};
   for (int k = 0; k < 7; k++) mpsi_state_f64(s, names[k], works[k], 1);
-  for (int32_t k = 0; k < e->boundary_count; k++) {
-    if (!e->boundaries[k].used) continue;
+  for (int32_t k = 0; k < mpsi_elastic_boundary_count(e); k++) {
+    mpsi_elastic_boundary *b = mpsi_elastic_boundary_of(e, k);
+    if (!b) continue;
     mpsi_state_enter(s, "boundary%d", k);
-    mpsi_state_i64(s, "particles", &e->boundaries[k].present, 1);
-    mpsi_state_reaction(s, &e->boundaries[k].reaction);
+    mpsi_state_i64(s, "particles", &b->present, 1);
+    mpsi_state_reaction(s, &b->reaction);
     mpsi_state_leave(s);
   }
 }
@@ -106,7 +107,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "stiffness_damping_coefficient", m->a1);
   mpsi_state_f64(s, "time", &m->time, 1);
   mpsi_state_i64(s, "steps", &m->steps, 1);
-  mpsi_state_i64(s, "fabric", m->fabric, 2);
+  mpsi_state_bits(s, "fabric", m->fabric, 2);
   mpsi_state_add_table(s, "velocity", &table_of_velocity);
   mpsi_state_add_table(s, "acceleration", &table_of_acceleration);
   mpsi_state_add_table(s, "force", &table_of_force);
@@ -115,16 +116,17 @@ static void list_state(mpsi_state *s, void *solver) {
 }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
-  return mpsi_domain_agree(((mps_elastic *)solver)->def.domain, function, status);
+  return mpsi_domain_agree(((mps_elastic *)solver)->domain, function, status);
 }
 
 static mps_status have_read(void *solver, const char *function, mps_status status,
                             mps_snapshot *values) {
   /* every rank keeps all of them */
-  return mpsi_domain_agree_moment(((mps_elastic *)solver)->def.domain, function, status, values);
+  return mpsi_domain_agree_moment(((mps_elastic *)solver)->domain, function, status, values);
 }
 
-static mpsi_state_of state_of(mps_elastic *e) {
+mpsi_state_of mpsi_elastic_state(void *solver) {
+  mps_elastic *e = solver;
   return (mpsi_state_of){.solver = e,
                          .name = "implicit elasticity",
                          .context = e->context,
@@ -135,53 +137,23 @@ static mpsi_state_of state_of(mps_elastic *e) {
                          .settle = settle,
                          .take_share = have_read,
                          .bind = mpsi_elastic_bind,
-                         .time = mps_elastic_time(e),
-                         .dt = mps_elastic_dt(e),
-                         .steps = mps_elastic_steps(e)};
+                         .time = mpsi_elastic_time(e),
+                         .dt = mpsi_elastic_dt(e, NULL),
+                         .steps = mpsi_elastic_steps(e)};
 }
 
-/* Between steps, and to change the state not from a callback either. */
-static mps_status check(mps_elastic *e, const char *function, bool changes) {
-  mps_status status = mpsi_guard_check_between(&e->guard, e->context, function);
-  if (status == MPS_OK && changes) {
-    status = mpsi_elastic_enter(e, function);
-    if (status == MPS_OK) (void)mpsi_elastic_leave(e, status);
-  }
-  if (status == MPS_OK && !(changes ? motion_of(e) : e->motion))
-    status = mpsi_fail(e->context, function, MPS_ERROR_STATE,
-                       "no motion under way: call mps_elastic_start first");
-  return status;
+static mps_status check_motion(const mps_elastic *e, const char *function, bool under_way) {
+  if (under_way) return MPS_OK;
+  return mpsi_fail(e->context, function, MPS_ERROR_STATE,
+                   "no motion under way: call mps_elastic_start first");
 }
 
-mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(e);
-  const mps_status status = check(e, __func__, false);
-  return settle(e, __func__,
-                status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
+mps_status mpsi_elastic_settle(void *solver, const char *function) {
+  const mps_elastic *e = solver;
+  return check_motion(e, function, e->motion != NULL);
 }
 
-mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(e);
-  mps_status status = check(e, __func__, true);
-  if (status == MPS_OK)
-    status = mpsi_domain_agree_moment(e->def.domain, __func__, status, snapshot);
-  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
-}
-
-mps_status mps_elastic_save(mps_elastic *e, const char *path, const mps_checkpoint *info) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(e);
-  mps_status status = check(e, __func__, false);
-  if (status == MPS_OK && mps_domain_rank(e->def.domain) <= 0) /* all ranks have the same */
-    status = mpsi_checkpoint_save(&of, __func__, path, info);
-  return settle(e, __func__, status);
-}
-
-mps_status mps_elastic_restore(mps_elastic *e, const char *path, mps_checkpoint *info) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(e);
-  const mps_status status = check(e, __func__, true);
-  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
+mps_status mpsi_elastic_leave_state(void *solver, const char *function) {
+  const mps_elastic *e = solver;
+  return check_motion(e, function, motion_of(e) != NULL);
 }

@@ -118,29 +118,29 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 }
 #endif
 
-static mps_status find_modes(mps_elastic *e, const char *function, int32_t count, double *omega,
+static mps_status find_modes(mps_elastic *e, const char *function, int64_t count, double *omega,
                              double *shapes, double **mass) {
   mps_status status = mpsi_elastic_read_mass(e, function, mass);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   if (status != MPS_OK) return status;
   if (count < 1 || count >= e->unknowns)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %d, must be at least 1 and below the %lld unknowns", count,
-                     (long long)e->unknowns);
+                     "count is %lld, must be at least 1 and below the %lld unknowns",
+                     (long long)count, (long long)e->unknowns);
   if (e->unknowns > INT32_MAX / 64)
     return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                      "%lld unknowns are too many for ARPACK's integers", (long long)e->unknowns);
   status = mpsi_elastic_factor(e, function, 0.0);
-  if (status == MPS_OK) status = solve(e, function, count, omega, shapes);
+  if (status == MPS_OK) status = solve(e, function, (int32_t)count, omega, shapes);
   return status;
 }
 
-mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, double *shapes) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+mps_status mps_elastic_modes(mps_elastic *e, int64_t count, double *omega, double *shapes) {
+  if (!e) return mpsi_null(__func__, "elastic");
   if (!omega) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "omega is NULL");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_agree_same(e, __func__, status, "count", count);
+  status = mpsi_elastic_agree_same(e, __func__, status, "count", (double)count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   e->within = true;
   double *mass = e->mass; /* a motion under way and a load of gravity keep theirs */

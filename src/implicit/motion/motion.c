@@ -10,14 +10,14 @@
  * solution is a fixed point. Its matrix is a multiple of K + shift M. Prescribed components follow
  * their boundary. A step is computed beside the present state, which it replaces when complete.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/defs.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/fabric.h"
+#include "implicit/motion/motion.h"
 #include "implicit/motion/renewal.h"
 #include "implicit/operator/operator.h"
 #include "implicit/solve/system.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
 
 #include <string.h>
 
@@ -33,9 +33,6 @@ static mps_status check_dt(mps_context *context, const char *function, double dt
 static mps_status read_family(mps_context *context, const char *function,
                               const mps_elastic_motion_def *def, mpsi_elastic_motion *m) {
   const double r = def->rho_inf;
-  if (!(r >= 0.0 && r <= 1.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "rho_inf is %s, allowed is 0 to 1",
-                     mpsi_outside(r, 0.0, 1.0).text);
   m->alpha_m = m->alpha_f = 0.0;
   m->beta = 0.25;
   m->gamma = 0.5;
@@ -45,19 +42,16 @@ static mps_status read_family(mps_context *context, const char *function,
     m->gamma = 0.5 - m->alpha_m + m->alpha_f;
     m->beta = 0.25 * (m->gamma + 0.5) * (m->gamma + 0.5);
   }
-  if (isnan(def->beta) && isnan(def->gamma)) {
+  if (isnan(def->beta)) {
     m->conserving = r == 1.0;
     return MPS_OK;
   }
   const double g = def->gamma, least = 0.25 * (g + 0.5) * (g + 0.5);
-  if (r != 1.0)
+  if (!(def->beta >= least * (1.0 - 1e-12)))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "rho_inf is %g and beta or gamma is given: only one of both is possible", r);
-  if (!(g >= 0.5 && g <= 1.0 && def->beta >= least * (1.0 - 1e-12) && def->beta <= 10.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "gamma is %s, must be in [0.5, 1]; beta is %s, must be in [(gamma + 1/2)^2 / "
-                     "4, 10] for an unconditionally stable step",
-                     mpsi_outside(g, 0.5, 1.0).text, mpsi_outside(def->beta, least, 10.0).text);
+                     "beta is %s, must be at least (gamma + 1/2)^2 / 4, %g, for an "
+                     "unconditionally stable step",
+                     mpsi_outside(def->beta, least, 10.0).text, least);
   m->beta = def->beta;
   m->gamma = g;
   m->conserving = def->beta == 0.25 && g == 0.5;
@@ -69,22 +63,11 @@ static mps_status read_damping(mps_context *context, const char *function,
                                const mps_elastic_motion_def *def, mpsi_elastic_motion *m) {
   m->a0 = def->mass_damping;
   m->a1 = def->stiffness_damping;
-  if (!(m->a0 >= 0.0 && m->a1 >= 0.0 && m->a0 <= MPSI_ELASTIC_MOST && m->a1 <= MPSI_ELASTIC_MOST))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "mass_damping is %g 1/s and stiffness_damping %g s, must be >= 0", m->a0,
-                     m->a1);
   const double *h = def->ratio, *f = def->frequency;
-  if (isnan(h[0]) && isnan(h[1]) && isnan(f[0]) && isnan(f[1])) return MPS_OK;
-  if (m->a0 != 0.0 || m->a1 != 0.0)
+  if (isnan(h[0])) return MPS_OK;
+  if (f[0] == f[1])
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "both damping ratios and mass_damping or stiffness_damping are given");
-  for (int k = 0; k < 2; k++)
-    if (!(h[k] >= 0.0 && h[k] < 1.0 && f[k] >= MPSI_ELASTIC_LEAST && f[k] <= MPSI_ELASTIC_MOST &&
-          f[0] != f[1]))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "damping ratio %d is %g at %g Hz: ratios must be in [0, 1), the two "
-                       "frequencies > 0 and different",
-                       k, h[k], f[k]);
+                     "frequency[0] and frequency[1] are both %g Hz, must differ", f[0]);
   const double pi = 3.14159265358979323846, w0 = 2 * pi * f[0], w1 = 2 * pi * f[1];
   m->a1 = 2.0 * (h[1] * w1 - h[0] * w0) / (w1 * w1 - w0 * w0);
   m->a0 = 2.0 * h[0] * w0 - m->a1 * w0 * w0;
@@ -130,19 +113,20 @@ static void set_reaction(mps_elastic *e, const double *held, const double *a) {
   mpsi_elastic_keep_fixed(e, e->reaction);
 }
 
-/* `a` NULL: the accelerations follow from these. */
+/* At the start (`a` NULL: the accelerations follow from these), and at the end, `time`, of step
+ * `steps`. */
 static mps_status check_finite(const mps_elastic *e, const char *function, int64_t steps,
-                               const double *u, const double *v, const double *a) {
+                               double time, const double *u, const double *v, const double *a) {
   for (int64_t k = 0; k < e->n * e->dim; k++) {
     const double acceleration = a ? a[k] : 0.0;
     if (isfinite(acceleration) && fabs(u[k]) <= MPSI_ELASTIC_FURTHEST &&
         fabs(v[k]) <= MPSI_ELASTIC_FURTHEST)
       continue;
-    const mps_status status =
-        mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                  "the motion of particle %lld is beyond double precision: displacement %g m, "
-                  "velocity %g m/s, acceleration %g m/s2; allowed are %g m and m/s",
-                  (long long)e->id[k / e->dim], u[k], v[k], acceleration, MPSI_ELASTIC_FURTHEST);
+    const mps_status status = mpsi_fail(
+        e->context, function, a ? MPS_ERROR_DIVERGED : MPS_ERROR_NUMERIC,
+        "t = %g s: the motion of particle %lld is beyond double precision: displacement "
+        "%g m, velocity %g m/s, acceleration %g m/s2; allowed are %g m and m/s",
+        time, (long long)e->id[k / e->dim], u[k], v[k], acceleration, MPSI_ELASTIC_FURTHEST);
     mpsi_fail_where(e->context, steps, e->id[k / e->dim]);
     return status;
   }
@@ -154,28 +138,17 @@ static mps_status agree_on_motion(mps_elastic *e, const char *function, mps_stat
                                   const mps_elastic_motion_def *def) {
   mpsi_given given;
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, def, dt);
-  MPSI_GIVE(&given, def, rho_inf);
-  MPSI_GIVE(&given, def, beta);
-  MPSI_GIVE(&given, def, gamma);
-  MPSI_GIVE(&given, def, mass_damping);
-  MPSI_GIVE(&given, def, stiffness_damping);
-  MPSI_GIVE_VECTOR(&given, def, ratio, 2);
-  MPSI_GIVE_VECTOR(&given, def, frequency, 2);
-  MPSI_GIVE(&given, def, time);
+  MPSI_GIVE_DEF(&given, mps_elastic_motion_def, def);
   return mpsi_elastic_agree_given(e, function, status, &given);
 }
 
 /* `mass`: the former masses, restored on an error. */
 static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user,
                         double **mass) {
-  mps_elastic_motion_def def = mpsi_elastic_motion_defaults;
+  mps_elastic_motion_def def = mps_elastic_motion_defaults();
   mpsi_elastic_motion made = {.dt = 0.0}, *m = NULL;
   mps_status status = MPSI_DEF_READ(e->context, function, mps_elastic_motion_def, user, &def);
-  if (status == MPS_OK) status = check_dt(e->context, function, made.dt = def.dt);
-  if (status == MPS_OK && !isfinite(made.time = def.time))
-    status = mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "time is %g s, must be finite",
-                       def.time);
+  made.dt = def.dt, made.time = def.time;
   if (status == MPS_OK) status = read_family(e->context, function, &def, &made);
   if (status == MPS_OK) status = read_damping(e->context, function, &def, &made);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function, mass);
@@ -201,7 +174,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   if (status == MPS_OK) {
     mpsi_elastic_impose(e, 0, m->next[MPSI_NEXT_U]);
     mpsi_elastic_impose(e, 1, m->velocity);
-    status = check_finite(e, function, -1, m->next[MPSI_NEXT_U], m->velocity, NULL);
+    status = check_finite(e, function, -1, made.time, m->next[MPSI_NEXT_U], m->velocity, NULL);
   }
   if (status == MPS_OK) exchange(&e->displacement, &m->next[MPSI_NEXT_U]);
   mpsi_elastic_motion *const kept = status == MPS_OK ? e->motion : former;
@@ -214,7 +187,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
 }
 
 mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
@@ -310,7 +283,7 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
     a1[k] = w / (m->beta * dt * dt);
   }
   mpsi_elastic_impose(e, 2, a1);
-  if ((status = check_finite(e, function, m->steps, u1, v1, a1)) != MPS_OK) return status;
+  if ((status = check_finite(e, function, m->steps, time, u1, v1, a1)) != MPS_OK) return status;
   status = mpsi_elastic_find_forces(e, function, u1, v1, m->next[MPSI_NEXT_INNER],
                                     m->next[MPSI_NEXT_HELD]);
   if (status != MPS_OK) return status;
@@ -330,25 +303,7 @@ static mps_status publish(mps_elastic *e, const char *function) {
   return status;
 }
 
-/* Step and cancel hook. */
-static mps_status advance(mps_elastic *e, const char *function, double dt, double time) {
-  e->within = true;
-  mps_status status = step_once(e, function, dt, time);
-  e->within = false;
-  if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
-  return status;
-}
-
-static mps_status call_cancel(mps_elastic *e, const char *function) {
-  if (!mpsi_cancelled(e->context)) return MPS_OK;
-  const mps_status status =
-      mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled at %g s, after %lld steps",
-                e->motion->time, (long long)e->motion->steps);
-  mpsi_fail_where(e->context, e->motion->steps, -1);
-  return status;
-}
-
-/* ---- public calls ---------------------------------------------------------------------------- */
+/* ---- for the loop of all solvers ------------------------------------------------------------- */
 
 static mps_status check_motion(const mps_elastic *e, const char *function) {
   if (e->motion) return MPS_OK;
@@ -356,86 +311,59 @@ static mps_status check_motion(const mps_elastic *e, const char *function) {
                    "no motion under way: call mps_elastic_start first");
 }
 
+mps_status mpsi_elastic_begin_march(void *solver, const char *function, mpsi_march *m) {
+  const mps_elastic *e = solver;
+  mps_status status = check_motion(e, function);
+  if (status != MPS_OK || !mpsi_march_is_run(m)) return status;
+  status = mpsi_march_check(m, e->context, function, e->motion->dt);
+  if (status != MPS_OK) return status;
+  m->total = (int64_t)ceil((m->t_end - m->start) / e->motion->dt * (1.0 - 1e-12));
+  m->length = m->total > 0 ? (m->t_end - m->start) / (double)m->total : e->motion->dt;
+  return m->callback ? publish(solver, function) : MPS_OK; /* for its first call */
+}
+
+mps_status mpsi_elastic_advance_march(void *solver, const char *function, mpsi_march *m,
+                                      int64_t count) {
+  mps_elastic *e = solver;
+  (void)count; /* 1 */
+  const bool run = mpsi_march_is_run(m);
+  const double dt = run ? m->length : e->motion->dt;
+  e->within = true;
+  mps_status status = step_once(
+      e, function, dt,
+      !run      ? e->motion->time + dt
+      : m->last ? m->t_end
+                : m->start + (m->t_end - m->start) * (double)(m->done + 1) / (double)m->total);
+  e->within = false;
+  if (status != MPS_OK && status != MPS_ERROR_DIVERGED) /* that has a particle */
+    mpsi_fail_where(e->context, e->motion->steps, -1);
+  return status == MPS_OK && m->calls ? publish(e, function) : status;
+}
+
 /* The fields of the last complete step, also after an error; the first error stays on record. */
-static mps_status finish(mps_elastic *e, const char *function, mps_status status) {
-  if (status == MPS_OK) return publish(e, function);
-  const mps_status published = publish(e, function);
-  (void)published; /* the fields exist since the start */
-  return status;
-}
-
-mps_status mps_elastic_step(mps_elastic *e, int64_t count) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = check_motion(e, __func__);
-  if (status == MPS_OK && count < 0)
-    status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                       (long long)count);
-  status = mpsi_elastic_agree_same(e, __func__, status, "count", (double)count);
-  if (status != MPS_OK) return mpsi_elastic_leave(e, status);
-  const int64_t before = e->motion->steps;
-  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = mpsi_elastic_agree(e, __func__, call_cancel(e, __func__));
-    if (status == MPS_OK)
-      status = advance(e, __func__, e->motion->dt, e->motion->time + e->motion->dt);
+mps_status mpsi_elastic_end_march(void *solver, const char *function, const mpsi_march *m,
+                                  mps_status status) {
+  mps_elastic *e = solver;
+  if (status == MPS_OK || e->motion->steps > m->before) {
+    const mps_status published = publish(e, function); /* the fields exist since the start */
+    if (status == MPS_OK) status = published;
   }
-  if (status == MPS_OK || e->motion->steps > before) status = finish(e, __func__, status);
-  return mpsi_elastic_leave(e, status);
+  return mpsi_elastic_agree(e, function, status);
 }
 
-mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elastic_fn callback,
-                           void *user) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = check_motion(e, __func__);
-  const double begin = e->motion ? e->motion->time : 0.0, dt = e->motion ? e->motion->dt : 1.0;
-  const double wanted = ceil((t_end - begin) / dt * (1.0 - 1e-12));
-  if (status == MPS_OK && (!(t_end >= begin) || every < 1 || !(wanted < 9e15)))
-    status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "t_end is %g s (must be finite and not before the present time %g s), "
-                       "every is %lld (must be >= 1)",
-                       t_end, begin, (long long)every);
-  mpsi_given given;
-  mpsi_given_begin(&given);
-  mpsi_give(&given, "t_end", t_end);
-  mpsi_give(&given, "every", (double)every);
-  mpsi_give(&given, "having a callback", callback != NULL);
-  status = mpsi_elastic_agree_given(e, __func__, status, &given);
-  if (status != MPS_OK) return mpsi_elastic_leave(e, status);
-  const int64_t steps = (int64_t)wanted, before = e->motion->steps;
-  for (int64_t k = 0; k <= steps && status == MPS_OK; k++) {
-    if (k > 0) {
-      const double time = k == steps ? t_end : begin + (t_end - begin) * (double)k / (double)steps;
-      status = mpsi_elastic_agree(e, __func__, call_cancel(e, __func__));
-      if (status == MPS_OK) status = advance(e, __func__, (t_end - begin) / (double)steps, time);
-    }
-    if (status == MPS_OK && k % (1 + steps / 100) == 0)
-      mpsi_progress(e->context, "elastic", e->motion->steps, e->motion->time, t_end);
-    if (status != MPS_OK || !callback || (k % every != 0 && k != steps)) continue;
-    if ((status = publish(e, __func__)) != MPS_OK) continue;
-    mpsi_guard_enter(&e->guard, e->context, "the callback of mps_elastic_run");
-    status = mpsi_guard_leave(&e->guard, e->context, __func__, callback(user, e));
-    status = mpsi_elastic_agree(e, __func__, status);
-    if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
-  }
-  if (status == MPS_OK || e->motion->steps > before) status = finish(e, __func__, status);
-  return mpsi_elastic_leave(e, status);
-}
-
-double mps_elastic_limit(const mps_elastic *e) {
-  (void)e;
+double mpsi_elastic_limit(const void *solver) {
+  (void)solver;
   return INFINITY;
 }
 
-mps_status mps_elastic_set_dt(mps_elastic *e, double dt) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = check_motion(e, __func__);
-  if (status == MPS_OK) status = check_dt(e->context, __func__, dt);
-  status = mpsi_elastic_agree_same(e, __func__, status, "dt", dt);
-  if (status == MPS_OK) e->motion->dt = dt;
-  return mpsi_elastic_leave(e, status);
+mps_status mpsi_elastic_check_dt(void *solver, const char *function, double dt) {
+  const mps_elastic *e = solver;
+  const mps_status status = check_motion(e, function);
+  return status == MPS_OK ? check_dt(e->context, function, dt) : status;
+}
+
+mps_status mpsi_elastic_use_dt(void *solver, const char *function, double dt) {
+  (void)function;
+  ((mps_elastic *)solver)->motion->dt = dt;
+  return MPS_OK;
 }

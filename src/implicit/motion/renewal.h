@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_RENEWAL_H
 #define MPSI_ELASTIC_RENEWAL_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
 mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,

@@ -40,6 +40,7 @@ typedef struct gather {
   int64_t particle;
   int64_t least; /* sites below it are left out: the particle, or 0 for whole rows */
   block blocks[ROW_MAX];
+  const block *order[ROW_MAX]; /* of the columns: sort_blocks */
   pair_form forms[FORMS];
 } gather;
 
@@ -379,7 +380,8 @@ static void turn(const mps_elastic *e, int64_t p, block *b) {
 }
 
 /* The gathered blocks in the order of columns, in local directions. */
-static void sort_blocks(const mps_elastic *e, gather *g, const block **order) {
+static const block *const *sort_blocks(const mps_elastic *e, gather *g) {
+  const block **order = g->order;
   for (int32_t a = 0; a < g->count; a++) {
     const int64_t column = mpsi_elastic_place(e, g->blocks[a].site);
     turn(e, g->particle, &g->blocks[a]);
@@ -388,6 +390,7 @@ static void sort_blocks(const mps_elastic *e, gather *g, const block **order) {
       order[at] = order[at - 1];
     order[at] = &g->blocks[a];
   }
+  return order;
 }
 
 /* Column block p. K is symmetric: row = column. */
@@ -395,8 +398,7 @@ static void emit(assembly *t, gather *g) {
   const mps_elastic *e = t->e;
   const int d = e->dim;
   const int64_t p = g->particle;
-  const block *order[ROW_MAX];
-  sort_blocks(e, g, order);
+  const block *const *order = sort_blocks(e, g);
   for (int c = 0; c < d; c++) {
     const int64_t column = e->dof[p * d + c];
     if (column < 0) continue;
@@ -433,8 +435,7 @@ static void emit_rows(row_assembly *t, gather *g) {
   mpsi_elastic_rows *out = t->out;
   const int d = e->dim;
   const int64_t p = g->particle;
-  const block *order[ROW_MAX];
-  sort_blocks(e, g, order);
+  const block *const *order = sort_blocks(e, g);
   for (int c = 0; c < d; c++) {
     const int64_t row = (mpsi_elastic_place(e, p) - out->from) * d + c;
     int64_t at = t->fill ? out->start[row] : 0;
@@ -549,7 +550,7 @@ mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, doub
   mps_status status = MPS_OK;
   if (e->n * e->dim > INT32_MAX)
     return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
-                     "%lld rows are too many for a solver of mps_elastic_set_solver",
+                     "%lld rows are too many for a linear solver of the caller",
                      (long long)(e->n * e->dim));
   if (!(out->start = mpsi_alloc(e->context, rows + 1, sizeof *out->start)))
     return mpsi_fail_memory(e->context, function, (size_t)rows * sizeof *out->start);

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_ASSEMBLE_H
 #define MPSI_ELASTIC_ASSEMBLE_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* Rows of the particles [from, to) of the order of layers: all directions of each. */
 typedef struct mpsi_elastic_rows {

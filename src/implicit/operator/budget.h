@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_BUDGET_H
 #define MPSI_ELASTIC_BUDGET_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* Works since the motion began, or of the last static solution (J). */
 typedef struct mpsi_ledger {
@@ -25,5 +25,7 @@ void mpsi_elastic_count_solution(mps_elastic *e);
 /* Works of a step to displacements u, velocities v, accelerations a and forces inner, held. */
 void mpsi_elastic_count_step(mps_elastic *e, const double *u, const double *v, const double *a,
                              const double *inner, const double *held);
+
+mps_status mpsi_elastic_get_totals(void *elastic, const char *function, mps_totals *out);
 
 #endif

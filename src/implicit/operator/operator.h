@@ -5,7 +5,7 @@
 
 #include "core/internal.h"
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* f = K u. Collective where the body is shared, and fails only with the domain. */
 MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u,

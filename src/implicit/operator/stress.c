@@ -166,8 +166,10 @@ static mps_status share_table(mps_elastic *e, const char *function, mps_status s
 }
 
 mps_status mps_elastic_update_stress(mps_elastic *e) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_check_between(e, __func__);
+  if (status == MPS_OK)
+    status = mpsi_elastic_agree(e, __func__, mpsi_particles_committed(e->particles, __func__));
   if (status != MPS_OK) return status;
   table t;
   const int32_t fields = mps_particles_field_count(e->particles);
@@ -193,11 +195,13 @@ mps_status mps_elastic_update_stress(mps_elastic *e) {
 mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, double position,
                                    const double *about, double *force, double *moment) {
   mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (axis < 0 || axis >= e->dim || !isfinite(position))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "axis is %d (allowed are 0..%d), position is %g m (must be finite)", axis,
-                     e->dim - 1, position);
+  if (!e) return mpsi_null(__func__, "elastic");
+  if (axis < 0 || axis >= e->dim)
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "axis is %d, allowed are 0 to %d",
+                     axis, e->dim - 1);
+  if (!isfinite(position))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "position is %g m, must be finite",
+                     position);
   mps_status status = mpsi_elastic_check_about(e, __func__, about);
   if (status == MPS_OK) status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
@@ -214,39 +218,3 @@ mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, doub
   return MPS_OK;
 }
 
-/* Of the pairs that begin at particles of the rank. */
-static void add_pairs(const mps_elastic *e, mpsi_exact *sum) {
-  for (int64_t p = e->span[0].from; p < e->span[0].to; p++) {
-    const int64_t i = mpsi_elastic_in_order(e, p), *to = mpsi_elastic_neighbours(e, i);
-    double own = 0.0;
-    for (int32_t k = 0; k < e->links.count; k++) {
-      double pull[3];
-      if (to[k] < i) continue;
-      mpsi_elastic_stretch(e, e->displacement, i, k, pull);
-      for (int c = 0; c < e->dim; c++)
-        own += 0.5 * mpsi_elastic_bond(e, i, to[k], k) * pull[c] * pull[c];
-    }
-    mpsi_exact_add(sum, own);
-  }
-}
-
-mps_status mps_elastic_get_energy(const mps_elastic *handle, double *strain, double *stabilising) {
-  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_check_between(e, __func__);
-  if (status != MPS_OK) return status;
-  const bool agreed = mpsi_elastic_begin_reading(e);
-  const int64_t all = e->n * e->dim;
-  double total = 0.0;
-  mpsi_exact pairs = {0};
-  status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
-  for (int64_t k = 0; k < all; k++) total += 0.5 * e->displacement[k] * e->work[k];
-  add_pairs(e, &pairs);
-  if (status == MPS_OK && e->shared)
-    status = mpsi_domain_sum_exact(e->def.domain, __func__, 1, &pairs);
-  e->agreed = agreed;
-  if (status != MPS_OK) return status;
-  if (strain) *strain = total;
-  if (stabilising) *stabilising = e->conservative ? mpsi_exact_value(&pairs) : 0.0;
-  return MPS_OK;
-}

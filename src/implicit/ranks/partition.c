@@ -1,4 +1,5 @@
-/* partition.c - a rank's part of the operator where ranks solve together (mps/elastic_solver.h).
+/* partition.c - a rank's part of the operator where ranks solve together
+ * (mps/experimental/linear_solver.h).
  *
  * The particles are ordered by layers of the lattice across the body's longest axis, by id within
  * one; each rank owns an interval of that order. It has neighbours, gradients, stresses, joints and
@@ -56,7 +57,7 @@ static void order(mps_elastic *e, const layers *l, int64_t *end) {
 
 /* The intervals of own particles and of 1, 2 ... layers around them. */
 static void find_spans(mps_elastic *e, const layers *l, const int64_t *end) {
-  const int64_t rank = mps_domain_rank(e->def.domain), size = mps_domain_size(e->def.domain);
+  const int64_t rank = mps_domain_rank(e->domain), size = mps_domain_size(e->domain);
   const int64_t from = e->n * rank / size, to = e->n * (rank + 1) / size;
   e->span[0] = (mpsi_span){from, to};
   for (int k = 1; k < MPSI_SPANS; k++) {
@@ -99,7 +100,7 @@ mps_status mpsi_elastic_join(mps_elastic *e, const char *function, mps_status st
   status = mpsi_elastic_agree(e, function, status);
   for (int64_t k = 0; status == MPS_OK && k < count; k += MOST_AT_ONCE)
     status =
-        mpsi_domain_max(e->def.domain, function,
+        mpsi_domain_max(e->domain, function,
                         (int32_t)(count - k < MOST_AT_ONCE ? count - k : MOST_AT_ONCE), values + k);
   return status;
 }

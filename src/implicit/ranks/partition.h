@@ -5,7 +5,7 @@
 
 #include "core/internal.h"
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* An interval of the order of layers (partition.c). */
 typedef struct mpsi_span {

@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_CG_H
 #define MPSI_ELASTIC_CG_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* ---- cg.c ------------------------------------------------------------------------------------ */
 mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, const double *rhs,

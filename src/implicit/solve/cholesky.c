@@ -60,7 +60,8 @@ mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi
   c->threads = threads;
   if (!cholmod_l_start(&c->common)) {
     mpsi_free(context, c);
-    return mpsi_fail(context, function, MPS_ERROR_INTERNAL, "CHOLMOD did not start");
+    return mpsi_fail(context, function, MPS_ERROR_MEMORY,
+                     "CHOLMOD was refused the memory to start");
   }
   c->common.print = 0;
   c->common.try_catch = 0;

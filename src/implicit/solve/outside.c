@@ -1,55 +1,35 @@
-/* outside.c - the equations for a solver of the caller (mps/elastic_solver.h): rows of the matrix
+/* outside.c - the equations for a linear solver of the caller (solver/linear.h): rows of the matrix
  * with all directions of every particle, rigid motions as near null space, and the residual of its
  * solution by the operator. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/defs.h"
 #include "outside.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/operator/assemble.h"
 #include "implicit/operator/operator.h"
+#include "solver/linear.h"
 
 #include <float.h>
 #include <string.h>
 
-#define ROUNDING 1e-12 /* of |b|: the smallest tolerance that is required of a solver */
-/* Nor below the rounding of displacements in double precision: this many units in the last place of
- * each, times the greatest stiffness. For a bar 20 times as long as wide that is 8e-10 of |b|. */
+/* No solution is required below the rounding of displacements in double precision: this many units
+ * in the last place of each, times the greatest stiffness. For a bar 20 times as long as wide that
+ * is 8e-10 of |b|. */
 #define PLACES 64.0
 
-void mpsi_elastic_drop_outside(mps_elastic *e) {
-  mpsi_free(e->context, e->outside);
-  e->outside = NULL;
+mps_status mpsi_elastic_linear_ready(void *solver, const char *function) {
+  const mps_elastic *e = solver;
+  if (e->conservative || !mpsi_domain_many(e->domain)) return MPS_OK;
+  return mpsi_fail(
+      e->context, function, MPS_ERROR_UNSUPPORTED,
+      "the published method is solved by each rank alone, by the library's own solver");
 }
 
-mps_status mps_elastic_set_solver(mps_elastic *e, const mps_elastic_solver_def *user) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  mps_elastic_solver_def def = mpsi_elastic_solver_defaults;
-  if (user) status = MPSI_DEF_READ(e->context, __func__, mps_elastic_solver_def, user, &def);
-  if (status == MPS_OK && user && (!def.matrix || !def.solve))
-    status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "matrix is %s and solve %s: both must be given",
-                       def.matrix ? "given" : "NULL", def.solve ? "given" : "NULL");
-  if (status == MPS_OK && user && (def.parts < 1 || def.part < 0 || def.part >= def.parts))
-    status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "part is %d of %d parts, allowed is 0 to parts - 1, parts >= 1", def.part,
-                       def.parts);
-  mpsi_elastic_outside *outside = NULL;
-  if (status == MPS_OK && user && !(outside = mpsi_alloc(e->context, 1, sizeof *outside)))
-    status = mpsi_fail_memory(e->context, __func__, sizeof *outside);
-  mpsi_given given;
-  mpsi_given_begin(&given);
-  mpsi_give(&given, "having a solver", user != NULL);
-  MPSI_GIVE(&given, &def, parts);
-  status = mpsi_elastic_agree_given(e, __func__, status, &given);
-  if (status != MPS_OK) mpsi_free(e->context, outside);
-  if (status == MPS_OK) {
-    if (outside) outside->def = def;
-    mpsi_elastic_drop_outside(e);
-    e->outside = outside;
-    e->pattern_valid = e->analysed = e->factored = false;
-  }
-  return mpsi_elastic_leave(e, status);
+void mpsi_elastic_linear_changed(void *solver) {
+  mps_elastic *e = solver;
+  e->pattern_valid = e->analysed = e->factored = false;
+}
+
+bool mpsi_elastic_solved_outside(const mps_elastic *e) {
+  return mpsi_linear_serves(&e->base, e->n * e->dim);
 }
 
 /* ---- matrix ---------------------------------------------------------------------------------- */
@@ -89,40 +69,44 @@ static void fill_modes(const mps_elastic *e, int64_t from, int64_t to, double *m
 
 /* Of the rows of all ranks. */
 static mps_status find_stiffest(mps_elastic *e, const char *function, const mpsi_elastic_rows *a) {
-  mpsi_elastic_outside *o = e->outside;
+  mpsi_elastic_outside *o = &e->outside;
   o->stiffest = 0.0;
   for (int64_t k = 0; k < a->start[(a->to - a->from) * e->dim]; k++)
     o->stiffest = fmax(o->stiffest, fabs(a->value[k]));
   return e->shared ? mpsi_elastic_join(e, function, MPS_OK, 1, &o->stiffest) : MPS_OK;
 }
 
+/* This rank's particles in the order of layers. */
+static mpsi_span own_span(const mps_elastic *e) {
+  const int64_t rank = e->domain ? mps_domain_rank(e->domain) : 0;
+  const int64_t ranks = e->domain ? mps_domain_size(e->domain) : 1;
+  return (mpsi_span){.from = e->n * rank / ranks, .to = e->n * (rank + 1) / ranks};
+}
+
 static mps_status hand_matrix(mps_elastic *e, const char *function, double shift) {
-  mpsi_elastic_outside *o = e->outside;
-  const int64_t d = e->dim, from = e->n * o->def.part / o->def.parts;
-  const int64_t to = e->n * (o->def.part + 1) / o->def.parts, rows = (to - from) * d;
-  mpsi_elastic_rows a = {.from = from, .to = to};
+  mpsi_elastic_outside *o = &e->outside;
+  const mpsi_span own = own_span(e);
+  const int64_t rows = (own.to - own.from) * e->dim;
+  mpsi_elastic_rows a = {.from = own.from, .to = own.to};
   double *mode = mpsi_alloc(e->context, e->modes * rows, sizeof *mode);
   mps_status status = mode ? MPS_OK : mpsi_fail_memory(e->context, function, (size_t)rows * 48);
   if (status == MPS_OK) status = mpsi_elastic_assemble_rows(e, function, shift, &a);
   status = mpsi_elastic_agree(e, function, status); /* before ranks wait for one another */
   if (status == MPS_OK) status = find_stiffest(e, function, &a);
   if (status == MPS_OK) {
-    fill_modes(e, from, to, mode);
-    const mps_elastic_matrix matrix = {.all = e->n * d,
-                                       .first = from * d,
-                                       .rows = rows,
-                                       .block = e->dim,
-                                       .modes = e->modes,
-                                       .start = a.start,
-                                       .column = a.column,
-                                       .value = a.value,
-                                       .mode = mode};
+    fill_modes(e, own.from, own.to, mode);
+    mps_linear_matrix matrix = {.all = e->n * e->dim,
+                                .first = own.from * e->dim,
+                                .rows = rows,
+                                .block = e->dim,
+                                .modes = e->modes,
+                                .start = a.start,
+                                .column = a.column,
+                                .value = a.value,
+                                .mode = mode};
     o->nonzeros = a.start[rows];
-    const int64_t failures = mpsi_failures(e->context);
-    status =
-        mpsi_callback_status(e->context, function, "the callback matrix of mps_elastic_set_solver",
-                             failures, o->def.matrix(o->def.user, &matrix, sizeof matrix));
-    status = mpsi_elastic_agree(e, function, status);
+    o->shift = shift;
+    status = mpsi_linear_hand(&e->base, function, &matrix);
   }
   mpsi_free(e->context, mode);
   mpsi_free(e->context, a.start);
@@ -133,92 +117,79 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
-/* |rhs - (K + shift M) solution| over |rhs|, by the operator, and the part that may be rounding;
- * `work` has room for two vectors. */
+/* Squares |rhs - (K + shift M) solution|^2, by the operator, and |rhs|^2, and the part of |rhs|
+ * that may be rounding; `work` has room for two vectors. */
 static mps_status residual(mps_elastic *e, const char *function, double shift, const double *rhs,
-                           const double *solution, double *work, double *out, double *rounding) {
+                           const double *solution, double *work, double *rr, double *bb,
+                           double *rounding) {
   const int64_t all = e->n * e->dim;
-  double *u = work, *f = e->work, *r = work + all, rr = 0.0, bb = 0.0, uu = 0.0;
+  double *u = work, *f = e->work, *r = work + all, uu = 0.0;
   memset(u, 0, (size_t)all * sizeof *u);
   mpsi_elastic_expand(e, solution, false, u);
   const mps_status status = mpsi_elastic_apply(e, function, u, f);
   for (int64_t k = 0; shift != 0.0 && k < all; k++) f[k] += shift * e->mass[k / e->dim] * u[k];
   mpsi_elastic_reduce(e, f, r);
+  *rr = *bb = 0.0;
   for (int64_t k = 0; k < e->unknowns; k++) {
-    rr += (rhs[k] - r[k]) * (rhs[k] - r[k]);
-    bb += rhs[k] * rhs[k];
+    *rr += (rhs[k] - r[k]) * (rhs[k] - r[k]);
+    *bb += rhs[k] * rhs[k];
     uu += solution[k] * solution[k];
   }
-  *rounding = bb > 0.0 ? PLACES * DBL_EPSILON * e->outside->stiffest * sqrt(uu / bb) : 0.0;
-  *out = bb > 0.0 ? sqrt(rr / bb) : sqrt(rr);
+  *rounding = *bb > 0.0 ? PLACES * DBL_EPSILON * e->outside.stiffest * sqrt(uu / *bb) : 0.0;
   return status;
 }
 
-/* Between a vector of free unknowns and one of all rows, 0 in fixed ones. */
-static void copy_rows(const mps_elastic *e, double *unknowns, double *rows, bool to_rows) {
-  for (int64_t i = 0; i < e->n; i++)
+/* This rank's rows of a vector of free unknowns, 0 in fixed ones. */
+static void to_rows(const mps_elastic *e, const double *unknowns, double *rows) {
+  const mpsi_span own = own_span(e);
+  for (int64_t k = own.from; k < own.to; k++)
     for (int c = 0; c < e->dim; c++) {
-      const int64_t dof = e->dof[i * e->dim + c];
-      double *row = &rows[mpsi_elastic_place(e, i) * e->dim + c];
-      if (to_rows)
-        *row = dof >= 0 ? unknowns[dof] : 0.0;
-      else if (dof >= 0)
-        unknowns[dof] = *row;
+      const int64_t dof = e->dof[mpsi_elastic_in_order(e, k) * e->dim + c];
+      *rows++ = dof >= 0 ? unknowns[dof] : 0.0;
     }
 }
 
-static mps_status solve(mps_elastic *e, const char *function, const double *rhs, double *solution,
-                        double *work) {
-  const mps_elastic_solver_def *def = &e->outside->def;
+/* The free unknowns of all ranks from each one's rows; `work` is a vector over all particles. */
+static mps_status from_rows(mps_elastic *e, const char *function, const double *rows, double *work,
+                            double *unknowns) {
+  const mpsi_span own = own_span(e);
+  for (int64_t k = own.from; k < own.to; k++)
+    for (int c = 0; c < e->dim; c++) work[mpsi_elastic_in_order(e, k) * e->dim + c] = *rows++;
+  const mps_status status = mpsi_elastic_complete(e, function, work);
+  for (int64_t k = 0; status == MPS_OK && k < e->n * e->dim; k++)
+    if (e->dof[k] >= 0) unknowns[e->dof[k]] = work[k];
+  return status;
+}
+
+static mps_status solve(mps_elastic *e, const char *function, double shift, const double *rhs,
+                        double *solution, double *work) {
   const int64_t all = e->n * e->dim;
-  double *b = work, *x = work + all;
-  int64_t iterations = 0;
+  double *b = work, *x = work + all, rr, bb, rounding;
   memset(x, 0, (size_t)all * sizeof *x);
-  copy_rows(e, (double *)rhs, b, true);
-  const int64_t failures = mpsi_failures(e->context);
-  const mps_status status =
-      mpsi_callback_status(e->context, function, "the callback solve of mps_elastic_set_solver",
-                           failures, def->solve(def->user, b, e->def.tolerance, x, &iterations));
+  to_rows(e, rhs, b);
+  mps_status status = mpsi_linear_solve(&e->base, function, e->def.tolerance, b, x);
+  if (status == MPS_OK) status = from_rows(e, function, x, b, solution);
+  if (status == MPS_OK)
+    status = residual(e, function, shift, rhs, solution, work, &rr, &bb, &rounding);
   if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < all; k++) /* also of fixed rows, which are not read */
-    if (!isfinite(x[k]))
-      return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                       "the callback solve of mps_elastic_set_solver has given x[%lld] = %g",
-                       (long long)k, x[k]);
-  e->report.iterations += iterations;
-  copy_rows(e, solution, x, false);
-  return MPS_OK;
+  e->report.iterations += e->linear->result.iterations;
+  return mpsi_linear_check(&e->base, function, e->def.tolerance, rounding, rr, bb);
 }
 
 mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, double shift,
                                       const double *rhs, double *solution) {
-  mpsi_elastic_outside *o = e->outside;
   const int64_t words = 2 * e->n * e->dim;
   mps_status status = MPS_OK;
   if (mpsi_cancelled(e->context))
     status = mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled before the solution");
   status = mpsi_elastic_agree(e, function, status);
-  if (status != MPS_OK) return status;
-  if (!o->valid || o->shift != shift) {
-    o->valid = false;
+  if (status == MPS_OK && !(e->linear->valid && e->outside.shift == shift))
     status = hand_matrix(e, function, shift);
-    if (status != MPS_OK) return status;
-    o->valid = true, o->shift = shift;
-  }
+  if (status != MPS_OK) return status;
   double *work = mpsi_alloc(e->context, words, sizeof *work);
   if (!work) status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *work);
   status = mpsi_elastic_agree(e, function, status);
-  if (status == MPS_OK)
-    status = mpsi_elastic_agree(e, function, solve(e, function, rhs, solution, work));
-  double left = 0.0, rounding = 0.0;
-  if (status == MPS_OK) {
-    status = residual(e, function, shift, rhs, solution, work, &left, &rounding);
-    if (status == MPS_OK && !(left <= 1.01 * e->def.tolerance + fmax(ROUNDING, rounding)))
-      status = mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                         "the solution of the callback solve of mps_elastic_set_solver has the "
-                         "residual %g of the right side, tolerance is %g",
-                         left, e->def.tolerance);
-  }
+  if (status == MPS_OK) status = solve(e, function, shift, rhs, solution, work);
   mpsi_free(e->context, work);
   return status;
 }

@@ -11,9 +11,11 @@
 #include "implicit/body/thin.h"
 #include "implicit/body/window.h"
 #include "implicit/operator/assemble.h"
+#include "implicit/operator/moduli.h"
 #include "implicit/operator/operator.h"
 #include "implicit/solve/cg.h"
 #include "implicit/solve/rigid.h"
+#include "solver/linear.h"
 
 #include <string.h>
 #include <time.h>
@@ -84,7 +86,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
 /* A solver of the caller receives the matrix before a solution. */
 static mps_status prepare_outside(mps_elastic *e, const char *function) {
   if (e->pattern_valid && e->values_valid) return MPS_OK;
-  e->outside->valid = false;
+  e->linear->valid = false;
   const mps_status status = e->pattern_valid ? MPS_OK : mpsi_elastic_make_vectors(e, function);
   if (status != MPS_OK) return status;
   memset(&e->symbolic, 0, sizeof e->symbolic);
@@ -96,11 +98,12 @@ static mps_status prepare_outside(mps_elastic *e, const char *function) {
 mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function) {
   mps_status status = MPS_OK;
   double start = now();
-  status = mpsi_elastic_choose_window(e, function);
+  if (e->unread) status = mpsi_elastic_renew_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_choose_window(e, function);
   const bool assemble = !e->pattern_valid || !e->values_valid;
   if (status == MPS_OK) status = mpsi_elastic_warn_of_thin_parts(e, function);
   if (status == MPS_OK && !e->pattern_valid) status = mpsi_elastic_check_supported(e, function);
-  if (status == MPS_OK && e->outside) return prepare_outside(e, function);
+  if (status == MPS_OK && mpsi_elastic_solved_outside(e)) return prepare_outside(e, function);
   if (status == MPS_OK) status = mpsi_elastic_assemble(e, function);
   if (status != MPS_OK) return status;
   if (assemble) e->report.seconds_assemble = now() - start;
@@ -181,7 +184,7 @@ mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t 
   mps_status status = MPS_OK;
   if (!e->use_cg) return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
   for (int64_t k = 0; k < count && status == MPS_OK; k++)
-    status = (e->outside ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
+    status = (mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
         e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns);
   return status;
 }
@@ -240,19 +243,19 @@ static mps_status check_work(const mps_elastic *e, const char *function, const d
 }
 
 static int64_t nonzeros(const mps_elastic *e) {
-  if (e->outside) return e->outside->nonzeros;
+  if (mpsi_elastic_solved_outside(e)) return e->outside.nonzeros;
   return e->column ? e->column[e->unknowns] : 0;
 }
 
 static int32_t solver_used(const mps_elastic *e) {
-  if (e->outside) return MPS_ELASTIC_SOLVER_FOREIGN;
+  if (mpsi_elastic_solved_outside(e)) return MPS_ELASTIC_SOLVER_FOREIGN;
   if (e->use_cg) return MPS_ELASTIC_SOLVER_CG;
   return e->def.solver == MPS_ELASTIC_SOLVER_AUTO ? MPS_ELASTIC_SOLVER_LLT : e->def.solver;
 }
 
 mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, size_t size) {
   static const char function[] = "mps_elastic_analyse";
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, function);
   if (status != MPS_OK) return status;
   status = mpsi_elastic_prepare(e, function);
@@ -281,8 +284,8 @@ static mps_status solve(mps_elastic *e, const char *function, double *u, double 
   const int64_t all = e->n * e->dim;
   mps_status status = mpsi_elastic_prepare(e, function);
   if (status == MPS_OK) status = mpsi_elastic_weigh(e, function, mass);
-  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mps_elastic_time(e));
-  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mpsi_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, mpsi_elastic_time(e));
   if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
   if (status != MPS_OK) return status;
   const double start = now();
@@ -306,7 +309,7 @@ static mps_status solve(mps_elastic *e, const char *function, double *u, double 
 }
 
 mps_status mps_elastic_solve(mps_elastic *e) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
@@ -344,7 +347,7 @@ static mps_status solve_cases(mps_elastic *e, const char *function, int64_t coun
                               const double *loads, double *displacements) {
   const int64_t all = e->n * e->dim, block = count < CASES_AT_ONCE ? count : CASES_AT_ONCE;
   mps_status status = mpsi_elastic_prepare(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mpsi_elastic_time(e));
   if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
   if (status != MPS_OK || count == 0) return status;
   const int64_t words = 2 * block * (e->unknowns + all);
@@ -376,7 +379,7 @@ static mps_status check_cases(const mps_elastic *e, const char *function, int64_
 
 mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *loads,
                                    double *displacements) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
@@ -394,7 +397,7 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
 mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report *out,
                                         size_t size) {
   static const char function[] = "mps_elastic_get_report";
-  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!e) return mpsi_null(__func__, "elastic");
   mps_elastic_report r = e->report;
   r.unknowns = e->unknowns;
   r.matrix_nonzeros = nonzeros(e);

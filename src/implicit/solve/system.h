@@ -3,7 +3,7 @@
 #ifndef MPSI_ELASTIC_SYSTEM_H
 #define MPSI_ELASTIC_SYSTEM_H
 
-#include <mps/elastic_solver.h>
+#include <mps/elastic.h>
 
 /* ---- system.c -------------------------------------------------------------------------------- */
 mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function);

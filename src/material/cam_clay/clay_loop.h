@@ -2,16 +2,16 @@
  * particles that yield, which are packed for it, and the results. The equations are those of
  * cam_clay.c with y = ln(p/p0) for ln p, so that a step needs no logarithm and only exponentials
  * of numbers up to 1, by their series. A particle with an open gap, less pressure than
- * `least_pressure`, a long step, or one for which Newton's method needs more takes the step of
- * cam_clay.c; which of the two depends on the particle alone. Both agree to rounding.
- * Included by laws.c alone, which compiles it for each instruction set. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * `least_pressure`, a long step, one for which Newton's method needs more, or one that yields where
+ * M follows the Lode angle takes the step of cam_clay.c; which of the two depends on the particle
+ * alone. Both agree to rounding. Included by laws.c alone, which compiles it for each instruction
+ * set. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_CLAY_LOOP_H
 #define MPSI_CLAY_LOOP_H
 
 #include "material/tensor.h"
 
-#define CLAY_CHUNK 64
+#define CLAY_CHUNK 32
 #define CLAY_LANES 8      /* doubles of the longest vector: a divisor of CLAY_CHUNK */
 #define CLAY_LONGEST 1e-2 /* strain of an undivided step, as in cam_clay.c */
 #define CLAY_LARGEST 1.0  /* argument of the exponentials */
@@ -124,7 +124,7 @@ MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *c
     const int near = clay_size(y) <= CLAY_LARGEST, brief = square <= CLAY_LONGEST * CLAY_LONGEST;
     const int plain = bears & near & brief;
     const double over = q * q + slope * (p * (p - pc));
-    const double kind = over > 0.0 ? CLAY_YIELDS : CLAY_ELASTIC;
+    const double kind = over > 0.0 ? (lode ? CLAY_ALONE : CLAY_YIELDS) : CLAY_ELASTIC;
     t->dev[0][k] = s.xx, t->dev[1][k] = s.yy, t->dev[2][k] = s.zz, t->dev[3][k] = s.xy;
     if (geometry == MPSI_SPACE) t->dev[4][k] = s.zx, t->dev[5][k] = s.yz;
     t->q[k] = q, t->m2[k] = slope, t->shear[k] = shear, t->y[k] = y, t->p0[k] = p0;

@@ -1,48 +1,18 @@
 /* consolidation.c - the state of rest of Cam-Clay: horizontal stress, preconsolidation and void
  * ratio of particles from their vertical stress and the largest one they have had.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
 #include "core/base/ranges.h"
 #include "core/particles/particles_internal.h"
 #include "material/material_private.h"
 
 #include <mps/soil.h>
-
-static const mps_consolidation_def consolidation_defaults = {
-    .vertical = -1, .ocr = 1.0, .k0 = NAN, .critical_volume = NAN, .reference = 1000.0};
-
-mps_status mps_consolidation_def_init(mps_consolidation_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_consolidation_def, def, size, &consolidation_defaults);
-}
+#include <mps/experimental/soil.h>
 
 static const char function[] = "mps_particles_set_consolidation";
 
 typedef struct clay_state {
   double horizontal, pc, void_ratio; /* Pa, Pa, - */
 } clay_state;
-
-/* ---- checks ---------------------------------------------------------------------------------- */
-
-static mps_status check_def(mps_context *context, const mps_consolidation_def *d, int32_t dim) {
-  if (d->vertical < -1 || d->vertical >= dim)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "vertical is %d, must be 0..%d, or -1 for the last axis", (int)d->vertical,
-                     (int)dim - 1);
-  if (!(d->ocr >= 1.0 && d->ocr <= 1000.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "ocr is %s, must be 1 to 1000",
-                     mpsi_outside(d->ocr, 1.0, 1000.0).text);
-  mps_status status = mpsi_check_range_or_0(context, function, "pop", d->pop, MPSI_RANGE_STRESS);
-  if (status == MPS_OK && !isnan(d->k0))
-    status = mpsi_check_range(context, function, "k0", d->k0, MPSI_RANGE_STRESS_RATIO);
-  if (status == MPS_OK)
-    status = mpsi_check_range(context, function, "reference", d->reference, MPSI_RANGE_STRESS);
-  if (status == MPS_OK && !isnan(d->critical_volume) &&
-      !(d->critical_volume > 1.0 && d->critical_volume <= 20.0))
-    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "critical_volume is %s, must be above 1 and at most 20",
-                       mpsi_outside(d->critical_volume, 1.0, 20.0).text);
-  return status;
-}
 
 /* ---- one particle ---------------------------------------------------------------------------- */
 
@@ -146,13 +116,13 @@ static void write_states(const consolidation *c, const clay_state *state) {
 
 static mps_status begin(consolidation *c, const mps_consolidation_def *def) {
   mps_context *context = mpsi_particles_context(c->set);
-  mps_status status = MPSI_DEF_READ(context, function, mps_consolidation_def, def, &c->def);
+  mps_status status = MPSI_DEF_READ_IN(context, function, mps_consolidation_def, def,
+                                       mpsi_scene_of(c->dim), &c->def);
   if (status == MPS_OK && !c->material)
     status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
   if (status == MPS_OK && c->material->type->kind != MPSI_LAW_CAM_CLAY)
     status = mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                        "material: the law is %s, must be cam_clay", c->material->name);
-  if (status == MPS_OK) status = check_def(context, &c->def, c->dim);
   if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(c->set, function, c->def.count, c->def.ids);
   if (status == MPS_OK) status = mpsi_particles_writable(c->set, function);
@@ -169,11 +139,11 @@ static mps_status begin(consolidation *c, const mps_consolidation_def *def) {
 
 mps_status mps_particles_set_consolidation(mps_particles *particles, const mps_material *material,
                                            const mps_consolidation_def *def) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = mpsi_particles_context(particles);
   consolidation c = {.set = particles,
                      .material = material,
-                     .def = consolidation_defaults,
+                     .def = mps_consolidation_defaults(),
                      .dim = mps_particles_dim(particles)};
   mps_status status = begin(&c, def);
   if (status != MPS_OK) return status;

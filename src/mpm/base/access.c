@@ -1,9 +1,13 @@
 /* access.c - whether a solver may be used between its steps. SPDX-License-Identifier: BSD-3-Clause
  */
-#include "all_parts.h"
+#include "core/particles/particles_internal.h"
+#include "mpm/base/columns.h"
+#include "mpm/base/run.h"
 
-mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, const char *function) {
-  return mpsi_guard_check(&run->guard, context, function);
+mps_status mpsi_mpm_between_steps(mps_context *context, mpsi_run *run, const char *function) {
+  const mps_status status = mpsi_guard_check(run->guard, context, function);
+  run->changed = run->changed || status == MPS_OK;
+  return status;
 }
 
 /* Refuses after a step with values that are not finite, and while a field is being edited. */

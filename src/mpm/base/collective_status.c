@@ -1,6 +1,8 @@
 /* collective_status.c - agreement of all ranks: on one status, on equal state and arguments, and on
  * largest values. SPDX-License-Identifier: BSD-3-Clause */
-#include "all_parts.h"
+#include "mpm/base/run.h"
+#include "mpm/contact/prescribed.h"
+#include "mpm/ranks/partition.h"
 
 bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g) {
   const mpsi_node_block *nodes = &grid->nodes[g];
@@ -27,13 +29,14 @@ mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bo
 mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition *partition,
                                   mpsi_run *run, const mps_mpm_def *def, const char *function,
                                   mps_status status) {
-  double found[3] = {run->edited, run->stale, run->lost};
+  double found[4] = {run->edited, run->stale, run->lost, run->changed};
   partition->ready = false;
-  status = mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 3, found);
+  status = mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 4, found);
   if (status != MPS_OK) return status;
   run->edited = found[0] > 0.0;
   run->stale = found[1] > 0.0;
   run->lost = found[2] > 0.0;
+  run->changed = found[3] > 0.0;
   return MPS_OK;
 }
 

@@ -5,7 +5,10 @@
 
 #include "mpm/particles/laws.h"
 
+#include <mps/mpm.h>
 #include <mps/particles.h>
+
+#include <math.h>
 
 typedef struct mpsi_columns {
   int64_t count;
@@ -19,18 +22,65 @@ typedef struct mpsi_columns {
   double *s[6];  /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *u, *g[3]; /* Pa, Pa/m: pressure of pore water, which adds to the forces of s, and its
                        gradient; NULL without water */
-  double *n, *k;    /* porosity; permeability, m/s: NULL without water that flows */
-  double K_w;       /* Pa, bulk modulus of the water; 0 without water */
-  double *V, *m;    /* m3, kg */
-  double *J;        /* V/V0 where some law reads it, else NULL */
-  double *F[9];     /* deformation gradient, as L; NULL where no law needs it */
+  double *slow;  /* Pa, the pressure of which P2G has the forces: of implicit ones a mean over some
+                    steps (water/flow.c), else u */
+  double *n, *k; /* porosity; permeability, m/s: NULL without water that flows */
+  double K_w;    /* Pa, bulk modulus of the water; 0 without water */
+  double *V, *m; /* m3, kg */
+  double *J;     /* V/V0 where some law reads it, else NULL */
+  double *F[9];  /* deformation gradient, as L; NULL where no law needs it */
   double
       *f[3]; /* N, forces by body accelerations and loads in the step; NULL where there are none */
   int64_t *law; /* number of each particle's law; NULL: one law */
   mpsi_laws laws;
   mps_particles *set; /* the caller's set, in whose fields these columns lie */
   int32_t *stencil;   /* lowest node of the particle's stencil, in its block's tile, in the present
-                         step; NULL where volumetric.c and filter.c do not need it */
+                         step (mpsi_stencil_node), and whether the particle lies on a border of the
+                         cell that this stands for (mpsi_stencil_border); NULL where volumetric.c and
+                         filter.c do not need it */
+  double *t[3];       /* with `stencil`: position from that node, in cells */
 } mpsi_columns;
+
+enum { MPSI_STENCIL_BITS = 12 }; /* of the node; then two bits an axis */
+static inline int mpsi_stencil_node(int32_t stencil) {
+  return (int)(stencil & ((1 << MPSI_STENCIL_BITS) - 1));
+}
+/* Along axis c: -1 on the border to the cell below, 1 to the one above, 0 on none. */
+static inline int mpsi_stencil_border(int32_t stencil, int c) {
+  return (int)(stencil >> (MPSI_STENCIL_BITS + 2 * c) & 3) - 1;
+}
+
+/* Fraction of the velocity that the nodes do not represent that particles keep in a step of dt. */
+static inline double mpsi_kept_fraction(const mps_mpm_def *def, double dt) {
+  return def->flip_time > 0.0 ? exp(-dt / def->flip_time) : 0.0;
+}
+
+static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
+  return &p->laws.law[p->law ? p->law[particle] : 0];
+}
+
+/* Factor of the elastic moduli of a particle's law. */
+static inline double mpsi_mpm_stiffness(const mpsi_columns *p, int64_t particle) {
+  const double *factor = mpsi_law_of(p, particle)->stiffness;
+  return factor && factor[particle] > 0.0 ? factor[particle] : 1.0;
+}
+
+/* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+static inline void mpsi_mpm_elastic(const mpsi_columns *p, int64_t particle, double *wave,
+                                    double *shear) {
+  const mps_material *material = mpsi_law_of(p, particle)->material;
+  const double factor = mpsi_mpm_stiffness(p, particle);
+  *wave = factor * mpsi_material_rest_modulus(material);
+  *shear = factor * mpsi_material_shear(material);
+}
+
+/* K + 4G/3 and G (Pa) of dashpots: waves go through the water of saturated ground too. Where it
+ * flows as well: it hardly does within a wave of several cells, whose period is far below (a wave
+ * length)^2/c_v. */
+static inline void mpsi_mpm_saturated(const mpsi_columns *p, int64_t particle, double *wave,
+                                      double *shear) {
+  mpsi_mpm_elastic(p, particle, wave, shear);
+  if (p->n) *wave += p->K_w / p->n[particle];
+}
 
 #endif

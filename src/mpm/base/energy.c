@@ -1,8 +1,11 @@
 /* energy.c - see energy.h. Sums within a block are in order, sums over blocks exact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
+#include "core/base/room_array.h"
 #include "mpm/contact/particle.h"
-#include "all_parts.h"
+#include "mpm/base/energy.h"
+#include "mpm/particles/loads.h"
+#include "mpm/ranks/partition.h"
 
 #include <string.h>
 
@@ -92,8 +95,7 @@ void mpsi_mpm_energy_before_law(const mpsi_grid *grid, const mpsi_columns *p, in
   }
 }
 
-/* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
-static double elastic_energy(const double *s, double bulk, double shear) {
+double mpsi_elastic_energy(const double *s, double bulk, double shear) {
   const double trace = s[0] + s[1] + s[2], mean = trace / 3.0;
   const double a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
   const double square = a * a + b * b + c * c + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
@@ -138,7 +140,7 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
       stays = work - 0.5 * (V0 + V1) * (dissipated[begin + k] - before->dissipated[k]);
     else if (stored == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
       stays = 0.5 * (V0 + V1) *
-              (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear)) /
+              (mpsi_elastic_energy(s1, bulk, shear) - mpsi_elastic_energy(s0, bulk, shear)) /
               mpsi_mpm_stiffness(p, begin + k);
     sum->stored += stays;
     sum->spent += work - stays;
@@ -166,7 +168,8 @@ void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
       continue;
     }
     const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
-    const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
+    const double lost =
+        V * (mpsi_elastic_energy(s0, bulk, shear) - mpsi_elastic_energy(s1, bulk, shear));
     sum->smoothed += lost;
   }
 }
@@ -247,12 +250,9 @@ mps_status mpsi_mpm_energy_begin(mps_context *context, const mpsi_grid *grid, co
                                  const mps_mpm_def *def, const char *function) {
   if (!e->counts) return MPS_OK;
   const int64_t cells = grid->cell_count, nodes = mpsi_all_nodes(grid);
-  if (!mpsi_room_ensure(context, &e->cells_room, cells, sizeof *e->cells) ||
-      !mpsi_room_ensure(context, &e->nodes_room, nodes, sizeof *e->nodes))
+  if (!MPSI_ENSURE(context, e, cells, cells) || !MPSI_ENSURE(context, e, nodes, nodes))
     return mpsi_fail_memory(context, function,
                             (size_t)cells * sizeof *e->cells + (size_t)nodes * sizeof *e->nodes);
-  e->cells = e->cells_room.item;
-  e->nodes = e->nodes_room.item;
   if (cells > 0) memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
   if (nodes > 0) memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
   memset(e->step, 0, sizeof e->step);

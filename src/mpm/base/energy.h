@@ -85,6 +85,8 @@ void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, dou
 mps_status mpsi_mpm_energy_begin(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                  const mpsi_contacts *contacts, mpsi_energy *energy,
                                  const mps_mpm_def *def, const char *function);
+/* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
+double mpsi_elastic_energy(const double *s, double bulk, double shear);
 /* Kinetic energy of particles [begin, end) of a block before and after G2P; the latter before
  * listed particles get their prescribed velocities (walls.c). */
 void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,

@@ -70,9 +70,11 @@ typedef struct mpsi_kernels {
                        int64_t begin, int64_t end);
   int64_t (*next_in)(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_cell_block *cells,
                      const int *low, const int *high, int64_t begin);
-  /* sweep.c: warm start of a block's constraints; a Gauss-Seidel update of each; velocity of the
-   * ground at the foot of one (m/s). */
+  /* sweep.c: warm start of a block's constraints; takes the impulses of listed particles
+   * (prescribed.h) off the nodes; a Gauss-Seidel update of each constraint; velocity of the ground
+   * at the foot of one (m/s). */
   void (*warm)(mpsi_impulses *all, double dt, const mpsi_constraint_block *block);
+  void (*release)(mpsi_impulses *all, const mpsi_constraint_block *block);
   void (*sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block, bool back);
   void (*foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
 } mpsi_kernels;
@@ -88,10 +90,11 @@ typedef struct mpsi_contact_stage {
   mps_context *context;
   mpsi_transfer transfer; /* of no block of cells yet */
   mpsi_contacts *contact;
-  mpsi_partition *partition; /* NULL: one rank */
+  mpsi_prescribed *prescribed; /* lists of particles whose constraints take part; NULL: none */
+  mpsi_partition *partition;   /* NULL: one rank */
   const mpsi_kernels *kernels;
-  double dt, next_dt; /* s, of this step and of the next one */
-  bool settling;      /* bodies do not move freely */
+  double next_dt; /* s, of the next step; that of this one is in transfer.run */
+  bool settling;  /* bodies do not move freely */
 } mpsi_contact_stage;
 
 /* The stage's transfer of block of cells b by a worker. */
@@ -105,10 +108,12 @@ static inline mpsi_transfer mpsi_contact_transfer(const mpsi_contact_stage *stag
 
 /* inside.c: what the search for nodes inside bodies works on. */
 typedef struct mpsi_inside_search {
+  mps_context *context;
   const mpsi_grid *grid;
   const mpsi_columns *p;
   const mpsi_contacts *contact;
   const mpsi_kernels *kernels;
+  bool failed; /* on this rank: it takes part in the exchange alone */
 } mpsi_inside_search;
 
 #endif

@@ -17,6 +17,8 @@
 #define MPSI_JOIN(a, b) MPSI_JOIN_(a, b)
 #define MPSI_LEVELLED(name) MPSI_JOIN(name##_v, MPSI_LEVEL)
 #define MPSI_SIMD _Pragma("omp simd")
+#define MPSI_PRAGMA(text) _Pragma(#text)
+#define MPSI_SIMD_SUM(sum) MPSI_PRAGMA(omp simd reduction(+ : sum))
 #define MPSI_UNROLL _Pragma("GCC unroll 4")
 #if defined(__GNUC__) || defined(__clang__)
 /* not inlined: large, and called from several places */
@@ -289,6 +291,7 @@ int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mpsi_grid *grid, const mpsi_colu
 int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mpsi_grid *grid, const mpsi_columns *p,
                                         const mpsi_cell_block *cells, const int *low,
                                         const int *high, int64_t begin);
+void MPSI_LEVELLED(mpsi_mpm_release)(mpsi_impulses *all, const mpsi_constraint_block *block);
 void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
                                   const mpsi_constraint_block *block);
 void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,

@@ -4,7 +4,21 @@
 #ifndef MPSI_MPM_SOLVER_H
 #define MPSI_MPM_SOLVER_H
 
+#include "energy.h"
 #include "kernels.h"
+#include "mpm/boundary/boundaries.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/contact/prescribed.h"
+#include "mpm/contact/thin_bodies.h"
+#include "mpm/particles/loads.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
+#include "mpm/step/damping.h"
+#include "mpm/step/undo.h"
+#include "core/particles/particles_internal.h"
+#include "run.h"
+#include "solver/solver_base.h"
 
 /* The handle of mps/grid.h, which the solver owns. */
 struct mps_grid {
@@ -12,9 +26,8 @@ struct mps_grid {
 };
 
 struct mps_mpm {
+  MPSI_SOLVER_BASE;
   struct mps_grid reader;
-  mps_context *context;
-  mpsi_holder holder; /* as a holder of the set of particles */
   mps_mpm_def def;
   const mpsi_kernels *kernels;
   mps_kernel *weights; /* weight function, for queries of the caller */
@@ -22,17 +35,21 @@ struct mps_mpm {
   mpsi_rooms rooms;
   mpsi_grid grid;
   mpsi_contacts contact;
+  mpsi_prescribed prescribed;
   mpsi_boundaries boundaries;
   mpsi_mirrors mirrors;
   mpsi_loads loads;
   mpsi_run run;
   mpsi_undo undo;
+  mpsi_bound bound;
   mpsi_energy energy;
   mpsi_settling settling;
   mpsi_water *water;         /* pore water (water/water.h); NULL: none */
-  mpsi_identity *identity;   /* identity of its snapshots */
   mpsi_partition *partition; /* parts on several ranks; NULL: one rank */
 };
+
+double mpsi_mpm_limit(const void *mpm); /* limit.c */
+double mpsi_mpm_dt(const mps_mpm *mpm);
 
 /* While the ground settles nothing is kept: how it moves until it rests has no meaning. */
 static inline double mpsi_kept_velocity(const mps_mpm *mpm) {
@@ -62,14 +79,23 @@ static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t wo
 }
 
 static inline mpsi_contact_stage mpsi_contact_stage_of(mps_mpm *mpm) {
-  return (mpsi_contact_stage){.context = mpm->context,
-                              .transfer = mpsi_transfer_begin(mpm),
-                              .contact = &mpm->contact,
-                              .partition = mpm->partition,
-                              .kernels = mpm->kernels,
-                              .dt = mpm->run.dt,
-                              .next_dt = mps_mpm_dt(mpm),
-                              .settling = mpm->settling.on};
+  return (mpsi_contact_stage){
+      .context = mpm->context,
+      .transfer = mpsi_transfer_begin(mpm),
+      .contact = &mpm->contact,
+      .prescribed = mpm->prescribed.on && mpm->contact.bodies > 0 ? &mpm->prescribed : NULL,
+      .partition = mpm->partition,
+      .kernels = mpm->kernels,
+      .next_dt = mpsi_mpm_dt(mpm),
+      .settling = mpm->settling.on};
+}
+
+/* The stage in which lists of particles are imposed on the nodes (contact/prescribed.h). */
+static inline mpsi_contact_stage mpsi_prescribed_stage_of(mps_mpm *mpm) {
+  mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  stage.contact = &mpm->prescribed.constraints;
+  stage.prescribed = &mpm->prescribed;
+  return stage;
 }
 
 static inline mpsi_rank_part mpsi_rank_part_of(mps_mpm *mpm) {
@@ -93,17 +119,8 @@ static inline mpsi_boundary_setup mpsi_boundary_setup_of(mps_mpm *mpm) {
                                .partition = mpm->partition,
                                .run = &mpm->run,
                                .def = &mpm->def,
+                               .water = mpm->water,
                                .has_relaxation = mpm->settling.cut};
-}
-
-static inline mpsi_load_setup mpsi_load_setup_of(mps_mpm *mpm) {
-  return (mpsi_load_setup){.context = mpm->context,
-                           .grid = &mpm->grid,
-                           .p = &mpm->p,
-                           .rooms = &mpm->rooms,
-                           .loads = &mpm->loads,
-                           .partition = mpm->partition,
-                           .run = &mpm->run};
 }
 
 static inline mpsi_contact_setup mpsi_contact_setup_of(mps_mpm *mpm) {
@@ -119,7 +136,7 @@ static inline mpsi_contact_setup mpsi_contact_setup_of(mps_mpm *mpm) {
 
 /* ---- a step and what comes before it --------------------------------------------------------- */
 
-/* step_on_ranks.c: one step of dt, in one process (step.c) or on several ranks. On an error nothing
+/* step.c: one step of dt, in one process or on several ranks. On an error nothing
  * has changed, unless a particle has left the domain (run.lost: the step is complete) or has values
  * that are not finite (run.broken). */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
@@ -153,6 +170,8 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
 mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status);
 /* ready.c: the largest c + |v| of each block of cells, and its first bad particle. */
 void mpsi_mpm_find_speeds(mps_mpm *mpm);
+/* block_results.c: the error of the first bad particle of this rank, whose step is to be undone. */
+mps_status mpsi_mpm_report_undone(mps_mpm *mpm, const char *function);
 /* block_results.c: results of all blocks: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
 /* signals.c: the worst status of all ranks, whether they have the same time, bodies and signals in

@@ -16,16 +16,18 @@ typedef struct mpsi_cell_block mpsi_cell_block;       /* grid/blocks.h */
 typedef struct mpsi_laws mpsi_laws;                   /* particles/laws.h */
 typedef struct mpsi_rooms mpsi_rooms;                 /* particles/rooms.h */
 typedef struct mpsi_loads mpsi_loads;                 /* particles/loads.h */
-typedef struct mpsi_load_setup mpsi_load_setup;       /* particles/loads.h */
 typedef struct mpsi_boundaries mpsi_boundaries;       /* boundary/boundaries.h */
-typedef struct mpsi_boundary_setup mpsi_boundary_setup; /* boundary/boundaries.h */
-typedef struct mpsi_mirrors mpsi_mirrors;               /* boundary/mirror.h */
-typedef struct mpsi_contacts mpsi_contacts;             /* contact/pairs.h */
-typedef struct mpsi_contact_setup mpsi_contact_setup;   /* contact/pairs.h */
-typedef struct mpsi_rank_part mpsi_rank_part;           /* ranks/partition.h */
-typedef struct mpsi_partition mpsi_partition;           /* ranks/partition.h */
-typedef struct mpsi_water mpsi_water;                   /* water/water.h */
-typedef struct mpsi_settling mpsi_settling;             /* step/damping.h */
-typedef struct mpsi_undo mpsi_undo;                     /* step/undo.h */
+typedef struct mpsi_boundary_setup mpsi_boundary_setup;     /* boundary/boundaries.h */
+typedef struct mpsi_mirrors mpsi_mirrors;                   /* boundary/mirror.h */
+typedef struct mpsi_contacts mpsi_contacts;                 /* contact/pairs.h */
+typedef struct mpsi_impulses mpsi_impulses;                 /* contact/impulses.h */
+typedef struct mpsi_constraint_block mpsi_constraint_block; /* contact/impulses.h */
+typedef struct mpsi_contact_setup mpsi_contact_setup;       /* contact/pairs.h */
+typedef struct mpsi_prescribed mpsi_prescribed;             /* contact/prescribed.h */
+typedef struct mpsi_rank_part mpsi_rank_part;               /* ranks/partition.h */
+typedef struct mpsi_partition mpsi_partition;               /* ranks/partition.h */
+typedef struct mpsi_water mpsi_water;                       /* water/water.h */
+typedef struct mpsi_settling mpsi_settling;                 /* step/damping.h */
+typedef struct mpsi_undo mpsi_undo;                         /* step/undo.h */
 
 #endif

@@ -10,29 +10,43 @@
 
 #define MPSI_MPM_LEAST_DT 1e-18 /* s */
 
+/* What reading the caller's edits changes, and an error restores. */
+typedef struct mpsi_edit_state {
+  double speed, flow;
+  bool edited;
+} mpsi_edit_state;
+
 typedef struct mpsi_run {
   double time;  /* s */
-  double dt;    /* s, of the step being made */
+  double dt;    /* s, of the step being made, or of the last one */
   double speed; /* largest c + |v| of the particles, m/s */
   double flow;  /* m/s, whose Courant limit is that of the flow of pore water; 0: none */
   int64_t steps;
-  mpsi_guard guard; /* in a callback of the caller, where only queries are allowed */
-  bool stale;       /* particles must be sorted before the next step */
-  bool edited;      /* the caller has written fields since the last step */
+  mpsi_guard *guard; /* the solver's */
+  bool stale;        /* particles must be sorted before the next step */
+  bool edited;       /* the caller has written fields since the last step */
+  bool changed;      /* the caller has changed something since the last step, */
+  bool renewed;      /* which changes the energy of the particles (step/bound.c) */
   bool moments; /* beside bodies the spin of L represents angular momentum (spin.h), as steps leave
                    it; false: the caller has written the velocity gradient */
-  bool broken;  /* a step has given values that are not finite */
-  bool lost;    /* a particle has left the domain in the last step, which is complete otherwise */
-  bool warned_about_dt; /* the log has a warning that dt is above the Courant limit */
+  /* Before the steps under way, and before a state was kept, which read the edits. */
+  mpsi_edit_state as_edited, as_kept;
+  bool begun;     /* a step has been made, or a state restored */
+  bool unchecked; /* a law or body was given before that which the particles' present state does not
+                     allow: the first step checks it again, a restored state needs no check */
+  bool broken;    /* a step has given values that are not finite */
+  bool lost;      /* a particle has left the domain in the last step, which is complete otherwise */
+  bool warned_about_dt;     /* the log has a warning that dt is above the Courant limit */
+  bool warned_about_volume; /* and one of a particle that has grown too far */
 } mpsi_run;
 
-/* signals.c: whether a signal of a load or boundary can refuse, on all ranks alike; not of
+/* signals.c: whether a signal of a load, boundary or contact can refuse, on all ranks alike; not of
  * bodies. */
 bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
-                                 const mpsi_boundaries *boundaries);
+                                 const mpsi_boundaries *boundaries, const mpsi_contacts *contacts);
 /* access.c: MPS_ERROR_STATE in a callback of the solver; after a step that has failed, or while a
- * field is edited. */
-mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, const char *function);
+ * field is edited. The first is asked by what changes the solver, and notes that. */
+mps_status mpsi_mpm_between_steps(mps_context *context, mpsi_run *run, const char *function);
 mps_status mpsi_mpm_check_whole(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
                                 const char *function);
 

@@ -10,7 +10,7 @@
 #ifndef MPSI_MPM_SHAPE_H
 #define MPSI_MPM_SHAPE_H
 
-#include "all_parts.h"
+#include "mpm/grid/blocks.h"
 
 #define MPSI_STENCIL                                                                               \
   64 /* nodes 16 k + 4 j + i; in 2D k = 0, quadratic stencils have i, j, k below 3 */

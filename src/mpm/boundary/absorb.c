@@ -5,13 +5,19 @@
  * in the cells at the wall: each represents the area V/h and adds rho c V/h = c m/h to the wall's
  * nodes by the least-squares shape functions of that plane, which are those of the masses there
  * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right total force, and
- * its nodes the right ratio of damping to mass. The particles of a block are summed separately: on
- * several ranks such sums are received from others (dashpots.c).
+ * its nodes the right ratio of damping to mass. Coefficients are found every eighth step, and when
+ * the caller has changed something. The particles of a block are summed separately: on several
+ * ranks such sums are received from others (dashpots.c).
  *
  * R is the traction by the stress at rest: the mean of the force on the node while the wall is held
  * and settles, or what balances the forces of the first step.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/shape.h"
+#include "mpm/ranks/messages.h"
+#include "mpm/contact/thin_bodies.h"
+
+#include "corners.h"
+#include "kinds.h"
 
 #include <string.h>
 
@@ -38,8 +44,7 @@ void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundar
 
 bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries) {
   bool any = false;
-  for (int32_t k = 0; k < MPSI_SIDES; k++)
-    any = any || boundaries->hold[k].kind == MPS_BOUNDARY_ABSORBING;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) any = any || mpsi_kind_of(&boundaries->hold[k])->absorbs;
   return any;
 }
 
@@ -82,12 +87,12 @@ static int tile_plane_index(int axis, const int *at) {
   return at[axis == 2 ? 1 : 2] * MPSI_TILE_SIDE + at[axis == 0 ? 1 : 0];
 }
 
-/* Adds the coefficients of a particle in a cell at the wall. */
+/* Adds the coefficients of a particle of which `part` lies in a cell at the wall. */
 static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
-                         int32_t number, int64_t k, double (*tile)[2]) {
+                         int32_t number, int64_t k, double part, double (*tile)[2]) {
   const int axis = boundaries->hold[number].axis;
-  const double per_area = p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
+  const double per_area = part * p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
   double wave, shear;
   mpsi_mpm_saturated(p, k, &wave, &shear);
   const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
@@ -119,9 +124,10 @@ bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
-  for (int64_t k = cells->begin; k < cells->end; k++)
-    if (mpsi_own_cell(grid, c, mpsi_grid_at(grid, c, p->x[c][k])) == layer)
-      add_particle(grid, p, boundaries, cells, number, k, tile);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    const double part = mpsi_mpm_part_at_side(grid, number, mpsi_grid_at(grid, c, p->x[c][k]));
+    if (part > 0.0) add_particle(grid, p, boundaries, cells, number, k, part, tile);
+  }
   return true;
 }
 
@@ -141,27 +147,22 @@ static void add_tile(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   }
 }
 
-/* Received sums of a block for a side, or NULL. */
-static const double *parcel_of(const mpsi_dashpot_parcels *parcels, const mpsi_cell_block *cells,
-                               int32_t side) {
-  if (!parcels || cells->parcel < 0) return NULL;
-  return (cells->ghost ? parcels->in : parcels->out) +
-         (cells->parcel * MPSI_SIDES + side) * parcels->doubles;
-}
-
 static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
-                     const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
+                     const mpsi_boundaries *boundaries, const mpsi_partition *ranks,
                      int32_t number) {
   for (int64_t b = 0; b < grid->cell_count; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
-    double own[MPSI_DASH_PLANE][2];
-    const double *tile = parcel_of(parcels, cells, number);
-    if (!tile && mpsi_mpm_sum_dashpots(grid, p, boundaries, cells, number, own)) tile = own[0];
+    double own[MPSI_DASH_PLANE][2], *tile;
+    (void)mpsi_mpm_find_message(ranks, cells, &tile);
+    if (tile)
+      tile += number * (ranks->doubles / MPSI_SIDES);
+    else if (mpsi_mpm_sum_dashpots(grid, p, boundaries, cells, number, own))
+      tile = own[0];
     if (tile) add_tile(grid, boundaries, cells, number, tile);
   }
 }
 
-/* ---- forces at rest -------------------------------------------------------------------------- */
+/* ---- lists ----------------------------------------------------------------------------------- */
 
 /* Order of the list: by block, ascending in z, y, x, then by boundary. */
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
@@ -170,28 +171,30 @@ int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   return (a->hold > b->hold) - (a->hold < b->hold);
 }
 
-void mpsi_mpm_place_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
-                             const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
-                             const mpsi_held *old, int64_t old_count,
-                             const mpsi_dashpot *old_dashpot) {
-  const int plane = grid->block_nodes / MPSI_SIDE;
-  for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (boundaries->hold[k].kind == MPS_BOUNDARY_ABSORBING)
-      add_wall(grid, p, boundaries, parcels, k);
+void mpsi_mpm_carry_dashpots(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                             const mpsi_held_list *old) {
+  const size_t plane = (size_t)(grid->block_nodes / MPSI_SIDE);
   int64_t from = 0;
   for (int64_t t = 0; t < boundaries->held_count; t++) {
     const mpsi_held *held = &boundaries->held[t];
     if (held->dashpot < 0) continue;
-    mpsi_dashpot *dashpot = boundaries->dashpot + held->dashpot;
-    for (int k = 0; k < plane; k++) { /* the shape functions of a fit can be negative */
-      dashpot[k].across = fmax(dashpot[k].across, 0.0);
-      dashpot[k].along = fmax(dashpot[k].along, 0.0);
-    }
-    while (from < old_count && mpsi_mpm_compare_held(&old[from], held) < 0) from++;
-    if (from == old_count || mpsi_mpm_compare_held(&old[from], held) != 0 ||
-        old[from].dashpot < 0 || !old[from].whole)
+    while (from < old->count && mpsi_mpm_compare_held(&old->held[from], held) < 0) from++;
+    if (from == old->count || mpsi_mpm_compare_held(&old->held[from], held) != 0 ||
+        old->held[from].dashpot < 0 || !old->held[from].whole)
       continue;
-    for (int k = 0; k < plane; k++)
-      memcpy(dashpot[k].rest, old_dashpot[old[from].dashpot + k].rest, sizeof dashpot[k].rest);
+    memcpy(boundaries->dashpot + held->dashpot, old->dashpot + old->held[from].dashpot,
+           plane * sizeof *old->dashpot);
+  }
+}
+
+void mpsi_mpm_find_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_boundaries *boundaries, const mpsi_partition *ranks) {
+  mpsi_dashpot *all = boundaries->dashpot;
+  for (int64_t k = 0; k < boundaries->dashpot_count; k++) all[k].across = all[k].along = 0.0;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (mpsi_kind_of(&boundaries->hold[k])->absorbs) add_wall(grid, p, boundaries, ranks, k);
+  for (int64_t k = 0; k < boundaries->dashpot_count; k++) { /* fits can be negative */
+    all[k].across = fmax(all[k].across, 0.0);
+    all[k].along = fmax(all[k].along, 0.0);
   }
 }

@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_BOUNDARIES_H
 #define MPSI_MPM_BOUNDARIES_H
 
-#include "mpm/base/parts.h"
+#include "mpm/grid/blocks.h"
 #include "core/base/exact.h"
 #include "core/state/state.h"
 #include "core/base/room.h"
@@ -37,7 +37,7 @@ typedef struct mpsi_boundary {
   int32_t kind;              /* mps_boundary_kind, or MPSI_BOUNDARY_NONE; a FREE side is NONE */
   int32_t axis;              /* normal to a side */
   int64_t first[3], last[3]; /* range of nodes, by axis */
-  int64_t *ids;              /* ids of particles; NULL: acts on nodes */
+  const int64_t *ids;        /* ids of particles, of the kept definition; NULL: acts on nodes */
   int64_t id_count;
   uint32_t dofs; /* bit c: component c is prescribed */
   double friction, settle;
@@ -88,8 +88,8 @@ typedef struct mpsi_boundaries {
   mpsi_dashpot *dashpot;
   int64_t held_count, dashpot_count;
   uint32_t open;   /* bit k: side k is open, in the step being made */
-  bool outdated;   /* the lists are not those of the present boundaries and laws */
-  double dt;       /* s, of the step whose sums are kept */
+  bool outdated;   /* the lists are not those of the present blocks and boundaries */
+  bool renew;      /* the coefficients of dashpots are out of date */
   mpsi_exact work; /* J, of removed boundaries */
   mpsi_room held_room, dashpot_room, old_held_room, old_dashpot_room;
   mpsi_room warm_room; /* dashpots of a state to restore, until the blocks of this rank are known */
@@ -113,31 +113,38 @@ struct mpsi_boundary_setup {
   mpsi_partition *partition; /* NULL: one rank */
   mpsi_run *run;
   const mps_mpm_def *def;
+  const struct mpsi_water *water; /* or NULL */
   bool has_relaxation; /* mps_mpm_settle was cancelled: particles have velocities of relaxation */
 };
 
-/* boundaries.c: mps_mpm_add_boundary and its like, for the public `function`. */
-mps_status mpsi_mpm_add_boundary(const mpsi_boundary_setup *setup, const char *function,
-                                 const mps_mpm_boundary_def *user, int32_t *number);
+/* boundaries.c: boundaries by number, for life/conditions.c: whether the domain has a side; rules
+ * that the table of the definition does not have; nodes of a box, and memory; then, collective, the
+ * change itself, of all ranks or none; what it exerts, `status` being whether it is there. */
+bool mpsi_mpm_has_side(const mpsi_grid *grid, int32_t number);
+mps_status mpsi_mpm_check_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                   int32_t number, const mps_mpm_boundary_def *def);
+mps_status mpsi_mpm_make_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                  int32_t number, const mps_mpm_boundary_def *def,
+                                  mpsi_boundary *made);
 mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *function,
-                                 int32_t number, const mps_mpm_boundary_def *user);
+                                 int32_t number, const mps_mpm_boundary_def *def,
+                                 const mpsi_boundary *made);
 mps_status mpsi_mpm_remove_boundary(const mpsi_boundary_setup *setup, const char *function,
                                     int32_t number);
 mps_status mpsi_mpm_find_reaction(const mpsi_boundary_setup *setup, const char *function,
-                                  int32_t number, mps_reaction *out);
-/* Sums of dashpot coefficients of border blocks and ghosts: for each side a plane of the tile, with
- * the coefficients across and along it. */
+                                  mps_status status, int32_t number, mps_reaction *out);
+/* Nodes of a plane of a tile, for sums of dashpot coefficients across and along a side. */
 #define MPSI_DASH_PLANE (MPSI_TILE_SIDE * MPSI_TILE_SIDE)
-typedef struct mpsi_dashpot_parcels {
-  double *out, *in;
-  int64_t doubles; /* length of a plane */
-} mpsi_dashpot_parcels;
 
-/* walls.c: lists the boundary conditions of each block of nodes, after a sort. `status`: of the
- * call so far on this rank; collective where sides absorb. */
+/* walls.c: lists the boundary conditions of each block of nodes, with the dashpots of the list
+ * before, and finds the coefficients of dashpots. `status`: of the call so far on this rank;
+ * collective where sides absorb. */
 mps_status mpsi_mpm_list_boundaries(const mpsi_boundary_setup *setup, const char *function,
                                     mps_status status);
-/* walls.c: lists the boundary conditions again where they are outdated. */
+/* walls.c: in a step: whether coefficients are rebuilt, every eighth step: not with a sort,
+ * which depends on the blocks. */
+void mpsi_mpm_plan_dashpots(mpsi_boundaries *boundaries, int64_t steps);
+/* walls.c: the same where lists are outdated or coefficients out of date. */
 mps_status mpsi_mpm_update_boundaries(const mpsi_boundary_setup *setup, const char *function,
                                       mps_status status);
 /* walls.c: lists them, with the dashpots of an earlier sort. */
@@ -159,15 +166,15 @@ void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundarie
  * as their own images; to the velocities before the forces too. */
 void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                                 const mpsi_mirrors *mirrors, double dt, int64_t g);
-/* walls.c: applies all boundaries to the nodes of a block. `fixed`: of each node, bit c where a
- * boundary alone determines component c; not written where none acts. */
+/* Normal impulses (N s) of frictional sides at the nodes of a block. */
+typedef double mpsi_side_impulses[MPSI_SIDES][MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
+/* walls.c: applies all boundaries to the nodes of a block. `room`: for its use, with any contents.
+ * `fixed`: of each node, bit c where a boundary alone determines component c; not written where
+ * none acts. */
 void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
-                              int64_t g, uint8_t *fixed);
+                              int64_t g, mpsi_side_impulses room, uint8_t *fixed);
 void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
-                             const mpsi_mirrors *mirrors, mpsi_energy *energy, double dt);
-/* walls.c: after G2P, prescribes the velocities of listed particles. */
-void mpsi_mpm_drive_particles(const mpsi_grid *grid, const mpsi_columns *p,
-                              const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt);
+                             const mpsi_mirrors *mirrors, mpsi_energy *energy);
 /* boundaries.c: rollers on the sides of a new solver; frees all boundaries. */
 bool mpsi_mpm_begin_sides(
     mps_context *context, const mpsi_grid *grid,
@@ -176,22 +183,23 @@ void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *bound
 /* boundaries.c: extends the sides to the nodes beyond them, which the standard method has. */
 mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
                                 mpsi_boundaries *boundaries, const char *function);
-/* absorb.c: coefficients of the dashpots of absorbing sides, after a sort, with the forces at rest
- * of the list before (`parcels`: sums of other ranks, or NULL); contribution of a block to those of
- * a side, false: none; order of the list; whether a side absorbs; velocity of a node with a
- * dashpot. */
-void mpsi_mpm_place_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
-                             const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
-                             const mpsi_held *old, int64_t old_count,
-                             const mpsi_dashpot *old_dashpot);
+/* absorb.c: dashpots of the list before; coefficients of the dashpots of absorbing sides
+ * (`ranks`: with the messages of dashpots.c, or NULL); contribution of a block to those of a side,
+ * false: none; order of the list; whether a side absorbs; velocity of a node with a dashpot. */
+void mpsi_mpm_carry_dashpots(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                             const mpsi_held_list *old);
+void mpsi_mpm_find_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_boundaries *boundaries, const mpsi_partition *ranks);
 bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                            int32_t side, double (*tile)[2]);
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
 bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries);
-/* dashpots.c: mpsi_mpm_place_dashpots on several ranks. Collective. */
+/* dashpots.c: the two of absorb.c on several ranks. Collective. */
+mps_status mpsi_mpm_send_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                  const mpsi_held_list *old);
 mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
-                                      const mpsi_held_list *old);
+                                      mps_status status);
 /* dashpots.c: dashpots of a checkpoint: gathers those of all ranks, in the order of the file, on
  * rank 0; keeps those of a file with these blocks of cells that lie on blocks of nodes of this
  * rank. `status` as above. */
@@ -212,5 +220,13 @@ mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p,
 void mpsi_mpm_remove_leaving(const mpsi_grid *grid, const mpsi_columns *p,
                              const mpsi_boundaries *boundaries, mpsi_energy *energy,
                              const mpsi_rooms *rooms);
+
+/* Whether X lies beyond a side along axis c that is open, by more than round-off. */
+static inline bool mpsi_mpm_passes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int c,
+                                   double X) {
+  const bool upper = X > (double)grid->high[c] + MPSI_ON_BORDER;
+  return (upper || X < (double)grid->low[c] - MPSI_ON_BORDER) &&
+         (boundaries->open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
+}
 
 #endif

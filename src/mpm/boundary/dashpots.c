@@ -1,8 +1,9 @@
-/* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: coefficients of the ranks'
- * own blocks are exchanged as tiles are, and forces at rest are sent to ranks that newly have a
- * block of nodes. Both only when the lists are rebuilt, after a sort.
+/* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: sums of coefficients of the
+ * ranks' own blocks are exchanged as tiles are, and dashpots are sent to ranks that newly have a
+ * block of nodes when the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "kinds.h"
+#include "mpm/ranks/messages.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,43 +14,38 @@ static int64_t plane_doubles(const mpsi_grid *grid) {
   return 2 * (grid->dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
 }
 
-static void sum_border(const mpsi_grid *grid, const mpsi_columns *p,
-                       const mpsi_boundaries *boundaries, mpsi_partition *partition, double *out) {
-  const size_t bytes = (size_t)plane_doubles(grid) * sizeof *out;
-  for (int64_t k = 0; k < partition->borders; k++)
-    for (int32_t side = 0; side < MPSI_SIDES; side++, out += plane_doubles(grid)) {
-      double tile[MPSI_DASH_PLANE][2];
-      memset(out, 0, bytes);
-      if (boundaries->hold[side].kind == MPS_BOUNDARY_ABSORBING &&
-          mpsi_mpm_sum_dashpots(grid, p, boundaries, &grid->cells[partition->border[k]], side,
-                                tile))
-        memcpy(out, tile, bytes);
-    }
+/* The planes of all sides. */
+static void pack(void *data, int64_t b, int32_t worker, double *message) {
+  const mpsi_boundary_setup *setup = data;
+  const mpsi_grid *grid = setup->grid;
+  const size_t bytes = (size_t)plane_doubles(grid) * sizeof *message;
+  (void)worker;
+  for (int32_t side = 0; side < MPSI_SIDES; side++, message += plane_doubles(grid)) {
+    double tile[MPSI_DASH_PLANE][2];
+    memset(message, 0, bytes);
+    if (mpsi_kind_of(&setup->boundaries->hold[side])->absorbs &&
+        mpsi_mpm_sum_dashpots(grid, setup->p, setup->boundaries, &grid->cells[b], side, tile))
+      memcpy(message, tile, bytes);
+  }
 }
 
-static mps_status exchange_sums(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                                const mpsi_boundaries *boundaries, mpsi_partition *partition,
-                                const char *function, mpsi_dashpot_parcels *parcels) {
-  const int64_t item = MPSI_SIDES * plane_doubles(grid);
-  parcels->out = mpsi_alloc(context, partition->borders * item, sizeof *parcels->out);
-  parcels->in = mpsi_alloc(context, partition->ghosts * item, sizeof *parcels->in);
-  mps_status status = MPS_OK;
-  if (!parcels->out || !parcels->in)
-    status = mpsi_fail_memory(context, function,
-                              (size_t)((partition->borders + partition->ghosts) * item) *
-                                  sizeof(double));
+mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                      mps_status status) {
+  mpsi_partition *partition = setup->partition;
+  const int64_t doubles = MPSI_SIDES * plane_doubles(setup->grid);
+  if (status == MPS_OK)
+    status = mpsi_mpm_reserve_messages(setup->context, partition, function, doubles);
   status = mpsi_domain_agree(partition->domain, function, status);
-  if (status != MPS_OK) return status;
-  sum_border(grid, p, boundaries, partition, parcels->out);
-  status =
-      mpsi_halo_begin_bytes(partition->halo, function, (int32_t)(item * (int64_t)sizeof(double)),
-                            parcels->out, parcels->in);
-  return status == MPS_OK ? mpsi_halo_end_bytes(partition->halo, function) : status;
+  if (status == MPS_OK)
+    status = mpsi_mpm_exchange_messages(setup->context, partition, function, doubles, pack,
+                                        (void *)setup);
+  if (status == MPS_OK) mpsi_mpm_find_dashpots(setup->grid, setup->p, setup->boundaries, partition);
+  return status;
 }
 
-/* ---- forces at rest -------------------------------------------------------------------------- */
+/* ---- lists ----------------------------------------------------------------------------------- */
 
-/* Head of a record of the dashpots of a block of nodes; the forces at rest of its plane follow. */
+/* Head of a record of the dashpots of a block of nodes; those of its plane follow. */
 typedef struct place {
   int32_t at[3], hold;
 } place;
@@ -62,7 +58,7 @@ typedef struct sending {
 static int64_t plane_nodes(const mpsi_grid *grid) { return grid->block_nodes / MPSI_SIDE; }
 
 static int64_t record_bytes(const mpsi_grid *grid) {
-  return (int64_t)sizeof(place) + plane_nodes(grid) * (int64_t)(3 * sizeof(double));
+  return (int64_t)sizeof(place) + plane_nodes(grid) * (int64_t)sizeof(mpsi_dashpot);
 }
 
 static int by_rank(const void *left, const void *right) {
@@ -71,7 +67,7 @@ static int by_rank(const void *left, const void *right) {
   return (a->held > b->held) - (a->held < b->held);
 }
 
-/* Receivers of forces at rest: the other ranks that may have blocks of cells over these nodes. */
+/* Receivers of dashpots: the other ranks that may have blocks of cells over these nodes. */
 static int64_t list_sendings(const mpsi_grid *grid, mpsi_partition *partition, const mpsi_held *old,
                              int64_t old_count, sending *out) {
   const int32_t rank = mps_domain_rank(partition->domain);
@@ -97,8 +93,7 @@ static void write_record(const mpsi_grid *grid, const mpsi_held *held, const mps
   const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
   memcpy(to, &at, sizeof at);
   to += sizeof at;
-  for (int64_t k = 0; k < plane_nodes(grid); k++, to += sizeof dashpot->rest)
-    memcpy(to, dashpot[held->dashpot + k].rest, sizeof dashpot->rest);
+  memcpy(to, &dashpot[held->dashpot], (size_t)plane_nodes(grid) * sizeof *dashpot);
 }
 
 static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const char *from) {
@@ -116,19 +111,18 @@ static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const c
       high = middle;
   }
   if (low == b->held_count || mpsi_mpm_compare_held(&b->held[low], &key) != 0) return;
-  for (int64_t k = 0; k < plane_nodes(grid); k++, from += sizeof b->dashpot->rest)
-    memcpy(b->dashpot[b->held[low].dashpot + k].rest, from, sizeof b->dashpot->rest);
+  memcpy(&b->dashpot[b->held[low].dashpot], from, (size_t)plane_nodes(grid) * sizeof *b->dashpot);
 }
 
-typedef struct rests {
+typedef struct records {
   sending *sending;
   char *mail;
   mps_domain_message *message;
   mpsi_mailbox box;
-} rests;
+} records;
 
-static mps_status write_rests(const mpsi_boundary_setup *setup, const char *function,
-                              const mpsi_held_list *old, rests *r, int32_t *messages) {
+static mps_status write_records(const mpsi_boundary_setup *setup, const char *function,
+                                const mpsi_held_list *old, records *r, int32_t *messages) {
   mps_context *context = setup->context;
   mpsi_partition *partition = setup->partition;
   const mpsi_grid *grid = setup->grid;
@@ -151,14 +145,14 @@ static mps_status write_rests(const mpsi_boundary_setup *setup, const char *func
   return MPS_OK;
 }
 
-/* Sends the forces at rest of the old list and stores received ones in the new list. */
-static mps_status send_rests(const mpsi_boundary_setup *setup, const char *function,
-                             const mpsi_held_list *old) {
+mps_status mpsi_mpm_send_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                  const mpsi_held_list *old) {
   mps_context *context = setup->context;
   mps_domain *domain = setup->partition->domain;
-  rests r = {.box.context = context};
+  records r = {.box.context = context};
   int32_t messages = 0;
-  mps_status status = write_rests(setup, function, old, &r, &messages);
+  mpsi_mpm_carry_dashpots(setup->grid, setup->boundaries, old);
+  mps_status status = write_records(setup, function, old, &r, &messages);
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(domain, function, messages, r.message, &r.box);
@@ -170,19 +164,6 @@ static mps_status send_rests(const mpsi_boundary_setup *setup, const char *funct
   mpsi_free(context, r.mail);
   mpsi_free(context, r.message);
   return status;
-}
-
-mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
-                                      const mpsi_held_list *old) {
-  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(setup->grid)};
-  mps_status status = exchange_sums(setup->context, setup->grid, setup->p, setup->boundaries,
-                                    setup->partition, function, &parcels);
-  if (status == MPS_OK)
-    mpsi_mpm_place_dashpots(setup->grid, setup->p, setup->boundaries, &parcels, old->held,
-                            old->count, old->dashpot);
-  mpsi_free(setup->context, parcels.out);
-  mpsi_free(setup->context, parcels.in);
-  return status == MPS_OK ? send_rests(setup, function, old) : status;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -294,8 +275,7 @@ mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
       const mpsi_boundary *hold = &boundaries->hold[side];
       mpsi_range r;
-      if (hold->kind != MPS_BOUNDARY_ABSORBING ||
-          !mpsi_find_range(grid->dim, nodes[g].at, hold, &r))
+      if (!mpsi_kind_of(hold)->absorbs || !mpsi_find_range(grid->dim, nodes[g].at, hold, &r))
         continue;
       if (nodes[g].own && from + plane <= dashpots->rows) {
         memmove(dashpot + to, dashpot + from, bytes);

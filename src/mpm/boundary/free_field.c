@@ -2,8 +2,12 @@
  * copies of the particles in the cells at the side. See free_field.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "free_field.h"
+#include "mpm/contact/thin_bodies.h"
+#include "mpm/ranks/partition.h"
 
 #include "core/base/boundary_kind.h"
+#include "corners.h"
+#include "kinds.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,8 +19,7 @@ enum { MARGIN = 8, GHOSTS = 2 }; /* nodes above and below the particles; beyond 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 bool mpsi_mpm_has_free_field(const mpsi_boundaries *boundaries) {
-  return boundaries->hold[0].kind == MPS_BOUNDARY_FREE_FIELD ||
-         boundaries->hold[1].kind == MPS_BOUNDARY_FREE_FIELD;
+  return mpsi_kind_of(&boundaries->hold[0])->column || mpsi_kind_of(&boundaries->hold[1])->column;
 }
 
 mps_status mpsi_mpm_check_beside_field(mps_context *context, const mpsi_boundaries *boundaries,
@@ -52,7 +55,7 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                      "%s of a domain %lld cells wide, must be at least %d", kind,
                      (long long)(grid->high[0] - grid->low[0]), MPSI_FIELD_CELLS);
-  for (int32_t k = MPS_MPM_SIDE_Y_LOWER; k <= MPS_MPM_SIDE_Y_UPPER; k++)
+  for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++)
     if (setup->boundaries->hold[k].kind == MPS_BOUNDARY_FRICTIONAL)
       return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                        "%s beside side %d of kind 3 (FRICTIONAL): allowed there are 0 (HELD), 1 "
@@ -68,14 +71,14 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-enum { FIXED = 21, RESTS = 6 }; /* columns besides histories; numbers of the sides across y */
+enum { FIXED = 23, RESTS = 6 }; /* columns besides histories; numbers of the sides across y */
 
 static void lay_out(mpsi_free_field *f) {
   double *at = f->state;
   double **columns[FIXED] = {
-      &f->y,    &f->v[0], &f->v[1], &f->slope[0], &f->slope[1], &f->s[0],        &f->s[1],
-      &f->s[2], &f->s[3], &f->V,    &f->m,        &f->J,        &f->F[0],        &f->F[1],
-      &f->F[2], &f->F[3], &f->F[4], &f->cp,       &f->cs,       &f->temperature, &f->u};
+      &f->y,    &f->v[0], &f->v[1], &f->slope[0],    &f->slope[1], &f->s[0], &f->s[1], &f->s[2],
+      &f->s[3], &f->V,    &f->m,    &f->J,           &f->F[0],     &f->F[1], &f->F[2], &f->F[3],
+      &f->F[4], &f->cp,   &f->cs,   &f->temperature, &f->u,        &f->g,    &f->seen};
   for (int c = 0; c < FIXED; c++, at += f->count) *columns[c] = at;
   f->history = at;
   f->rest = at + f->histories * f->count;
@@ -95,11 +98,13 @@ static bool reserve(mps_context *context, mpsi_free_field *f) {
       !take(context, &f->law, n, sizeof *f->law) || !take(context, &f->id, n, sizeof *f->id) ||
       !take(context, &f->row_of, n, sizeof *f->row_of) ||
       !take(context, &f->row, n, sizeof *f->row) ||
-      !take(context, &f->derivative[0], 3 * n, sizeof(double)) ||
+      !take(context, &f->derivative[0], 4 * n, sizeof(double)) ||
+      !take(context, &f->lowest, n, sizeof *f->lowest) ||
       !take(context, &f->node, f->nodes, sizeof *f->node))
     return false;
   f->derivative[1] = f->derivative[0] + n;
   f->x = f->derivative[0] + 2 * n;
+  f->former = f->derivative[0] + 3 * n;
   lay_out(f);
   return true;
 }
@@ -107,7 +112,8 @@ static bool reserve(mps_context *context, mpsi_free_field *f) {
 void mpsi_mpm_free_field_free(mps_context *context, mpsi_free_field **pointer) {
   mpsi_free_field *f = *pointer;
   if (!f) return;
-  void *parts[] = {f->state, f->kept, f->law, f->id, f->row_of, f->row, f->derivative[0], f->node};
+  void *parts[] = {f->state, f->kept,          f->law,    f->id,  f->row_of,
+                   f->row,   f->derivative[0], f->lowest, f->node};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_free(context, f);
   *pointer = NULL;
@@ -130,8 +136,7 @@ static int compare(const void *left, const void *right) {
 }
 
 static bool is_at_side(const mpsi_grid *grid, const mpsi_columns *p, int32_t number, int64_t k) {
-  const int64_t layer = number == MPS_MPM_SIDE_X_LOWER ? grid->low[0] : grid->high[0] - 1;
-  return mpsi_own_cell(grid, 0, mpsi_grid_at(grid, 0, p->x[0][k])) == layer;
+  return mpsi_mpm_part_at_side(grid, number, mpsi_grid_at(grid, 0, p->x[0][k])) == 1.0;
 }
 
 /* The particles at the side; `out` NULL: counts them. */
@@ -160,7 +165,8 @@ static void copy_particle(const mpsi_columns *p, int64_t k, int64_t to, mpsi_fre
   mpsi_mpm_saturated(p, k, &wave, &shear);
   f->cp[to] = sqrt(wave * p->V[k] / p->m[k]);
   f->cs[to] = sqrt(shear * p->V[k] / p->m[k]);
-  f->u[to] = p->u ? p->u[k] : 0.0;
+  f->u[to] = f->seen[to] = p->u ? p->u[k] : 0.0;
+  f->g[to] = p->u ? p->g[1][k] : 0.0;
   f->temperature[to] = p->laws.temperature ? p->laws.temperature[k] : 0.0;
   for (int32_t h = 0; h < law->columns; h++) f->history[h * f->count + to] = law->history[h][k];
   f->law[to] = p->law ? p->law[k] : 0;
@@ -200,7 +206,7 @@ static void find_nodes(const mpsi_grid *grid, const source *from, mpsi_free_fiel
 static void fill(const mpsi_boundary_setup *setup, const source *from, int32_t number,
                  mpsi_free_field *f) {
   const mpsi_grid *grid = setup->grid;
-  const int64_t wall = number == MPS_MPM_SIDE_X_LOWER ? grid->low[0] : grid->high[0];
+  const int64_t wall = number == MPS_SIDE_X_LOWER ? grid->low[0] : grid->high[0];
   for (int64_t k = 0; k < f->count; k++) {
     copy_particle(setup->p, from[k].index, k, f);
     f->x[k] = grid->origin[0] + grid->cell * (double)wall;

@@ -12,15 +12,20 @@
  *   that of dashpots (Lysmer and Kuhlemeyer 1969) rho c_p and rho c_s times the difference between
  *   the velocities of column and node, across and along, by which other waves leave.
  *
- * Water in the pores: the column has in each step the pressures (and the masses, which water that
- * leaves lowers) of the particles that were copied. Level ground has the same pressures at every x;
- * so the column has no cells of its own.
+ * Water in the pores: the column has its own pressures, by its own changes of volume and by the
+ * flow up and down between the cells at the side (mpsi_pore_update_columns), with the
+ * permeabilities, porosities and masses of the particles that were copied; pressures that the
+ * caller writes to these it takes too. With the ground's pressures in the column the side bears
+ * nothing of a pressure that differs from one side to the other: it follows the ground's motion as
+ * a load does, and ground that sways between two sides is pushed on, the faster the narrower it is
+ * (docs/theory/walls.md). Implicit pressures are refused: the column has none.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_FREE_FIELD_H
 #define MPSI_MPM_FREE_FIELD_H
 
-#include "mpm/base/all_parts.h"
+#include "boundaries.h"
+#include "mirror.h"
 
 enum { MPSI_FIELD_PLANES = 2 }; /* planes of nodes on which the traction of a side acts */
 enum { MPSI_FIELD_CELLS = 4 };  /* least width of a domain with such a side, cells */
@@ -31,6 +36,7 @@ typedef struct mpsi_field_node {
   double v[2], before[2]; /* m/s: with the forces and without */
   double force[2];        /* N */
   double across, along;   /* kg/s, dashpots of the side */
+  double volume, strain;  /* m3, of the particles whose lowest node it is, and what it grows by */
   double traction[MPSI_FIELD_PLANES]
                  [2]; /* N, traction of the column's stresses on the side's nodes */
 } mpsi_field_node;
@@ -43,13 +49,16 @@ typedef struct mpsi_free_field {
   double *y, *v[2], *slope[2];     /* m, m/s, 1/s: dv/dy */
   double *s[4], *V, *m, *J, *F[5]; /* as in mpsi_columns */
   double *cp, *cs, *temperature;   /* m/s, elastic waves; K */
-  double *u;                       /* Pa, pressure of pore water */
-  double *history;                 /* one column after the other */
+  double *u, *g, *seen; /* Pa, pressure of pore water; Pa/m, its slope along y; Pa, that of the
+                           particle that was copied, as the library left it */
+  double *history;      /* one column after the other */
   double *rest; /* N: force at rest of absorbing sides across y, [side][component]; and 1 where it
                    is still to be found */
   int64_t *law, *id;     /* id: of the particle that was copied */
   double *derivative[2]; /* 1/s, scratch: dv/dy for the laws */
   double *x;             /* m, that of the side, for the laws */
+  double *former;        /* m3, scratch: V before the laws */
+  int64_t *lowest;       /* scratch: number of the lowest node of the stencil */
   double (*row)[4];      /* y, sigma_xx, sigma_xy, V: rows of particles, from below */
   int64_t rows, *row_of;
   int64_t first, nodes; /* coordinate of the lowest node */

@@ -6,7 +6,10 @@
  * mirror.h. Each particle has its own change of volume. SPDX-License-Identifier: BSD-3-Clause */
 #include "free_field.h"
 
+#include "corners.h"
+#include "kinds.h"
 #include "mpm/base/kernels.h"
+#include "mpm/water/water.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -74,28 +77,57 @@ static mps_status refuse_place(mps_context *context, const mpsi_run *run, const 
 
 /* ---- water ----------------------------------------------------------------------------------- */
 
-/* Pressures, masses and wave velocities of the particles that were copied, while they are there:
- * the column may be older than the water. */
-static void take_water(const mpsi_columns *p, mpsi_free_field *f) {
+/* Masses and wave velocities of the particles that were copied, while they are there: the column
+ * may be older than the water. Pressures only where the caller has written them. */
+static void take_water(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
+  const mpsi_columns *p = setup->p;
   for (int64_t k = 0; p->u && k < f->count; k++) {
     const int64_t from = mps_particles_index(p->set, f->id[k]);
     double wave, shear;
     if (from < 0) continue;
     mpsi_mpm_saturated(p, from, &wave, &shear);
-    f->u[k] = p->u[from] + p->g[Y][from] * (f->y[k] - p->x[Y][from]);
     f->m[k] = p->m[from];
     f->cp[k] = sqrt(wave * f->V[k] / f->m[k]);
+    if (p->u[from] == f->seen[k]) continue;
+    f->u[k] = p->u[from] + p->g[Y][from] * (f->y[k] - p->x[Y][from]);
+    f->g[k] = p->g[Y][from];
+    f->seen[k] = p->u[from];
+  }
+}
+
+/* Pa, with what the water's viscosity adds (P2G). */
+static double water_pressure(const mpsi_boundary_setup *setup, const mpsi_free_field *f,
+                             int64_t k) {
+  return setup->water ? f->u[k] - setup->water->viscosity * f->slope[Y][k] : 0.0;
+}
+
+/* Pressures follow the mean change of volume of the particles with one stencil, as in
+ * mpsi_pore_respond. */
+static void respond(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
+  const mpsi_columns *p = setup->p;
+  if (!setup->water) return;
+  for (int64_t n = 0; n < f->nodes; n++) f->node[n].volume = f->node[n].strain = 0.0;
+  for (int64_t k = 0; k < f->count; k++) {
+    mpsi_field_node *node = &f->node[f->lowest[k]];
+    node->volume += f->former[k];
+    node->strain += f->V[k] - f->former[k];
+  }
+  for (int64_t k = 0; k < f->count; k++) {
+    const mpsi_field_node *node = &f->node[f->lowest[k]];
+    const int64_t from = mps_particles_index(p->set, f->id[k]);
+    if (from >= 0 && node->volume > 0.0)
+      f->u[k] -= setup->water->def.bulk / p->n[from] * (node->strain / node->volume);
   }
 }
 
 /* ---- traction of the column's stresses ------------------------------------------------------- */
 
-static void find_row_stresses(mpsi_free_field *f) {
+static void find_row_stresses(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
   memset(f->row, 0, (size_t)f->rows * sizeof *f->row);
   for (int64_t k = 0; k < f->count; k++) {
     double *row = f->row[f->row_of[k]];
     row[0] += f->V[k] * f->y[k];
-    row[1] += f->V[k] * (f->s[0][k] - f->u[k]);
+    row[1] += f->V[k] * (f->s[0][k] - water_pressure(setup, f, k));
     row[2] += f->V[k] * f->s[3][k];
     row[3] += f->V[k];
   }
@@ -138,7 +170,7 @@ static mps_status add_traction(const mpsi_boundary_setup *setup, const char *fun
   const mpsi_columns *p = setup->p;
   double planes[MPSI_FIELD_PLANES], stress[2];
   places along;
-  const int64_t wall = number == MPS_MPM_SIDE_X_LOWER ? setup->grid->low[0] : setup->grid->high[0];
+  const int64_t wall = number == MPS_SIDE_X_LOWER ? setup->grid->low[0] : setup->grid->high[0];
   find_planes(setup->grid, wall, p->x[0][k], planes);
   if (planes[0] == 0.0 && planes[1] == 0.0) return MPS_OK;
   if (!place(setup->grid, f, p->x[1][k], &along))
@@ -156,13 +188,13 @@ static mps_status find_traction(const mpsi_boundary_setup *setup, const char *fu
                                 int32_t number, mpsi_free_field *f) {
   const mpsi_grid *grid = setup->grid;
   mps_status status = MPS_OK;
-  find_row_stresses(f);
+  find_row_stresses(setup, f);
   for (int64_t b = 0; b < grid->cell_count && status == MPS_OK; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
     const int64_t low = (int64_t)cells->at[0] * MPSI_SIDE + cells->low[0];
     const int64_t high = (int64_t)cells->at[0] * MPSI_SIDE + cells->high[0];
-    if (number == MPS_MPM_SIDE_X_LOWER ? low >= grid->low[0] + MPSI_FIELD_PLANES
-                                       : high <= grid->high[0] - MPSI_FIELD_PLANES)
+    if (number == MPS_SIDE_X_LOWER ? low >= grid->low[0] + MPSI_FIELD_PLANES
+                                   : high <= grid->high[0] - MPSI_FIELD_PLANES)
       continue;
     for (int64_t k = cells->begin; k < cells->end && status == MPS_OK; k++)
       status = add_traction(setup, function, number, f, k);
@@ -172,33 +204,21 @@ static mps_status find_traction(const mpsi_boundary_setup *setup, const char *fu
 
 /* ---- particles to nodes ---------------------------------------------------------------------- */
 
-/* Velocity (m/s) of the dashpots across the side. The pressure of the water in column and ground is
- * the same, that of a wave which leaves included, so that only the effective stress of the wave
- * acts on the dashpots: rho c_p times the skeleton's part of the modulus. */
-static double across_side(const mpsi_columns *p, const mpsi_free_field *f, int64_t k,
-                          int64_t from) {
-  double wave, shear;
-  if (!p->u || from < 0) return f->cp[k];
-  mpsi_mpm_elastic(p, from, &wave, &shear);
-  return wave * f->V[k] / (f->m[k] * f->cp[k]);
-}
-
 static void scatter_particle(const mpsi_boundary_setup *setup, mpsi_free_field *f, int64_t k,
                              const places *w) {
   const mpsi_grid *grid = setup->grid;
   const mpsi_columns *p = setup->p;
-  const int64_t from = p->f[0] || p->u ? mps_particles_index(p->set, f->id[k]) : -1;
-  const double across = across_side(p, f, k, from);
+  const int64_t from = p->f[0] ? mps_particles_index(p->set, f->id[k]) : -1;
   const double per_area = f->m[k] * grid->inverse;
+  f->lowest[k] = w->at;
   for (int i = 0; i <= grid->spline; i++) {
     mpsi_field_node *node = &f->node[w->at + i];
     node->mass += f->m[k] * w->value[i];
-    node->across += per_area * across * w->value[i];
+    node->across += per_area * f->cp[k] * w->value[i];
     node->along += per_area * f->cs[k] * w->value[i];
     for (int c = 0; c < 2; c++) {
-      const double stress = c == Y ? f->s[1][k] - f->u[k] : f->s[3][k];
-      const double load =
-          f->m[k] * setup->def->gravity[c] + (from >= 0 && p->f[0] ? p->f[c][from] : 0.0);
+      const double stress = c == Y ? f->s[1][k] - water_pressure(setup, f, k) : f->s[3][k];
+      const double load = f->m[k] * setup->def->gravity[c] + (from >= 0 ? p->f[c][from] : 0.0);
       node->v[c] += f->m[k] * w->value[i] * (f->v[c][k] + f->slope[c][k] * grid->cell * w->s[i]);
       node->force[c] += w->value[i] * load - f->V[k] * stress * w->slope[i];
     }
@@ -224,7 +244,7 @@ static bool find_mirror(const mpsi_boundary_setup *setup, int32_t number, double
   if (!mpsi_is_mirror(setup->mirrors, number)) return false;
   const mpsi_boundary *hold = &setup->boundaries->hold[number];
   for (int c = 0; c < 2; c++) {
-    const bool turns = hold->kind == MPS_BOUNDARY_HELD || c == Y;
+    const bool turns = mpsi_side_turns(hold, Y, c);
     keeps[c] = turns ? -1.0 : 1.0;
     carried[c] = turns ? 2.0 * hold->v[c] : 0.0;
   }
@@ -301,14 +321,14 @@ static void absorb(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t
 
 /* Coefficients of the dashpots at side `number`: sums over the particles in the cells there. */
 static void find_dashpot(const mpsi_boundary_setup *setup, const mpsi_free_field *f, int32_t number,
-                         int64_t wall, double *out) {
-  const int64_t layer = wall - number % 2;
+                         double *out) {
   out[0] = out[1] = 0.0;
   for (int64_t k = 0; k < f->count; k++) {
     const double at = mpsi_grid_at(setup->grid, Y, f->y[k]);
-    if (mpsi_own_cell(setup->grid, Y, at) != layer) continue;
-    out[0] += f->m[k] * setup->grid->inverse * f->cp[k];
-    out[1] += f->m[k] * setup->grid->inverse * f->cs[k];
+    const double part = mpsi_mpm_part_at_side(setup->grid, number, at);
+    if (!(part > 0.0)) continue;
+    out[0] += part * f->m[k] * setup->grid->inverse * f->cp[k];
+    out[1] += part * f->m[k] * setup->grid->inverse * f->cs[k];
   }
 }
 
@@ -322,14 +342,13 @@ static void hold_node(const mpsi_boundary_setup *setup, mpsi_free_field *f, int3
   if (*at < 0 || *at >= f->nodes) return;
   mpsi_field_node *node = &f->node[*at];
   double dashpot[2];
-  if (hold->kind == MPS_BOUNDARY_HELD) {
-    node->v[0] = hold->v[0], node->v[Y] = hold->v[Y];
-    *fixed = 3;
-  } else if (hold->kind == MPS_BOUNDARY_ROLLER) {
-    node->v[Y] = hold->v[Y];
-    *fixed = 2;
-  } else if (hold->kind == MPS_BOUNDARY_ABSORBING && node->mass > 0.0) {
-    find_dashpot(setup, f, number, wall, dashpot);
+  for (int c = 0; c < 2; c++) {
+    if (!mpsi_side_turns(hold, Y, c)) continue;
+    node->v[c] = hold->v[c];
+    *fixed |= 1u << c;
+  }
+  if (mpsi_kind_of(hold)->absorbs && node->mass > 0.0) {
+    find_dashpot(setup, f, number, dashpot);
     absorb(setup, f, number, node, dashpot);
   }
 }
@@ -435,10 +454,12 @@ static mps_status apply_laws(const mpsi_boundary_setup *setup, const char *funct
                              mpsi_free_field *f) {
   mps_status status = MPS_OK;
   update_temperatures(setup->p, f);
+  memcpy(f->former, f->V, (size_t)f->count * sizeof *f->V);
   for (int64_t k = 0, n; k < f->count && status == MPS_OK; k += n) {
     for (n = 1; n < MPSI_CHUNK && k + n < f->count && f->law[k + n] == f->law[k];) n++;
     status = apply_law(setup, function, f, k, n);
   }
+  if (status == MPS_OK) respond(setup, f);
   return status;
 }
 
@@ -449,16 +470,15 @@ static mps_status step(const mpsi_boundary_setup *setup, const char *function, i
   int64_t wall[2];
   unsigned fixed[2];
   memset(f->node, 0, (size_t)f->nodes * sizeof *f->node);
-  take_water(setup->p, f);
+  take_water(setup, f);
   mps_status status = find_traction(setup, function, number, f);
   if (status == MPS_OK) status = scatter(setup, function, number, f);
   if (status != MPS_OK) return status;
-  for (int32_t k = MPS_MPM_SIDE_Y_LOWER; k <= MPS_MPM_SIDE_Y_UPPER; k++) fold(setup, f, k);
+  for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++) fold(setup, f, k);
   update(setup, f);
-  for (int32_t k = 0; k < 2; k++)
-    hold_node(setup, f, MPS_MPM_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
+  for (int32_t k = 0; k < 2; k++) hold_node(setup, f, MPS_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
   damp(setup, f, wall, fixed);
-  for (int32_t k = MPS_MPM_SIDE_Y_UPPER; k >= MPS_MPM_SIDE_Y_LOWER; k--) unfold(setup, f, k);
+  for (int32_t k = MPS_SIDE_Y_UPPER; k >= MPS_SIDE_Y_LOWER; k--) unfold(setup, f, k);
   gather(setup, f);
   return apply_laws(setup, function, f);
 }
@@ -466,6 +486,11 @@ static mps_status step(const mpsi_boundary_setup *setup, const char *function, i
 mps_status mpsi_mpm_move_free_fields(const mpsi_boundary_setup *setup, const char *function) {
   mps_status status = MPS_OK;
   if (!mpsi_mpm_has_free_field(setup->boundaries)) return status;
+  if (setup->water && !mpsi_pore_responds(setup->water))
+    return mpsi_fail(setup->context, function, MPS_ERROR_STATE,
+                     "there is a free-field side (5) and pressures of pore water are implicit "
+                     "(scheme 1), which its column has not: choose explicit ones (0), or rollers "
+                     "(2) or absorbing sides (4)");
   for (int32_t k = 0; k < 2; k++) {
     mpsi_free_field *f = setup->boundaries->hold[k].field;
     if (f) memcpy(f->kept, f->state, (size_t)f->doubles * sizeof *f->state);

@@ -1,7 +1,13 @@
 /* mirror.c - folding of ghosts on mirrors, and their images: see mirror.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
+#include "core/base/room_array.h"
 #include "mpm/base/kernels.h"
+#include "kinds.h"
+#include "mpm/base/energy.h"
+#include "mpm/base/run.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/thin_bodies.h"
 
 #include <string.h>
 
@@ -11,10 +17,9 @@ enum { LAYERS = 2 }; /* layers of ghosts: round-off alone puts particles in reac
 
 static bool is_mirror(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                       const mps_mpm_def *def, int32_t k) {
-  const int32_t kind = boundaries->hold[k].kind;
-  if (kind == MPS_BOUNDARY_FREE_FIELD) return true;
-  return def->walls == MPS_MPM_WALLS_MIRROR && !grid->standard &&
-         (kind == MPS_BOUNDARY_ROLLER || kind == MPS_BOUNDARY_HELD);
+  const mpsi_mirrored when = mpsi_kind_of(&boundaries->hold[k])->mirror;
+  return when == MPSI_MIRROR_ALWAYS ||
+         (when == MPSI_MIRROR_WALLS && !grid->standard && def->edge == MPS_MPM_EDGE_MIRROR);
 }
 
 static void find_sides(mpsi_grid *grid, const mpsi_boundaries *boundaries, mpsi_mirrors *mirrors,
@@ -33,13 +38,13 @@ static void find_sides(mpsi_grid *grid, const mpsi_boundaries *boundaries, mpsi_
 static void find_of_block(const mpsi_grid *grid, const mpsi_mirrors *mirrors,
                           mpsi_cell_block *cells) {
   cells->edge = false;
-  cells->mirrors = 0;
+  cells->mirrors = 0; /* a node on a mirror does not move across it, though none lies beyond */
   for (int c = 0; c < grid->dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = first + MPSI_TILE_SIDE - 1;
     if (first < grid->use_low[c] || last > grid->use_high[c]) cells->edge = true;
-    if (first + cells->low[c] < grid->low[c])
+    if (first + cells->low[c] <= grid->low[c])
       cells->mirrors |= (uint8_t)(mirrors->sides & 1u << (2 * c));
-    if (first + cells->high[c] - 1 > grid->high[c])
+    if (first + cells->high[c] - 1 >= grid->high[c])
       cells->mirrors |= (uint8_t)(mirrors->sides & 2u << (2 * c));
   }
 }
@@ -57,11 +62,8 @@ mps_status mpsi_mpm_list_mirrors(mps_context *context, mpsi_grid *grid,
   }
   const int64_t plane = mpsi_mirror_plane(grid->tile_nodes);
   all->count = 0;
-  if (!mpsi_room_ensure(context, &all->mirror_room, count, sizeof *all->mirror) ||
-      !mpsi_room_ensure(context, &all->mass_room, count * plane, sizeof *all->mass))
+  if (!MPSI_ENSURE(context, all, mirror, count) || !MPSI_ENSURE(context, all, mass, count * plane))
     return mpsi_fail_memory(context, function, (size_t)(count * plane) * sizeof *all->mass);
-  all->mirror = all->mirror_room.item;
-  all->mass = all->mass_room.item;
   all->count = count;
   return MPS_OK;
 }
@@ -83,7 +85,8 @@ typedef struct side {
   int wall, inwards;  /* tile node of the wall along the axis; +1 or -1 */
   double keeps[3];    /* the diagonal of R */
   double velocity[3]; /* m/s, (I - R) v_w */
-  mpsi_mirror *mirror;
+  const mpsi_boundary *hold;
+  mpsi_mirror *mirrors, *mirror; /* of the tile; of the side */
   double *mass;
 } side;
 
@@ -99,22 +102,52 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
   for (int a = 0; a < 3; a++) {
-    const bool turns =
-        hold->kind == MPS_BOUNDARY_HELD || (a == c && hold->kind != MPS_BOUNDARY_FREE_FIELD);
+    const bool turns = mpsi_side_turns(hold, c, a);
     out.keeps[a] = turns ? -1.0 : 1.0;
     out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
   }
   int64_t number = cells->first_mirror;
   for (uint32_t lower = cells->mirrors & ((1u << k) - 1); lower; lower &= lower - 1) number++;
   out.mirror = &mirrors->mirror[number];
+  out.hold = boundaries->hold;
+  out.mirrors = &mirrors->mirror[cells->first_mirror];
   if (across) number += mirrors->count;
   out.mass = mirrors->mass + number * mpsi_mirror_plane(grid->tile_nodes);
   return out;
 }
 
+/* Sides after `s` that turn component c of tile node `at` too, beyond which it lies. */
+typedef struct others {
+  int count;
+  int32_t side[2];
+} others;
+
+static others find_others(const side *s, const int *at, int c) {
+  others out = {.count = 0};
+  if (s->keeps[c] > 0.0) return out;
+  for (int32_t k = 2 * s->axis + 2; k < MPSI_SIDES && out.count < 2; k++) {
+    if (!(s->cells->mirrors >> k & 1)) continue;
+    const int a = k / 2;
+    const int64_t node = (int64_t)s->cells->at[a] * MPSI_SIDE + at[a];
+    const bool beyond = k % 2 ? node > s->grid->high[a] : node < s->grid->low[a];
+    if (beyond && mpsi_side_turns(&s->hold[k], a, c)) out.side[out.count++] = k;
+  }
+  return out;
+}
+
+/* What component c has besides its reflection. A ghost beyond several sides that all turn it is
+ * reflected several times, and must be the same whichever side comes first: the velocities of two
+ * cancel, if the first takes that of the other; of three their mean is left. */
+static double velocity_of(const side *s, const others *o, int c) {
+  if (o->count == 0) return s->velocity[c];
+  const double first = 2.0 * s->hold[o->side[0]].v[c];
+  return o->count == 1 ? first : (s->velocity[c] + first + 2.0 * s->hold[o->side[1]].v[c]) / 3.0;
+}
+
 /* A ghost and its partner, with positions in m. */
 typedef struct couple {
   int ghost, partner, place; /* tile nodes; index in the plane of the tile */
+  const int *at;             /* the ghost's place in the tile */
   double x_ghost[3], x_partner[3];
 } couple;
 
@@ -133,7 +166,7 @@ static void for_couples(const side *s, couple_fn work, void *data) {
     if (!in_use(s, ghost) || !in_use(s, partner)) continue;
     for (at[second] = s->cells->low[second]; at[second] < s->cells->high[second]; at[second]++)
       for (at[first] = s->cells->low[first]; at[first] < s->cells->high[first]; at[first]++) {
-        couple pair = {.place = at[second] * MPSI_TILE_SIDE + at[first]};
+        couple pair = {.place = at[second] * MPSI_TILE_SIDE + at[first], .at = at};
         for (int image = 0; image < 2; image++) {
           at[c] = image ? ghost : partner;
           const double local[3] = {at[0], at[1], at[2]};
@@ -156,6 +189,29 @@ static void add_change(mpsi_mirror *to, const double *x_after, const double *aft
   }
 }
 
+/* Counts a change with the sides that make it together: of two that both turn a component the other
+ * one, whose own change is then the opposite; of three each a third. */
+static void share_change(const side *s, const others *o, const double *x_after, const double *after,
+                         const double *x_before, const double *before) {
+  double own[3];
+  for (int c = 0; c < 3; c++) {
+    const double part = o[c].count == 0 ? 1.0 : o[c].count == 1 ? 0.0 : 1.0 / 3.0;
+    own[c] = part == 1.0 ? after[c] : before[c] + part * (after[c] - before[c]);
+  }
+  add_change(s->mirror, x_after, own, x_before, before);
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < o[c].count; i++) {
+      const double from[3] = {0.0};
+      double change[3] = {0.0};
+      int number = 0;
+      for (uint32_t lower = s->cells->mirrors & ((1u << o[c].side[i]) - 1); lower;
+           lower &= lower - 1)
+        number++;
+      change[c] = (after[c] - before[c]) / (o[c].count == 1 ? 1.0 : 3.0);
+      add_change(&s->mirrors[number], x_after, change, x_after, from);
+    }
+}
+
 /* The tiles that are folded and mirrored back: a block's own, or the second ones
  * (thin_bodies.h). */
 typedef struct tiles {
@@ -173,18 +229,21 @@ static void fold_node(const side *s, const couple *at, int layer, void *data) {
   const bool apart = s->cells->apart;
   double *force = of->force[at->ghost], *to = of->force[at->partner];
   double before[3], after[3];
+  others o[3];
   const double m = ghost[MPSI_MASS];
   if (layer == 1) s->mass[at->place] = m;
   for (int c = 0; c < 3; c++) {
     const double q = ghost[MPSI_VECTOR + c], f = apart ? force[MPSI_VECTOR + c] : 0.0;
-    const double folded = s->keeps[c] * q + m * s->velocity[c];
+    o[c] = find_others(s, at->at, c);
+    const double velocity = velocity_of(s, &o[c], c);
+    const double folded = s->keeps[c] * q + m * velocity;
     partner[MPSI_VECTOR + c] += folded;
     if (apart) to[MPSI_VECTOR + c] += s->keeps[c] * f;
     before[c] = q + of->dt * f;
     after[c] = folded + of->dt * s->keeps[c] * f;
-    s->mirror->passed += of->dt * f * s->velocity[c];
+    s->mirror->passed += of->dt * f * velocity;
   }
-  add_change(s->mirror, at->x_partner, after, at->x_ghost, before);
+  share_change(s, o, at->x_partner, after, at->x_ghost, before);
   partner[MPSI_MASS] += m;
   memset(ghost, 0, sizeof(mpsi_node));
   if (!apart) return;
@@ -215,13 +274,16 @@ static void mirror_node(const side *s, const couple *at, int layer, void *data) 
   double *ghost = of->tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
   const double *partner = of->tile[at->partner];
   double before[3], after[3];
+  others o[3];
   ghost[MPSI_MASS] = partner[MPSI_MASS];
   for (int c = 0; c < 3; c++) {
-    ghost[MPSI_VECTOR + c] = s->keeps[c] * partner[MPSI_VECTOR + c] + s->velocity[c];
+    o[c] = find_others(s, at->at, c);
+    const double velocity = velocity_of(s, &o[c], c);
+    ghost[MPSI_VECTOR + c] = s->keeps[c] * partner[MPSI_VECTOR + c] + velocity;
     before[c] = m * partner[MPSI_VECTOR + c];
     after[c] = m * ghost[MPSI_VECTOR + c];
   }
-  if (m != 0.0 && !of->silent) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
+  if (m != 0.0 && !of->silent) share_change(s, o, at->x_ghost, after, at->x_partner, before);
 }
 
 static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
@@ -291,37 +353,67 @@ void mpsi_mpm_reflect(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   }
 }
 
-void mpsi_mpm_reflect_impulse(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
-                              const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
-                              const double *impulse) {
-  double vector[3] = {impulse[0], impulse[1], impulse[2]};
-  for (int32_t k = 0; k < MPSI_SIDES; k++) {
-    if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(grid, boundaries, mirrors, cells, k, false);
-    if (!is_folded(&s, at)) continue;
-    const double before[3] = {vector[0], vector[1], vector[2]};
-    reflect_by(grid, &s, at, vector, 1.0);
-    for (int c = 0; c < 3; c++) s.mirror->passed += 0.5 * (before[c] - vector[c]) * s.velocity[c];
+/* What sides do to component c of a node's image: `beyond` of them reflect it, with twice their
+ * velocities in all `twice`; if the node lies on a side (`on`), that prescribes it. */
+typedef struct folds {
+  int beyond, on;
+  double twice, wall;
+} folds;
+
+static void add_fold(const side *s, const int *at, int c, folds *to) {
+  if (s->keeps[c] > 0.0) return;
+  const bool across = c == s->axis;
+  if (at[s->axis] != s->wall) {
+    to->beyond++;
+    to->twice += s->velocity[c];
+  } else if (across || to->on != -1) { /* -1: the side across c, as in corners.h */
+    const double v = 0.5 * s->velocity[c];
+    to->on = across ? -1 : to->on + 1;
+    to->wall = across || to->on == 1 ? v : to->wall + (v - to->wall) / to->on;
   }
 }
 
 bool mpsi_mpm_find_image(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                          const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
                          double *keeps, double *carried) {
+  folds all[3] = {{0}};
   bool any = false;
-  for (int c = 0; c < 3; c++) keeps[c] = 1.0, carried[c] = 0.0;
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
     const side s = side_of(grid, boundaries, mirrors, cells, k, false);
     if (!is_folded(&s, at)) continue;
     any = true;
-    for (int c = 0; c < 3; c++) {
-      carried[c] += 0.5 * keeps[c] * (1.0 - reflection_of(&s, at, c)) * s.velocity[c];
-      keeps[c] *= reflection_of(&s, at, c);
-    }
+    for (int c = 0; c < 3; c++) add_fold(&s, at, c, &all[c]);
     at[s.axis] = 2 * s.wall - at[s.axis];
   }
+  for (int c = 0; c < 3; c++) { /* the velocities of two sides cancel, as in velocity_of */
+    const folds *f = &all[c];
+    keeps[c] = f->beyond % 2 ? -1.0 : 1.0;
+    carried[c] = f->beyond % 2 ? f->twice / f->beyond : 0.0;
+    if (f->on == 0) continue;
+    carried[c] += keeps[c] * f->wall;
+    keeps[c] = 0.0;
+  }
   return any;
+}
+
+/* Besides the impulse's image: the energy that the velocities of the sides make of it. */
+void mpsi_mpm_reflect_impulse(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                              const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
+                              const double *impulse) {
+  double vector[3] = {impulse[0], impulse[1], impulse[2]}, keeps[3], carried[3];
+  int image[3] = {at[0], at[1], at[2]};
+  double energy = 0.0;
+  if (!mpsi_mpm_find_image(grid, boundaries, mirrors, cells, image, keeps, carried)) return;
+  for (int c = 0; c < 3; c++) energy += impulse[c] * carried[c];
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(grid, boundaries, mirrors, cells, k, false);
+    if (!is_folded(&s, at)) continue;
+    reflect_by(grid, &s, at, vector, 1.0);
+    s.mirror->passed += energy;
+    energy = 0.0;
+  }
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */

@@ -16,6 +16,7 @@
 #define MPSI_MPM_MIRROR_H
 
 #include "mpm/grid/blocks.h"
+#include "boundaries.h"
 
 /* A mirrored side under the tile of a block of cells, in the step being made. */
 typedef struct mpsi_mirror {

@@ -1,7 +1,10 @@
 /* outflow.c - particles that leave the set at the end of a step: those that have passed an open
  * side of the domain (removal by bodies, before a step: contact/removal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "core/particles/particles_internal.h"
+#include "mpm/base/energy.h"
+#include "mpm/particles/rooms.h"
+#include "kinds.h"
 
 #include <string.h>
 
@@ -9,7 +12,7 @@ mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p,
                                     mpsi_rooms *rooms, bool bodies, const char *function) {
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
+    if (mpsi_kind_of(&b->hold[k])->open) b->open |= 1u << k;
   const bool any = b->open != 0 || bodies;
   if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
   return mpsi_fail_memory(context, function, (size_t)p->count);
@@ -20,8 +23,7 @@ static int32_t passed(const mpsi_grid *grid, const mpsi_columns *p,
                       const mpsi_boundaries *boundaries, int64_t k) {
   for (int c = 0; c < grid->dim; c++) {
     const double X = mpsi_grid_at(grid, c, p->x[c][k]);
-    if (boundaries->open >> (2 * c) & 1 && X < (double)grid->low[c]) return 2 * c;
-    if (boundaries->open >> (2 * c + 1) & 1 && X > (double)grid->high[c]) return 2 * c + 1;
+    if (mpsi_mpm_passes(grid, boundaries, c, X)) return 2 * c + (X > (double)grid->high[c]);
   }
   return -1;
 }

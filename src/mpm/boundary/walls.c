@@ -1,12 +1,18 @@
-/* walls.c - action of the boundaries on the nodes of the domain's sides, boxes of nodes and lists
- * of particles with prescribed velocity. Each changes the velocity of a node after all other
- * forces, by an impulse; the sums of these impulses are the reactions of mps_mpm_get_reaction.
+/* walls.c - action of the boundaries on the nodes of the domain's sides and of boxes. Each changes
+ * the velocity of a node after all other forces, by an impulse; the sums of these impulses are the
+ * reactions of mps_mpm_get_reaction.
  *
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse normal to the side
  * removes the velocity into it; the impulse along the side is the smaller of mu times that and the
  * impulse that stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/room_array.h"
+#include "corners.h"
 #include "free_field.h"
-#include "mpm/base/all_parts.h"
+#include "kinds.h"
+#include "mpm/base/energy.h"
+#include "mpm/contact/thin_bodies.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
 
 #include <string.h>
 
@@ -23,19 +29,18 @@ static bool list_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
     nodes->first_held = (int32_t)*count;
     for (int32_t k = 0; k < boundaries->holds; k++) {
       mpsi_range r;
-      const int32_t kind = boundaries->hold[k].kind;
-      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || boundaries->hold[k].ids ||
+      const mpsi_boundary_kind *kind = mpsi_kind_of(&boundaries->hold[k]);
+      if (kind->turn == MPSI_TURN_NEVER || boundaries->hold[k].ids ||
           !mpsi_find_range(grid->dim, nodes->at, &boundaries->hold[k], &r))
         continue;
-      const bool absorbs = kind == MPS_BOUNDARY_ABSORBING;
       if (*count < boundaries->held_room.capacity) {
         held[*count] = (mpsi_held){.hold = k,
-                                   .dashpot = absorbs ? *dashpots : -1,
+                                   .dashpot = kind->absorbs ? *dashpots : -1,
                                    .counted = !partition || mpsi_mpm_counts_node_block(grid, g),
                                    .whole = !partition || mpsi_mpm_node_block_complete(grid, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
-      if (absorbs) *dashpots += grid->block_nodes / MPSI_SIDE;
+      if (kind->absorbs) *dashpots += grid->block_nodes / MPSI_SIDE;
       (*count)++;
     }
     nodes->holds = (int32_t)*count - nodes->first_held;
@@ -60,21 +65,20 @@ static mps_status make_list(const mpsi_boundary_setup *setup, const char *functi
   swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
   bool good = list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
   if (!good) {
-    good = mpsi_room_ensure(setup->context, &setup->boundaries->held_room, count,
-                            sizeof *setup->boundaries->held);
+    good = MPSI_ENSURE(setup->context, setup->boundaries, held, count);
     if (good) list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
   }
-  good = good && mpsi_room_ensure(setup->context, &setup->boundaries->dashpot_room, dashpots,
-                                  sizeof *setup->boundaries->dashpot);
+  good = good && MPSI_ENSURE(setup->context, setup->boundaries, dashpot, dashpots);
   if (!good) {
     swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
     swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
-    return mpsi_fail_memory(setup->context, function,
-                            (size_t)count * sizeof *setup->boundaries->held +
-                                (size_t)dashpots * sizeof(mpsi_dashpot));
   }
   setup->boundaries->held = setup->boundaries->held_room.item;
   setup->boundaries->dashpot = setup->boundaries->dashpot_room.item;
+  if (!good)
+    return mpsi_fail_memory(setup->context, function,
+                            (size_t)count * sizeof *setup->boundaries->held +
+                                (size_t)dashpots * sizeof(mpsi_dashpot));
   setup->boundaries->outdated = false;
   setup->boundaries->held_count = count;
   setup->boundaries->dashpot_count = dashpots;
@@ -83,33 +87,52 @@ static mps_status make_list(const mpsi_boundary_setup *setup, const char *functi
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_list_boundaries(const mpsi_boundary_setup *setup, const char *function,
-                                    mps_status status) {
+/* Lists the boundary conditions, with the dashpots of the list before. */
+static mps_status list_again(const mpsi_boundary_setup *setup, const char *function,
+                             mps_status status) {
   const mpsi_held_list old = {setup->boundaries->held, setup->boundaries->held_count,
                               setup->boundaries->dashpot};
   if (status == MPS_OK) status = make_list(setup, function);
   if (!mpsi_mpm_absorbs(setup->boundaries)) return status;
-  if (!setup->partition) {
-    if (status == MPS_OK)
-      mpsi_mpm_place_dashpots(setup->grid, setup->p, setup->boundaries, NULL, old.held, old.count,
-                              old.dashpot);
-    return status;
+  if (setup->partition) {
+    status = mpsi_domain_agree(setup->partition->domain, function, status);
+    if (status == MPS_OK) status = mpsi_mpm_send_dashpots(setup, function, &old);
+    setup->boundaries->outdated = status != MPS_OK;
+  } else if (status == MPS_OK) {
+    mpsi_mpm_carry_dashpots(setup->grid, setup->boundaries, &old);
   }
-  status = mpsi_domain_agree(setup->partition->domain, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_exchange_dashpots(setup, function, &old);
-  setup->boundaries->outdated = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_mpm_update_boundaries(const mpsi_boundary_setup *setup, const char *function,
                                       mps_status status) {
-  return setup->boundaries->outdated ? mpsi_mpm_list_boundaries(setup, function, status) : status;
+  mpsi_boundaries *b = setup->boundaries;
+  if (b->outdated) status = list_again(setup, function, status);
+  if (!b->renew || !mpsi_mpm_absorbs(b)) return status;
+  if (setup->partition)
+    status = mpsi_mpm_exchange_dashpots(setup, function, status);
+  else if (status == MPS_OK)
+    mpsi_mpm_find_dashpots(setup->grid, setup->p, b, NULL);
+  b->renew = status != MPS_OK;
+  return status;
+}
+
+mps_status mpsi_mpm_list_boundaries(const mpsi_boundary_setup *setup, const char *function,
+                                    mps_status status) {
+  setup->boundaries->outdated = setup->boundaries->renew = true;
+  return mpsi_mpm_update_boundaries(setup, function, status);
+}
+
+void mpsi_mpm_plan_dashpots(mpsi_boundaries *boundaries, int64_t steps) {
+  enum { EVERY = 8 };
+  boundaries->renew = boundaries->renew || steps % EVERY == 0;
 }
 
 mps_status mpsi_mpm_put_dashpots(const mpsi_boundary_setup *setup, const char *function,
                                  int64_t count, const mpsi_dashpot *dashpot) {
   const mps_status status = make_list(setup, function);
   if (status != MPS_OK) return status;
+  setup->boundaries->renew = false;
   const int64_t plane = setup->grid->block_nodes / MPSI_SIDE;
   int64_t expected = 0;
   for (int64_t t = 0; t < setup->boundaries->held_count; t++) {
@@ -144,23 +167,30 @@ typedef struct block {
   mpsi_node *node, *side; /* side: NULL where the block has none */
   uint8_t *held;          /* bit c: a boundary alone determines component c */
   bool again;             /* values across thin bodies, whose nodes have been counted already */
-  double normal_impulse[MPSI_SIDES]
-                       [BLOCK]; /* N s, normal impulses of frictional sides at their nodes */
+  mpsi_held *first;       /* its boundary conditions, `holds` of them */
+  int32_t holds;
+  bool joined; /* two sides of the kind that acts now may share nodes of this block */
+  double (*normal_impulse)[BLOCK]; /* mpsi_side_impulses; written before it is read */
 } block;
 
 typedef void (*hold_fn)(block *b, const mpsi_boundary *hold, mpsi_held *held, int k);
 
-/* Sets component c of the velocity of node k to v, by an impulse of the boundary, which moves with
- * hold->v. */
-static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int c, double v) {
-  double *at = &b->node[k][MPSI_VECTOR + c];
-  const double impulse = b->node[k][MPSI_MASS] * (v - *at);
+/* Adds an impulse on component c of node k to those of the boundary, which moves with hold->v. */
+static void count_impulse(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int c,
+                          double impulse) {
   double x[3];
   mpsi_node_place(b->grid, held->at, k, x);
   held->impulse[c] += impulse;
   held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse; /* x cross impulse */
   held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;
   held->work += impulse * hold->v[c];
+}
+
+/* Sets component c of the velocity of node k to v, by an impulse of the boundary, which moves with
+ * hold->v. */
+static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int c, double v) {
+  double *at = &b->node[k][MPSI_VECTOR + c];
+  count_impulse(b, hold, held, k, c, b->node[k][MPSI_MASS] * (v - *at));
   *at = v;
 }
 
@@ -169,8 +199,68 @@ static void hold_across(block *b, const mpsi_boundary *hold, mpsi_held *held, in
   b->held[k] |= (uint8_t)(1u << hold->axis);
 }
 
+/* ---- sides that join ------------------------------------------------------------------------- */
+
+/* Sides of one kind that share a node: what they do there together does not depend on the order of
+ * their numbers. */
+typedef struct meeting {
+  int32_t count;
+  mpsi_held *held[3];
+  const mpsi_boundary *hold[3];
+} meeting;
+
+static bool covers(const block *b, const mpsi_boundary *hold, const mpsi_held *held, int k) {
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  for (int c = 0; c < b->grid->dim; c++) {
+    const int64_t node = (int64_t)held->at[c] * MPSI_SIDE + place[c];
+    if (node < hold->first[c] || node > hold->last[c]) return false;
+  }
+  return true;
+}
+
+/* The sides of the kind of `held` that share node k, in the order of their numbers. */
+static meeting find_meeting(const block *b, mpsi_held *held, int k) {
+  const mpsi_boundary *all = b->boundaries->hold, *hold = &all[held->hold];
+  meeting out = {1, {held}, {hold}};
+  if (!b->joined || held->hold >= MPSI_SIDES) return out;
+  out.count = 0;
+  for (int32_t t = 0; t < b->holds; t++) {
+    mpsi_held *other = &b->first[t];
+    const mpsi_boundary *side = &all[other->hold];
+    if (other->hold >= MPSI_SIDES || side->kind != hold->kind || !covers(b, side, other, k) ||
+        out.count == 3)
+      continue;
+    out.held[out.count] = other;
+    out.hold[out.count++] = side;
+  }
+  return out;
+}
+
+static void absorb_at_corner(block *b, const meeting *m, int k) {
+  mpsi_dashpot *dashpot[3];
+  double v[3], force[3][3];
+  for (int32_t s = 0; s < m->count; s++)
+    dashpot[s] =
+        &b->boundaries->dashpot[m->held[s]->dashpot + mpsi_plane_index(m->hold[s]->axis, k)];
+  const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
+  mpsi_mpm_apply_dashpots(b->grid->dim, b->dt, m->count, m->hold, dashpot, b->node[k], before, v,
+                          force);
+  for (int c = 0; c < b->grid->dim; c++) {
+    if (b->held[k] >> c & 1) continue;
+    for (int32_t s = 0; s < m->count; s++)
+      count_impulse(b, m->hold[s], m->held[s], k, c, b->dt * force[s][c]);
+    b->node[k][MPSI_VECTOR + c] = v[c];
+  }
+}
+
 static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   if (!(b->node[k][MPSI_MASS] > 0.0)) return;
+  const meeting sides = find_meeting(b, held, k);
+  if (sides.count > 1) {
+    if (sides.held[0] == held) absorb_at_corner(b, &sides, k);
+    return;
+  }
   double v[3];
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
   mpsi_dashpot *dashpot = &b->boundaries->dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
@@ -226,24 +316,116 @@ static void stop_inward(block *b, const mpsi_boundary *hold, mpsi_held *held, in
   b->held[k] |= (uint8_t)(1u << c);
 }
 
-static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
-  const double most = hold->friction * b->normal_impulse[held->hold][k], m = b->node[k][MPSI_MASS];
-  double slip[3] = {0.0}, square = 0.0;
-  if (!(most > 0.0) || !(m > 0.0)) return;
+static double most_friction(const block *b, const mpsi_boundary *hold, const mpsi_held *held,
+                            int k) {
+  return hold->friction * b->normal_impulse[held->hold][k];
+}
+
+/* Whether a node with the velocity `v` along axis c would go into a frictional side that shares it;
+ * *stop: the velocity of that side. */
+static bool goes_beyond(const meeting *sides, int c, double v, double *stop) {
+  for (int32_t s = 0; s < sides->count; s++) {
+    if (sides->hold[s]->axis != c) continue;
+    *stop = sides->hold[s]->v[c];
+    return (v - *stop) * (sides->held[s]->hold % 2 ? 1.0 : -1.0) > 0.0;
+  }
+  return false;
+}
+
+/* Friction along the edge of sides that all bear, the only direction in which their node moves; up
+ * to another one of `sides`. */
+static void slow_along_edge(block *b, const meeting *sides, const meeting *m, const double *most,
+                            int k) {
+  const double mass = b->node[k][MPSI_MASS];
+  for (int c = 0; c < b->grid->dim; c++) {
+    if (b->held[k] >> c & 1) continue;
+    double velocity[3], impulse[3], stop, part = 1.0;
+    for (int32_t s = 0; s < m->count; s++) velocity[s] = m->hold[s]->v[c];
+    double *v = &b->node[k][MPSI_VECTOR + c];
+    double after = mpsi_mpm_edge_friction(m->count, mass, *v, velocity, most, impulse);
+    if (goes_beyond(sides, c, after, &stop)) {
+      part = (stop - *v) / (after - *v);
+      after = stop;
+      b->held[k] |= (uint8_t)(1u << c);
+    }
+    *v = after;
+    for (int32_t s = 0; s < m->count; s++)
+      count_impulse(b, m->hold[s], m->held[s], k, c, part * impulse[s]);
+  }
+}
+
+/* Friction of one side along the components that are free. Those that it would take into another
+ * one of `sides` end there: what is left of the limit *most then acts along the others, and the
+ * function returns true. */
+static bool slide(block *b, const meeting *sides, const mpsi_boundary *hold, mpsi_held *held, int k,
+                  double *most) {
+  const double m = b->node[k][MPSI_MASS];
+  double slip[3] = {0.0}, square = 0.0, used = 0.0, stop;
+  bool ended = false;
   for (int c = 0; c < b->grid->dim; c++) {
     if (b->held[k] >> c & 1) continue;
     slip[c] = b->node[k][MPSI_VECTOR + c] - hold->v[c];
     square += slip[c] * slip[c];
   }
   const double speed = sqrt(square);
-  if (!(speed > 0.0)) return;
-  const double left = most < m * speed ? 1.0 - most / (m * speed) : 0.0;
-  for (int c = 0; c < b->grid->dim; c++)
+  if (!(speed > 0.0)) return false;
+  const double left = *most < m * speed ? 1.0 - *most / (m * speed) : 0.0;
+  for (int c = 0; c < b->grid->dim; c++) {
+    if (slip[c] == 0.0 || !goes_beyond(sides, c, hold->v[c] + left * slip[c], &stop)) continue;
+    const double impulse = m * (stop - b->node[k][MPSI_VECTOR + c]);
+    used += impulse * impulse;
+    set(b, hold, held, k, c, stop);
+    b->held[k] |= (uint8_t)(1u << c);
+    ended = true;
+  }
+  for (int c = 0; c < b->grid->dim && !ended; c++)
     if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
+  if (ended) *most = sqrt(fmax(*most * *most - used, 0.0));
+  return ended;
+}
+
+static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
+  double most = most_friction(b, hold, held, k), limit[3];
+  if (!(most > 0.0) || !(b->node[k][MPSI_MASS] > 0.0)) return;
+  const meeting sides = find_meeting(b, held, k);
+  meeting bearing = {.count = 0};
+  for (int32_t s = 0; s < sides.count; s++) {
+    limit[bearing.count] = most_friction(b, sides.hold[s], sides.held[s], k);
+    bearing.hold[bearing.count] = sides.hold[s], bearing.held[bearing.count] = sides.held[s];
+    bearing.count += limit[bearing.count] > 0.0;
+  }
+  if (bearing.count > 1) {
+    if (bearing.held[0] == held) slow_along_edge(b, &sides, &bearing, limit, k);
+    return;
+  }
+  while (slide(b, &sides, hold, held, k, &most)) continue;
+}
+
+/* At the corner of fixed sides each component across one of them is its velocity; the one along
+ * their edge the mean of theirs. */
+static void prescribe_corner(block *b, const meeting *m, int k) {
+  for (int c = 0; c < b->grid->dim; c++) {
+    double v = 0.0, share[3];
+    for (int32_t s = 0; s < m->count; s++) {
+      share[s] = mpsi_mpm_corner_share(m->count, m->hold, UINT32_MAX, c, s);
+      v += share[s] * m->hold[s]->v[c];
+    }
+    double *at = &b->node[k][MPSI_VECTOR + c];
+    const double impulse = b->node[k][MPSI_MASS] * (v - *at);
+    for (int32_t s = 0; s < m->count; s++)
+      if (share[s] > 0.0) count_impulse(b, m->hold[s], m->held[s], k, c, share[s] * impulse);
+    *at = v;
+  }
+  b->held[k] |= (uint8_t)m->hold[0]->dofs;
 }
 
 /* Prescribes all components at a fixed side, the chosen ones in a box. */
 static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
+  const meeting sides = find_meeting(b, held, k);
+  if (sides.count > 1) {
+    if (sides.held[0] == held) prescribe_corner(b, &sides, k);
+    return;
+  }
   for (int c = 0; c < b->grid->dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)hold->dofs;
@@ -273,7 +455,8 @@ static void begin_block(const mpsi_grid *grid, const mpsi_boundaries *boundaries
   b->node = grid->node + mpsi_first_node(grid, g);
   b->side = nodes->side >= 0 ? grid->side + mpsi_first_node(grid, nodes->side) : NULL;
   b->held = fixed;
-  b->again = g >= grid->node_count; /* normal_impulse is written before it is read */
+  b->first = boundaries->held + nodes->first_held, b->holds = nodes->holds;
+  b->again = g >= grid->node_count;
   memset(fixed, 0, (size_t)grid->block_nodes);
 }
 
@@ -287,21 +470,29 @@ void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundarie
   }
 }
 
+/* Whether two sides of `kind` are among the boundary conditions of the block. */
+static bool sides_join(const block *b, int32_t kind) {
+  int32_t count = 0;
+  for (int32_t t = 0; t < b->holds && b->first[t].hold < MPSI_SIDES; t++)
+    count += b->boundaries->hold[b->first[t].hold].kind == kind;
+  return count > 1;
+}
+
 void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                                 const mpsi_mirrors *mirrors, double dt, int64_t g) {
   uint8_t fixed[BLOCK];
   const mpsi_node_block *nodes = &grid->nodes[g];
   mpsi_held *first = boundaries->held + nodes->first_held;
   if (nodes->holds == 0) return;
-  block b;
+  block b = {.normal_impulse = NULL}; /* mirrors have no friction */
   begin_block(grid, boundaries, dt, g, fixed, &b);
-  for (int pass = 0; pass < 2; pass++)
+  b.joined = sides_join(&b, MPS_BOUNDARY_HELD);
+  static const mpsi_prescribes passes[] = {MPSI_PRESCRIBES_ACROSS, MPSI_PRESCRIBES_ALL};
+  for (int pass = 0; pass < 2; pass++) /* where neither is prescribed, the nodes move */
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_boundary *hold = &boundaries->hold[first[t].hold];
-      const bool holds_all = hold->kind == MPS_BOUNDARY_HELD;
-      if (hold->kind == MPS_BOUNDARY_FREE_FIELD) continue; /* its nodes move */
-      if (mpsi_is_mirror(mirrors, first[t].hold) && holds_all == (pass == 1))
-        for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
+      if (mpsi_is_mirror(mirrors, first[t].hold) && mpsi_kind_of(hold)->prescribes == passes[pass])
+        for_range(&b, hold, &first[t], pass == 0 ? hold_across : prescribe);
     }
   for (int k = 0; k < grid->block_nodes && nodes->split; k++)
     for (int c = 0; c < grid->dim; c++)
@@ -311,7 +502,7 @@ void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *bo
 /* Boundaries that act normal to walls come before friction: where two walls join, friction along
  * one must not move a node into the other. */
 void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
-                              int64_t g, uint8_t *fixed) {
+                              int64_t g, mpsi_side_impulses room, uint8_t *fixed) {
   static const struct {
     int32_t kind;
     hold_fn work;
@@ -324,11 +515,14 @@ void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boun
   mpsi_held *first = boundaries->held + nodes->first_held;
   block b;
   begin_block(grid, boundaries, dt, g, fixed, &b);
-  for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
+  b.normal_impulse = room;
+  for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++) {
+    b.joined = sides_join(&b, order[pass].kind);
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_boundary *hold = &boundaries->hold[first[t].hold];
       if (hold->kind == order[pass].kind) for_range(&b, hold, &first[t], order[pass].work);
     }
+  }
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
@@ -348,9 +542,8 @@ static void begin_sums(mpsi_boundary *hold) {
 }
 
 void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
-                             const mpsi_mirrors *mirrors, mpsi_energy *energy, double dt) {
+                             const mpsi_mirrors *mirrors, mpsi_energy *energy) {
   mpsi_boundary *hold = boundaries->hold;
-  boundaries->dt = dt;
   for (int32_t k = 0; k < boundaries->holds; k++) {
     begin_sums(&hold[k]);
     if (hold[k].found >= hold[k].settle) hold[k].finds = false;
@@ -364,75 +557,4 @@ void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
   }
   mpsi_mpm_sum_mirrors(grid, boundaries, mirrors, energy);
-}
-
-/* ---- particles ------------------------------------------------------------------------------- */
-
-/* Block of cells that particle k is sorted to. */
-static mpsi_cell_block *block_of(const mpsi_grid *grid, int64_t k) {
-  int64_t low = 0, high = grid->cell_count;
-  while (high - low > 1) {
-    const int64_t middle = low + (high - low) / 2;
-    if (grid->cells[middle].begin <= k)
-      low = middle;
-    else
-      high = middle;
-  }
-  return &grid->cells[low];
-}
-
-/* Marks the block, as G2P does, where the particle has left the block's tile or the domain. */
-static void check_place(const mpsi_grid *grid, const mpsi_columns *p,
-                        const mpsi_boundaries *boundaries, int64_t k) {
-  mpsi_cell_block *cells = block_of(grid, k);
-  const double first = grid->spline == 3 ? 1.0 : 0.5;
-  for (int c = 0; c < grid->dim; c++) {
-    const double X = mpsi_grid_at(grid, c, p->x[c][k]);
-    const double local = X - (double)cells->at[c] * MPSI_SIDE - first;
-    if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(grid, c)))
-      cells->left = true;
-    if (X >= (double)grid->low[c] && X <= (double)grid->high[c]) continue;
-    if (mpsi_mpm_passes(grid, boundaries, c, X))
-      cells->gone = true;
-    else if (cells->bad < 0)
-      cells->bad = k, cells->lost = true;
-  }
-}
-
-/* Prescribes the velocity of a particle; m dv is the impulse. */
-static void drive_particle(const mpsi_grid *grid, const mpsi_columns *p,
-                           const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt,
-                           mpsi_boundary *hold, int64_t k) {
-  double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
-  for (int c = 0; c < grid->dim; c++) x[c] = p->x[c][k];
-  for (int c = 0; c < grid->dim; c++) {
-    if (!(hold->dofs >> c & 1)) continue;
-    const double change = hold->v[c] - p->v[c][k];
-    impulse[c] = p->m[k] * change;
-    work += impulse[c] * hold->v[c];
-    kinetic += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
-    p->v[c][k] = hold->v[c];
-    p->x[c][k] += dt * change;
-  }
-  double moment[3];
-  for (int c = 0; c < 3; c++) {
-    const int a = (c + 1) % 3, b = (c + 2) % 3;
-    moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
-  }
-  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, work, 1);
-  mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
-  mpsi_mpm_energy_add(energy, MPSI_ENERGY_KINETIC, kinetic);
-  mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, work - kinetic);
-  check_place(grid, p, boundaries, k);
-}
-
-void mpsi_mpm_drive_particles(const mpsi_grid *grid, const mpsi_columns *p,
-                              const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt) {
-  for (int32_t b = MPSI_SIDES; b < boundaries->holds; b++) {
-    mpsi_boundary *hold = &boundaries->hold[b];
-    for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
-      const int64_t k = mps_particles_index(p->set, hold->ids[i]);
-      if (k >= 0) drive_particle(grid, p, boundaries, energy, dt, hold, k);
-    }
-  }
 }

@@ -23,6 +23,10 @@
  * those of other ranks arrive with their constraints (exchange.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
+#include "core/base/room_array.h"
+#include "mpm/base/run.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/ranks/partition.h"
 
 #include <string.h>
 
@@ -137,8 +141,10 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_cell_block *cells = &grid->cells[grid->coloured[all->area_first + unit]];
-  double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
-  (void)worker;
+  double *tile = grid->workers[worker].room;
+  _Static_assert(sizeof(double[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE]) <=
+                     MPSI_WORKER_ROOM,
+                 "room of a worker");
   for (int32_t q = 0; q < cells->pairs; q++) {
     const mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
     if (!mpsi_mpm_sum_areas(grid, stage->transfer.p, stage->contact, pair, tile)) continue;
@@ -208,8 +214,9 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
       if (at[q].node->normal > 0.0)
         area += at[q].weight * constraint->impulse.normal_impulse * at[q].node->area /
                 at[q].node->normal;
-    constraint->impulse.adhesion = stage->dt * area * def->adhesion;
-    if (!isnan(def->strength)) constraint->impulse.strength = stage->dt * area * def->strength;
+    constraint->impulse.adhesion = stage->transfer.run->dt * area * def->adhesion;
+    if (!isnan(def->strength))
+      constraint->impulse.strength = stage->transfer.run->dt * area * def->strength;
   }
 }
 
@@ -224,12 +231,9 @@ bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contac
   all->areas = false;
   if (!wanted) return true;
   const int64_t nodes = partition ? 0 : contacts->node_pair_count * grid->block_nodes;
-  if (!mpsi_room_ensure(context, &all->area_room, nodes, sizeof *all->area) ||
-      !mpsi_room_ensure(context, &all->around_room, constraints * nodes_around(grid, 4),
-                        sizeof *all->around))
+  if (!MPSI_ENSURE(context, all, area, nodes) ||
+      !MPSI_ENSURE(context, all, around, constraints * nodes_around(grid, 4)))
     return false;
-  all->area = all->area_room.item;
-  all->around = all->around_room.item;
   all->area_count = nodes;
   all->areas = true;
   return true;

@@ -10,59 +10,18 @@
  * by body: the order in which impulses.c sweeps, whatever the order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
+#include "core/base/room_array.h"
 #include "mpm/base/kernels.h"
+#include "mpm/base/run.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/prescribed.h"
+#include "mpm/ranks/partition.h"
+#include "mpm/step/damping.h"
 
 #include "core/particles/particles_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- the impulses of the last step ----------------------------------------------------------- */
-
-static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
-  const uint64_t key = ((uint64_t)id * 64u + (uint64_t)body) * UINT64_C(0x9E3779B97F4A7C15);
-  return (key >> 20) & all->lookup_mask;
-}
-
-/* Hash table with at least twice as many slots as impulses. */
-bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts) {
-  mpsi_impulses *all = &contacts->impulses;
-  int64_t slots = 16;
-  while (slots < 2 * all->warm_count) slots *= 2;
-  if (!mpsi_room_ensure(context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
-  all->lookup = all->lookup_room.item;
-  all->lookup_mask = (uint64_t)slots - 1;
-  for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
-  for (int64_t k = 0; k < all->warm_count; k++) {
-    uint64_t at = slot_of(all, all->warm[k].id, all->warm[k].body);
-    while (all->lookup[at] >= 0) at = (at + 1) & all->lookup_mask;
-    all->lookup[at] = (int32_t)k;
-  }
-  return true;
-}
-
-const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
-                                               int32_t body) {
-  const mpsi_impulses *all = &contacts->impulses;
-  for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
-       at = (at + 1) & all->lookup_mask) {
-    const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
-    if (warm->id == id && warm->body == body) return warm;
-  }
-  return NULL;
-}
-
-void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body) {
-  mpsi_impulses *all = &contacts->impulses;
-  int64_t to = 0;
-  for (int64_t k = 0; k < all->warm_count; k++) {
-    mpsi_warm_impulse warm = all->warm[k];
-    if (warm.body == body) continue;
-    warm.body -= warm.body > body;
-    all->warm[to++] = warm;
-  }
-  all->warm_count = to;
-}
 
 /* ---- candidates ------------------------------------------------------------------------------ */
 
@@ -169,7 +128,7 @@ static void find_in_block(void *data, int64_t b, int32_t worker) {
     mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
     if (mpsi_by_impulses(stage->contact->handle[pair->body]))
       find_candidates(stage->transfer.grid, stage->transfer.p, stage->contact, stage->kernels,
-                      stage->dt, cells, pair);
+                      stage->transfer.run->dt, cells, pair);
   }
 }
 
@@ -191,23 +150,27 @@ static int64_t share_candidates(const mpsi_grid *grid, const mpsi_contacts *cont
 }
 
 /* Lists the blocks with candidates, colour by colour. */
-static void list_blocks(const mpsi_grid *grid, mpsi_contacts *contacts) {
+static void list_blocks(const mpsi_grid *grid, const mpsi_prescribed *prescribed,
+                        mpsi_contacts *contacts) {
   mpsi_impulses *all = &contacts->impulses;
-  all->constraint_count = all->block_count = 0;
+  all->constraint_count = all->contact_count = all->block_count = 0;
   for (int colour = 0; colour < MPSI_CORNERS; colour++) {
     all->colour[colour] = all->block_count;
     for (int64_t i = grid->colour[colour]; i < grid->colour[colour + 1]; i++) {
       const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
+      const int64_t groups = mpsi_groups_of(prescribed, grid->coloured[i]);
       int64_t count = 0;
-      for (int32_t q = 0; q < cells->pairs; q++)
+      for (int32_t q = 0; q < cells->pairs && contacts->bodies > 0; q++)
         count += contacts->cell_pair[cells->first_pair + q].candidates;
-      if (count == 0) continue;
+      if (count + groups == 0) continue;
       all->block[all->block_count++] =
           (mpsi_constraint_block){.first = all->constraint_count,
                                   .count = count,
+                                  .groups = groups,
                                   .cells = grid->coloured[i],
                                   .at = {cells->at[0], cells->at[1], cells->at[2]}};
-      all->constraint_count += count;
+      all->constraint_count += count + groups;
+      all->contact_count += contacts->bodies > 0 ? count : groups;
     }
   }
   all->colour[MPSI_CORNERS] = all->block_count;
@@ -217,40 +180,35 @@ mps_status mpsi_mpm_find_constraints(const mpsi_contact_stage *stage, const char
   const mpsi_grid *grid = stage->transfer.grid;
   mpsi_impulses *all = &stage->contact->impulses;
   mps_context *context = stage->context;
-  all->constraint_count = all->block_count = 0;
-  if (stage->contact->bodies == 0) return MPS_OK;
+  all->constraint_count = all->contact_count = all->block_count = 0;
+  if (stage->contact->bodies == 0 && !stage->prescribed) return MPS_OK;
   const int64_t candidates = share_candidates(grid, stage->contact);
   const int32_t side = grid->spline + 1;
   all->stride = grid->dim == 3 ? side * side * side : side * side;
-  bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
-              mpsi_room_ensure(context, &all->block_room, grid->cell_count, sizeof *all->block) &&
-              mpsi_room_ensure(context, &all->body_room, stage->contact->bodies, sizeof *all->body);
-  all->body = all->body_room.item;
-  all->candidate = all->candidate_room.item;
-  all->block = all->block_room.item;
-  if (good && candidates > 0) {
+  if (stage->prescribed) all->stride *= 2; /* a thin body may divide a group */
+  bool good = MPSI_ENSURE(context, all, candidate, candidates) &&
+              MPSI_ENSURE(context, all, block, grid->cell_count) &&
+              MPSI_ENSURE(context, all, body, stage->contact->bodies);
+  if (good && candidates > 0)
     mpsi_mpm_for_cells(context, grid, stage->transfer.p, find_in_block, (void *)stage);
-    list_blocks(grid, stage->contact);
-  }
+  if (good && (candidates > 0 || stage->prescribed))
+    list_blocks(grid, stage->prescribed, stage->contact);
   const int64_t n = all->constraint_count;
-  good = good && mpsi_room_ensure(context, &all->constraint_room, n, sizeof *all->constraint) &&
-         mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
-         mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
+  good = good && MPSI_ENSURE(context, all, constraint, n) &&
+         MPSI_ENSURE(context, all, weight, n * all->stride) &&
+         MPSI_ENSURE(context, all, node, n * all->stride) &&
          mpsi_room_ensure(context, &all->next_room, n, sizeof *all->warm) &&
          mpsi_mpm_index_impulses(stage->context, stage->contact) &&
          mpsi_mpm_area_room(stage->context, grid, stage->contact, stage->partition, n);
   if (!good) {
-    all->constraint_count = all->block_count = 0;
+    all->constraint_count = all->contact_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
                             (size_t)(n + 1) * (sizeof *all->constraint + (size_t)all->stride * 40) +
                                 (size_t)candidates * sizeof *all->candidate);
   }
-  all->constraint = all->constraint_room.item;
-  all->weight = all->weight_room.item;
-  all->node = all->node_room.item;
   all->free_bodies = false;
   for (int32_t b = 0; b < stage->contact->bodies; b++) {
-    mpsi_impulse_begin_body(&all->body[b], stage->contact->body[b], stage->dt);
+    mpsi_impulse_begin_body(&all->body[b], stage->contact->body[b], stage->transfer.run->dt);
     if (stage->settling) all->body[b].free = false;
     all->free_bodies = all->free_bodies || all->body[b].free;
   }
@@ -282,9 +240,10 @@ static void begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
   for (int a = 0; a < stage->transfer.grid->dim; a++)
     c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
-  c->aim = mpsi_impulse_aim(foot.distance - bearing.half, stage->dt,
-                            fmax(stage->dt, stage->next_dt), stage->transfer.run->speed);
-  c->friction = contact->def.friction;
+  c->aim =
+      mpsi_impulse_aim(foot.distance - bearing.half, stage->transfer.run->dt,
+                       fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);
+  c->friction = contact->friction;
   c->strength = INFINITY;
   if (-bearing.outside > pair->deepest) {
     pair->in_contact = true;
@@ -303,21 +262,6 @@ static void find_psi(const mpsi_kernels *kernels, const mpsi_transfer *work,
 /* Tile node of stencil node s. */
 static void find_place(const mpsi_foot_weights *f, int s, int *place) {
   place[0] = f->at[0] + s % 4, place[1] = f->at[1] + s / 4 % 4, place[2] = f->at[2] + s / 16;
-}
-
-/* Adds `weight` for a node to the constraint. `may_be_there`: the node can be listed already, when
- * it is the image of a ghost too. */
-static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4], double *at,
-                     const double *weight, bool may_be_there) {
-  int32_t i = may_be_there ? 0 : constraint->nodes;
-  while (i < constraint->nodes && node[i] != at) i++;
-  if (i == constraint->nodes) {
-    node[constraint->nodes++] = at;
-    to[i][MPSI_MASS] = 1.0 / at[MPSI_MASS];
-    memcpy(to[i] + MPSI_VECTOR, weight, 3 * sizeof *weight);
-    return;
-  }
-  for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
 /* Weights and mobility of a constraint at mirrors or on several ranks, where ghosts are replaced by
@@ -344,7 +288,7 @@ static void fit_unevenly(const mpsi_grid *grid, const mpsi_boundaries *boundarie
                           ? mpsi_node_across(grid, cells, place[0], place[1], place[2])
                           : mpsi_node_under(grid, cells, place[0], place[1], place[2]);
     if (grid->node[g][MPSI_MASS] > 0.0)
-      add_node(constraint, node, weight, grid->node[g], psis, cells->mirrors != 0);
+      mpsi_mpm_add_node(constraint, node, weight, grid->node[g], psis, cells->mirrors != 0);
   }
   for (int32_t i = 0; i < constraint->nodes; i++)
     for (int a = 0; a < 3; a++) {
@@ -395,9 +339,10 @@ static void fit_constraint(const mpsi_contact_stage *stage, const mpsi_transfer 
 }
 
 /* States of nodes (support.h) where some fit has not been stored by the scatter. */
-static void find_states(const mpsi_transfer *work, const mpsi_constraint_block *block) {
+static void find_states(const mpsi_transfer *work, const mpsi_impulses *impulses,
+                        const mpsi_constraint_block *block) {
   const mpsi_cell_block *cells = work->cells;
-  const mpsi_constraint *constraint = work->contact->impulses.constraint + block->first;
+  const mpsi_constraint *constraint = impulses->constraint + block->first;
   bool all = cells->first_fit >= 0;
   for (int64_t n = 0; n < block->count && all; n++)
     all = work->grid->fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
@@ -413,7 +358,7 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
   const mpsi_transfer work = mpsi_contact_transfer(stage, block->cells, number);
   const mpsi_cell_block *cells = work.cells;
   if (!cells->mirrors) return;
-  find_states(&work, block);
+  find_states(&work, all, block);
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
@@ -448,15 +393,16 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_cell_block *cells = work.cells;
   const int64_t *id = mpsi_particles_integers(stage->transfer.p->set, "id");
   int64_t n = block->first;
-  for (int32_t q = 0; q < cells->pairs; q++) {
+  for (int32_t q = 0; q < cells->pairs && block->count > 0; q++) {
     const int64_t t = cells->first_pair + q;
     const mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
     const int32_t *candidate = all->candidate + pair->first_candidate;
     for (int64_t i = 0; i < pair->candidates; i++)
       begin_constraint(stage, t, cells->begin + candidate[i], id, &all->constraint[n++]);
   }
-  qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
-  find_states(&work, block);
+  if (block->count > 0)
+    qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
+  find_states(&work, all, block);
   for (n = block->first; n < block->first + block->count; n++) {
     fit_constraint(stage, &work, n);
     mpsi_constraint *constraint = &all->constraint[n];
@@ -464,6 +410,7 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
         mpsi_mpm_warm_impulse(stage->contact, constraint->id, constraint->body);
     for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;
   }
+  if (block->groups > 0) mpsi_mpm_fit_prescribed(stage, &work, block);
 }
 
 void mpsi_mpm_fit_constraints(const mpsi_contact_stage *stage) {

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particle.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/ranks/partition.h"
 
 #include "core/particles/particles_internal.h"
 
@@ -53,14 +54,22 @@ static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
                                 const mpsi_contacts *contacts, const char *function,
                                 const mps_body *body) {
   const double depth = OVERLAP * grid->cell;
-  for (int32_t b = 0; b < contacts->bodies; b++) {
+  for (int32_t b = 0; b < contacts->bodies && contacts->body[b] != body; b++) {
     const bool halves = body->shape == MPSI_HALF && contacts->body[b]->shape == MPSI_HALF;
     if (halves || !mpsi_body_overlap(contacts->body[b], body, depth)) continue;
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
+                     "body: it overlaps body %d of the solver by more than %g m (%g cells)", b,
                      depth, OVERLAP);
   }
   return MPS_OK;
+}
+
+mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
+                                   const mpsi_contacts *contacts, const char *function) {
+  mps_status status = MPS_OK;
+  for (int32_t b = 1; b < contacts->bodies && status == MPS_OK; b++)
+    status = check_overlap(context, grid, contacts, function, contacts->body[b]);
+  return status;
 }
 
 /* Contact by impulses separates the sides of a thin wall (thin_bodies.h), penalty contact does
@@ -108,7 +117,8 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
   const mps_status status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                                       "%lld particles lie inside the body, the first is %lld, the "
                                       "deepest %.4g m below the surface: "
-                                      "place it outside, or let them be pushed out with inside = 1",
+                                      "place it outside, or let them be pushed out by inside = "
+                                      "MPS_CONTACT_INSIDE_PUSH",
                                       (long long)count, (long long)first, deepest);
   mpsi_fail_where(context, -1, first);
   return status;
@@ -138,6 +148,7 @@ static mps_status compare_ranks(mpsi_partition *partition, const char *function,
     MPSI_GIVE(&given, d, method);
     MPSI_GIVE(&given, d, sweeps);
     MPSI_GIVE(&given, d, friction);
+    mpsi_signal_give(&given, "friction_factor", d->friction_factor);
     MPSI_GIVE(&given, d, penalty);
     MPSI_GIVE(&given, d, xi);
     MPSI_GIVE(&given, d, offset);
@@ -276,7 +287,7 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
   if (status == MPS_OK)
     status = check_body(setup->context, setup->grid, setup->contact, function, body);
   if (status == MPS_OK) status = check_geometry(setup->context, setup->grid, function, body);
-  if (status == MPS_OK)
+  if (status == MPS_OK && setup->run->begun)
     status = check_overlap(setup->context, setup->grid, setup->contact, function, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(setup->context, function, body, def, owner, self, &contact);
@@ -297,7 +308,7 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
   status = check_thickness(setup->context, setup->grid, setup->contact, function, contact);
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
     status = mpsi_mpm_clear_body(setup, function, contact);
-  else if (status == MPS_OK)
+  else if (status == MPS_OK && setup->run->begun)
     status = mpsi_mpm_agree(
         setup->partition, function,
         mpsi_mpm_check_inside(setup->context, setup->grid, setup->p, function, contact, 0));
@@ -305,6 +316,8 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
     release_failed(contact);
     return status;
   }
+  /* before the first step the bodies may be placed for particles that are restored */
+  if (!setup->run->begun) setup->run->unchecked = true;
   warn_of_areas(setup->context, setup->grid, setup->p, setup->contact, contact);
   mpsi_contact_join(contact);
   body->axial = setup->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;

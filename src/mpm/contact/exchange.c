@@ -1,9 +1,13 @@
 /* exchange.c - see exchange.h. A message has one entry for each block of cells with constraints or
  * areas: its head; the nodes that the constraints use, each once; the constraints, each followed by
- * the numbers of its nodes in that list and by its weights, one or (in blocks at mirrors) three a
- * node; and the areas that its particles represent (area.c).
+ * the numbers of its nodes in that list and by its weights, one or (in blocks at mirrors or with
+ * listed particles) three a node; and the areas that its particles represent (area.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
 
 #include "mpm/base/kernels.h"
 
@@ -14,12 +18,13 @@
 #define PLACES (UNDER * UNDER * UNDER) /* index from which on values across thin bodies follow */
 
 typedef struct head {
-  int32_t at[3];  /* coordinates of the block of cells */
-  int32_t colour; /* colour of the block: the order of the sweeps */
-  int64_t cells;  /* index of the block on its own rank */
-  int64_t bytes;  /* length of the entry */
-  int64_t nodes, constraints;
-  int64_t components; /* components of a weight: 1, 3 */
+  int32_t at[3];              /* coordinates of the block of cells */
+  int32_t colour;             /* colour of the block: the order of the sweeps */
+  int64_t cells;              /* index of the block on its own rank */
+  int64_t bytes;              /* length of the entry */
+  int64_t nodes, constraints; /* contacts and groups */
+  int64_t groups;             /* of these */
+  int64_t components;         /* components of a weight: 1, 3 */
   int64_t areas;
 } head;
 
@@ -61,7 +66,7 @@ static int64_t entry_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts,
     if (mpsi_has_strength(contacts->handle[contacts->cell_pair[cells->first_pair + q].body]))
       bytes += grid->tile_nodes * (int64_t)sizeof(named_area);
   if (!block) return bytes;
-  for (int64_t n = block->first; n < block->first + block->count; n++) {
+  for (int64_t n = block->first; n < block->first + block->count + block->groups; n++) {
     nodes += all->constraint[n].nodes;
     bytes += (int64_t)sizeof(mpsi_constraint) + index_bytes(all->constraint[n].nodes);
   }
@@ -76,7 +81,7 @@ static int64_t name_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
   const mpsi_cell_block *cells = &grid->cells[block->cells];
   int64_t count = 0;
   memset(number, -1, 2 * PLACES * sizeof *number);
-  for (int64_t n = block->first; n < block->first + block->count; n++)
+  for (int64_t n = block->first; n < block->first + block->count + block->groups; n++)
     for (int32_t i = 0; i < all->constraint[n].nodes; i++) {
       const double *node = all->node[n * all->stride + i];
       const int place = place_under(grid, cells, node);
@@ -107,11 +112,13 @@ static char *write_constraint(const mpsi_grid *grid, const mpsi_contacts *contac
 static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                const mpsi_constraint_block *block, head *h, char *to) {
   const mpsi_cell_block *cells = &grid->cells[block->cells];
-  int32_t number[2 * PLACES];
+  int32_t *number = grid->workers[0].room; /* no other thread is at work */
+  _Static_assert(2 * PLACES * sizeof *number <= MPSI_WORKER_ROOM, "room of a worker");
   h->nodes = name_nodes(grid, contacts, block, number, (named_node *)to);
-  h->constraints = block->count;
+  h->constraints = block->count + block->groups;
+  h->groups = block->groups;
   to += h->nodes * (int64_t)sizeof(named_node);
-  for (int64_t n = block->first; n < block->first + block->count; n++)
+  for (int64_t n = block->first; n < block->first + h->constraints; n++)
     to = write_constraint(grid, contacts, cells, n, number, h->components, to);
   return to;
 }
@@ -119,7 +126,7 @@ static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *conta
 static char *write_areas(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_contacts *contacts, const mpsi_cell_block *cells, head *h,
                          char *to) {
-  double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  double *tile = grid->workers[0].room;
   named_area *out = (named_area *)to;
   for (int32_t q = 0; q < cells->pairs && contacts->impulses.areas; q++) {
     const mpsi_cell_pair *pair = &contacts->cell_pair[cells->first_pair + q];
@@ -142,7 +149,7 @@ static char *write_block(const mpsi_grid *grid, const mpsi_columns *p,
   const int32_t *at = cells->at;
   head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
             .cells = cells - grid->cells,
-            .components = cells->mirrors ? 3 : 1};
+            .components = cells->mirrors || (block && block->groups > 0) ? 3 : 1};
   memcpy(h.at, at, sizeof h.at);
   char *end = to + sizeof h;
   if (block) end = write_constraints(grid, contacts, block, &h, end);
@@ -289,7 +296,8 @@ static void append_constraints(exchange *m, int64_t slots) {
     while (colour <= e->h.colour) all->colour[colour++] = all->block_count;
     all->block[all->block_count++] =
         (mpsi_constraint_block){.first = all->constraint_count,
-                                .count = e->h.constraints,
+                                .count = e->h.constraints - e->h.groups,
+                                .groups = e->h.groups,
                                 .cells = e->own ? (int32_t)e->h.cells : -1};
     memcpy(all->block[all->block_count - 1].at, e->h.at, sizeof e->h.at);
     append_entry(m, e, all->constraint_count);

@@ -10,7 +10,7 @@
 
 #include "impulses.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/mpm.h>
 
 struct mpsi_grid;

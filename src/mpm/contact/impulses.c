@@ -8,7 +8,12 @@
  * are divided among the threads, with the same bits. A free body couples all blocks; then one
  * thread sweeps over them in their order. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "sweeps.h"
+#include "mpm/base/energy.h"
+#include "mpm/base/run.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/prescribed.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
 
 #include "domain/domain_internal.h"
 
@@ -21,7 +26,8 @@
 typedef struct sweep {
   const mpsi_contact_stage *stage;
   int64_t first; /* first block of the colour */
-  bool warm, back;
+  mpsi_sweep_kind kind;
+  bool back;
 } sweep;
 
 static void one_block(void *data, int64_t unit, int32_t worker) {
@@ -30,17 +36,19 @@ static void one_block(void *data, int64_t unit, int32_t worker) {
   mpsi_impulses *all = &stage->contact->impulses;
   mpsi_constraint_block *block = &all->block[s->first + unit];
   (void)worker;
-  if (s->warm)
-    stage->kernels->warm(all, stage->dt, block);
+  if (s->kind == MPSI_SWEEP_WARM)
+    stage->kernels->warm(all, stage->transfer.run->dt, block);
+  else if (s->kind == MPSI_SWEEP_RELEASE)
+    stage->kernels->release(all, block);
   else
     stage->kernels->sweep(all, stage->transfer.grid->dim, block, s->back);
 }
 
-static void sweep_all(const mpsi_contact_stage *stage, bool warm, bool back) {
+void mpsi_mpm_sweep_all(const mpsi_contact_stage *stage, mpsi_sweep_kind kind, bool back) {
   const mpsi_impulses *all = &stage->contact->impulses;
   const int32_t workers = stage->transfer.grid->worker_count;
   const bool shared = !all->free_bodies && workers > 1 && all->constraint_count > SHARED;
-  sweep s = {stage, 0, warm, back};
+  sweep s = {stage, 0, kind, back};
   if (!shared) {
     for (int64_t k = 0; k < all->block_count; k++)
       one_block(&s, back ? all->block_count - 1 - k : k, 0);
@@ -143,24 +151,26 @@ static void store_impulses(mpsi_contacts *contacts, double dt) {
 void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage) {
   mpsi_impulses *all = &stage->contact->impulses;
   const bool any =
-      stage->partition ? stage->contact->exchange.constraints > 0 : all->constraint_count > 0;
+      stage->partition ? stage->contact->exchange.constraints > 0 : all->contact_count > 0;
   double tolerance;
   const int32_t most = most_sweeps(stage->contact, &tolerance);
-  if (any) sweep_all(stage, true, false);
+  if (any) mpsi_mpm_sweep_all(stage, MPSI_SWEEP_WARM, false);
   all->sweeps = 0, all->left = 0.0;
   for (int32_t s = 1; any && s <= most; s++) {
     if (s % 2 != 0) mpsi_mpm_distribute_areas(stage);
-    sweep_all(stage, false, s % 2 == 0);
+    mpsi_mpm_sweep_all(stage, MPSI_SWEEP_UPDATE, s % 2 == 0);
     all->sweeps = s;
     if (s < most && (tolerance == 0.0 || !may_end_after(s))) continue;
     find_change(stage->contact, stage->partition, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
+  /* they come again when the boundaries have acted */
+  if (any && stage->prescribed) mpsi_mpm_sweep_all(stage, MPSI_SWEEP_RELEASE, false);
 }
 
 void mpsi_mpm_end_impulses(const mpsi_contact_stage *stage) {
   mpsi_mpm_mirror_constraints(stage);
-  store_impulses(stage->contact, stage->dt);
+  store_impulses(stage->contact, stage->transfer.run->dt);
 }
 
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,

@@ -7,9 +7,12 @@
 #include "contact/corner.h"
 #include "contact/impulse.h"
 #include "mpm/base/parts.h"
+#include "mpm/grid/blocks.h"
 #include "core/base/room.h"
 
 #include <mps/mpm.h>
+
+#include <string.h>
 
 /* Contact constraint: a particle that may reach a body in this step. Constraint k of the list has
  * weight[k * stride] and on, node[k * stride] and on. The weight of a node is 1/m, followed by psi
@@ -30,12 +33,16 @@ typedef struct mpsi_constraint {
   int32_t areas; /* number of nodes, in around[], whose areas it has a part of (area.c) */
 } mpsi_constraint;
 
-/* Constraints of a block of cells, consecutive in the list. */
+/* Constraints of a block of cells, consecutive in the list: contacts, then groups of listed
+ * particles (prescribed.h). Of the latter `particle` is the number of the group, the body is -1 -
+ * list, `carried` is less the prescribed velocity, `impulse.normal` has the inverses of the
+ * mobilities (0: a component that is not prescribed) and `tangent_impulse` the impulse. */
 typedef struct mpsi_constraint_block {
-  int64_t first, count;
+  int64_t first, count, groups;
   int32_t cells;            /* block of cells; -1: of another rank */
   int32_t at[3];            /* coordinates of the block */
   double changed, impulses; /* (N s)2, sums of squares in the last sweep: changes, impulses */
+  double group_changed, group_impulses; /* likewise, of the groups */
 } mpsi_constraint_block;
 
 /* Impulse of a body on a particle in the last step, from which the sweeps of the next one start. */
@@ -62,7 +69,8 @@ typedef struct mpsi_impulses {
   double **node; /* its four values, as in mpsi_node */
   int32_t *candidate;
   int64_t constraint_count, block_count;
-  int64_t colour[9]; /* first block of each colour in `block` */
+  int64_t contact_count; /* of the constraints; without bodies: of all */
+  int64_t colour[9];     /* first block of each colour in `block` */
   int32_t stride;
   bool free_bodies;        /* a body in contact moves freely */
   mpsi_impulse_body *body; /* body of each contact */
@@ -98,10 +106,10 @@ void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
 /* constraints.c: adds the mirrors' part of a step's contact impulses to the impulses of the
  * walls. */
 void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
-/* constraints.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
- * step on a particle, or NULL; foot and half size with which a particle bears on the contact's
- * body; removes the impulses of a contact that has ended, and moves the bodies above it down by
- * one. */
+/* warm_start.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
+ * step on a particle, or NULL; removes the impulses of a contact that has ended, and moves the
+ * bodies above it down by one. constraints.c: foot and half size with which a particle bears on the
+ * contact's body. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
                                                int32_t body);
@@ -112,6 +120,23 @@ void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);
  * keeps them for the next step; then, with the final velocities of the nodes, the energy lost in
  * the contacts. */
 void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage);
+/* Relative change of the impulses in the last Gauss-Seidel sweep of a step, by which the sweeps
+ * end. */
+enum { MPSI_SWEEP_CHANGED, MPSI_SWEEP_IMPULSES, MPSI_SWEEP_SUMS };
+
+/* Largest sums over a block of cells of this rank of the squares of changes and of impulses, (N
+ * s)2. Their maxima over all ranks do not depend on the number of ranks. */
+void mpsi_mpm_sweep_sums(const mpsi_contacts *contacts, double *most);
+/* Root of the change over the impulses; 0 without a change. */
+double mpsi_mpm_relative_change(const double *most);
+/* A sweep over all blocks: an update of each constraint, the warm start, or the impulses of listed
+ * particles off the nodes. */
+typedef enum mpsi_sweep_kind {
+  MPSI_SWEEP_UPDATE,
+  MPSI_SWEEP_WARM,
+  MPSI_SWEEP_RELEASE
+} mpsi_sweep_kind;
+void mpsi_mpm_sweep_all(const mpsi_contact_stage *stage, mpsi_sweep_kind kind, bool back);
 void mpsi_mpm_end_impulses(const mpsi_contact_stage *stage);
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                 mpsi_energy *energy, const mpsi_kernels *kernels);
@@ -128,6 +153,21 @@ static inline bool mpsi_by_impulses(const mps_contact *contact) {
 /* Weights of an even constraint: pairs of 1/m and psi. */
 static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t constraint))[2] {
   return (double(*)[2])(double *)all->weight[constraint * all->stride];
+}
+
+/* Adds a node with a weight for each component to a constraint, at first without any
+ * (`may_be_there`: the node can be listed already, when it is the image of a ghost too). */
+static inline void mpsi_mpm_add_node(mpsi_constraint *constraint, double **node, double (*to)[4],
+                                     double *at, const double *weight, bool may_be_there) {
+  int32_t i = may_be_there ? 0 : constraint->nodes;
+  while (i < constraint->nodes && node[i] != at) i++;
+  if (i == constraint->nodes) {
+    node[constraint->nodes++] = at;
+    to[i][MPSI_MASS] = 1.0 / at[MPSI_MASS];
+    memcpy(to[i] + MPSI_VECTOR, weight, 3 * sizeof *weight);
+    return;
+  }
+  for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
 #endif

@@ -3,6 +3,9 @@
  * its active nodes (Nakamura 5.1, with the side test of support.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
+#include "mpm/ranks/messages.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/pairs.h"
 
 #include <string.h>
 
@@ -111,6 +114,26 @@ static bool cells_near(const mpsi_grid *grid, const mpsi_cell_block *cells, int 
 typedef void (*corner_fn)(const mpsi_inside_search *of, const mpsi_cell_block *cells, const int *at,
                           void *data);
 
+/* Corners of a particle's own cell, tile nodes from[] to to[]: those of both cells where it is on
+ * their border. Returns whether it is on none. */
+static bool find_own_corners(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_cell_block *cells, int64_t k, int *from, int *to) {
+  bool within = true;
+  for (int c = 0; c < grid->dim; c++) {
+    /* counted from the block: not negative, so that truncation is floor */
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+    const double low = (double)(grid->low[c] - first), last = (double)(grid->high[c] - 1 - first);
+    const double X = mpsi_grid_at(grid, c, p->x[c][k]) - (double)first;
+    const double own = X < low ? low : X < last ? (double)(int)X : last;
+    const bool below = X - own < MPSI_ON_BORDER && own > low;
+    const bool above = own + 1.0 - X < MPSI_ON_BORDER && own < last;
+    from[c] = (int)own + above;
+    to[c] = (int)own + !below;
+    within = within && !below && !above;
+  }
+  return within;
+}
+
 /* Calls `work` for the corners of all cells that hold particles and may have corners inside bodies,
  * for some corners more than once. */
 static void for_corners(const mpsi_inside_search *of, const mpsi_cell_block *cells, corner_fn work,
@@ -121,24 +144,15 @@ static void for_corners(const mpsi_inside_search *of, const mpsi_cell_block *cel
   memset(seen, 0, (size_t)of->grid->tile_nodes * sizeof *seen);
   for (int64_t k = cells->begin;
        (k = of->kernels->next_in(of->grid, of->p, cells, low, high, k)) < cells->end; k++) {
-    int at[3] = {0};
-    bool near = true;
-    for (int c = 0; c < of->grid->dim; c++) {
-      /* counted from the block: not negative, so that truncation is floor */
-      const double first = (double)cells->at[c] * MPSI_SIDE;
-      const double last = (double)(of->grid->high[c] - 1) - first;
-      const double X = mpsi_grid_at(of->grid, c, of->p->x[c][k]) - first;
-      at[c] = (int)(X < last ? X : last);
-      near = near && at[c] >= low[c] && at[c] < high[c];
-    }
+    int from[3] = {0}, to[3] = {0}, at[3];
+    const bool within = find_own_corners(of->grid, of->p, cells, k, from, to);
+    bool *here = &seen[mpsi_tile_index(from[0], from[1], from[2])], near = !within || !*here;
+    for (int c = 0; c < of->grid->dim; c++) near = near && to[c] > low[c] && from[c] < high[c];
     if (!near) continue;
-    bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
-    if (*here) continue;
-    *here = true;
-    for (int q = 0; q < 1 << of->grid->dim; q++) {
-      const int corner[3] = {at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)};
-      work(of, cells, corner, data);
-    }
+    if (within) *here = true;
+    for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
+      for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
+        for (at[0] = from[0]; at[0] <= to[0]; at[0]++) work(of, cells, at, data);
   }
 }
 
@@ -184,10 +198,6 @@ static void set_corner_bit(const mpsi_inside_search *of, const mpsi_cell_block *
   ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
 }
 
-static void list_corners(const mpsi_inside_search *of, int64_t b, uint64_t *bits) {
-  for_corners(of, &of->grid->cells[b], set_corner_bit, bits);
-}
-
 static void mark_ghost_corners(const mpsi_inside_search *of, int64_t b, const uint64_t *bits) {
   for (int t = 0; t < of->grid->tile_nodes; t++) {
     int at[3];
@@ -197,26 +207,33 @@ static void mark_ghost_corners(const mpsi_inside_search *of, int64_t b, const ui
   }
 }
 
-/* On several ranks: exchanges, as one bit for each node of a tile, the corners of cells that hold
- * particles, and whether thin bodies make nodes of the block two-sided. */
-mps_status mpsi_mpm_exchange_corners(const mpsi_inside_search *of, mpsi_partition *partition,
-                                     const char *function, bool known) {
-  const int64_t nodes = (of->grid->tile_nodes + 63) / 64;
-  const int64_t words = nodes + 1; /* the last one: two-sided; fewer than a parcel has */
-  uint64_t *out = (uint64_t *)partition->out, *in = (uint64_t *)partition->in;
-  if (partition->borders > 0) memset(out, 0, (size_t)(partition->borders * words) * sizeof *out);
-  for (int64_t k = 0; known && k < partition->borders; k++) {
-    list_corners(of, partition->border[k], out + k * words);
-    out[k * words + nodes] = of->grid->cells[partition->border[k]].thin;
-  }
-  const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
-  mps_status status = mpsi_halo_begin_bytes(partition->halo, function, item, out, in);
-  if (status == MPS_OK) status = mpsi_halo_end_bytes(partition->halo, function);
-  for (int64_t b = 0; known && status == MPS_OK && b < of->grid->cell_count; b++) {
+/* Words of one bit for each node of a tile; the last one: whether the block is two-sided. */
+static int64_t corner_words(const mpsi_grid *grid) { return (grid->tile_nodes + 63) / 64 + 1; }
+
+static void pack_corners(void *search, int64_t b, int32_t worker, double *message) {
+  const mpsi_inside_search *of = search;
+  uint64_t *bits = (uint64_t *)message;
+  (void)worker;
+  memset(bits, 0, (size_t)corner_words(of->grid) * sizeof *bits);
+  if (of->failed) return;
+  for_corners(of, &of->grid->cells[b], set_corner_bit, bits);
+  bits[corner_words(of->grid) - 1] = of->grid->cells[b].thin;
+}
+
+/* On several ranks: exchanges the corners of cells that hold particles, and whether thin bodies
+ * make nodes of the block two-sided. */
+mps_status mpsi_mpm_exchange_corners(mpsi_inside_search *of, mpsi_partition *partition,
+                                     const char *function) {
+  const int64_t words = corner_words(of->grid); /* fewer than a tile has */
+  const mps_status status =
+      mpsi_mpm_exchange_messages(of->context, partition, function, words, pack_corners, of);
+  for (int64_t b = 0; !of->failed && status == MPS_OK && b < of->grid->cell_count; b++) {
     mpsi_cell_block *cells = &of->grid->cells[b];
+    double *message;
     if (!cells->ghost) continue;
-    mark_ghost_corners(of, b, in + cells->parcel * words);
-    cells->thin = in[cells->parcel * words + nodes] != 0;
+    (void)mpsi_mpm_find_message(partition, cells, &message);
+    mark_ghost_corners(of, b, (const uint64_t *)message);
+    cells->thin = ((const uint64_t *)message)[words - 1] != 0;
   }
   return status;
 }

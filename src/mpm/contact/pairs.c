@@ -1,6 +1,9 @@
 /* pairs.c - before each step: which blocks of cells and of nodes are near which bodies. Only these
  * pairs are searched for contact. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/particles/loads.h"
+#include "mpm/ranks/partition.h"
+#include "core/base/room_array.h"
 
 #include <string.h>
 
@@ -113,7 +116,7 @@ static bool list_node_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts
     mpsi_node_block *nodes = &grid->nodes[g];
     const uint64_t *near = near_row(contacts, g);
     nodes->first_pair = (int32_t)count->nodes;
-    nodes->waits = false;
+    nodes->waits = nodes->inside = nodes->thin = false;
     for (int32_t k = 0; k < contacts->bodies; k++) {
       if (!has_bit(near, k)) continue;
       nodes->waits = nodes->waits || needs_mass(contacts, k);
@@ -130,12 +133,9 @@ static bool list_node_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts
 
 /* Memory for the surface normals at the nodes, and for the nodal sums of penalty contacts. */
 static bool ensure_nodes(mps_context *context, mpsi_contacts *contact, int64_t nodes) {
-  if (!mpsi_room_ensure(context, &contact->normal_room, nodes, sizeof *contact->normal) ||
-      !mpsi_room_ensure(context, &contact->node_room, contact->penalty_bodies > 0 ? nodes : 0,
-                        sizeof *contact->node))
+  if (!MPSI_ENSURE(context, contact, normal, nodes) ||
+      !MPSI_ENSURE(context, contact, node, contact->penalty_bodies > 0 ? nodes : 0))
     return false;
-  contact->normal = contact->normal_room.item;
-  contact->node = contact->node_room.item;
   return true;
 }
 
@@ -169,20 +169,16 @@ mps_status mpsi_mpm_list_pairs(mps_context *context, const mpsi_grid *grid, mpsi
   const int64_t nodes = count.nodes * grid->block_nodes;
   const int64_t masks = count.near * grid->block_nodes;
   good = good && ensure_nodes(context, contact, nodes) && mpsi_mpm_sum_room(context, contact) &&
-         mpsi_room_ensure(context, &contact->load_room, count.loads, sizeof *contact->load) &&
-         mpsi_room_ensure(context, &contact->held_room, nodes, sizeof *contact->held) &&
-         mpsi_room_ensure(context, &contact->inside_room, masks, sizeof *contact->inside) &&
-         mpsi_room_ensure(context, &contact->reached_room, masks, sizeof *contact->reached);
+         MPSI_ENSURE(context, contact, load, count.loads) &&
+         MPSI_ENSURE(context, contact, held, nodes) &&
+         MPSI_ENSURE(context, contact, inside, masks) &&
+         MPSI_ENSURE(context, contact, reached, masks);
   if (!good)
     return mpsi_fail_memory(context, function,
                             (size_t)(count.cells + 1) * sizeof(mpsi_cell_pair) +
                                 (size_t)nodes * (sizeof *contact->normal + sizeof *contact->node));
   contact->cell_pair = contact->cell_pair_room.item;
   contact->node_pair = contact->node_pair_room.item;
-  contact->load = contact->load_room.item;
-  contact->held = contact->held_room.item;
-  contact->inside = contact->inside_room.item;
-  contact->reached = contact->reached_room.item;
   contact->cell_pair_count = count.cells;
   contact->node_pair_count = count.nodes;
   contact->mask_count = count.near;

@@ -111,9 +111,9 @@ void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
 void mpsi_mpm_find_inside(void *search, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(void *search, int64_t b, int32_t worker);
 /* inside.c: marks the corners of the cells of ghost blocks that hold particles, as their ranks have
- * found them. `known`: this rank has found its own. Collective. */
-mps_status mpsi_mpm_exchange_corners(const mpsi_inside_search *of, mpsi_partition *partition,
-                                     const char *function, bool known);
+ * found them. Collective. */
+mps_status mpsi_mpm_exchange_corners(mpsi_inside_search *of, mpsi_partition *partition,
+                                     const char *function);
 /* area.c: distributes the surface area that the pair's particles represent to the nodes of the
  * tile; false: there is none. */
 bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
@@ -132,6 +132,9 @@ void mpsi_mpm_update_bodies(const mpsi_grid *grid, const mpsi_contacts *contacts
  * the contact pushes them out. */
 mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                  const char *function, const mps_contact *contact, int64_t from);
+/* contacts.c: MPS_ERROR_ARGUMENT where two bodies of the solver overlap. */
+mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
+                                   const mpsi_contacts *contacts, const char *function);
 /* removal.c, bodies that remove particles from their inside: whether there is any; before a step,
  * removal by all (`cleared`: some rank has removed particles; `status`: of the step so far on this
  * rank); removal by one when its contact is made. The latter two are collective. */
@@ -155,7 +158,7 @@ struct mpsi_contact_setup {
   mpsi_rooms *rooms;
   mpsi_contacts *contact;
   mpsi_partition *partition; /* NULL: one rank */
-  const mpsi_run *run;
+  mpsi_run *run;
   const mps_mpm_def *def;
 };
 

@@ -3,7 +3,8 @@
 #ifndef MPSI_MPM_CONTACT_PARTICLE_H
 #define MPSI_MPM_CONTACT_PARTICLE_H
 
-#include "mpm/base/all_parts.h"
+#include "mpm/base/columns.h"
+#include "pairs.h"
 
 /* Depth, force and slip of a particle in contact with a body, by its state at the beginning of the
  * step; false where it is not in contact. */

@@ -5,6 +5,7 @@
  * is one row, of the ranks with constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
+#include "core/base/room_array.h"
 #include "mpm/grid/blocks.h"
 #include "mpm/ranks/partition.h"
 #include "pairs.h"
@@ -28,7 +29,8 @@ static bool has_free_bodies(const mpsi_contacts *contacts) {
 /* Number of rows of the matrix: two for each rank, or one. */
 static int32_t rows_of(const mpsi_contacts *contacts, const mps_domain *domain) {
   const int32_t ranks = mps_domain_size(domain);
-  return has_free_bodies(contacts) || ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
+  const bool lists = contacts->bodies == 0; /* whose solution is local, but reaches far */
+  return lists || has_free_bodies(contacts) || ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
 }
 
 static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> (bit % 64) & 1; }
@@ -40,11 +42,8 @@ mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *m, mps_domain *domain,
   mps_context *context = mpsi_domain_context(domain);
   const int64_t words = words_of(domain), ranks = mps_domain_size(domain);
   const int64_t rows = ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
-  const bool good =
-      mpsi_room_ensure(context, &m->words_room, HEAD + rows * words, sizeof *m->words) &&
-      mpsi_room_ensure(context, &m->own_room, 2 * words, sizeof *m->own);
-  m->words = m->words_room.item;
-  m->own = m->own_room.item;
+  const bool good = MPSI_ENSURE(context, m, words, HEAD + rows * words) &&
+                    MPSI_ENSURE(context, m, own, 2 * words);
   return good ? MPS_OK
               : mpsi_fail_memory(context, function,
                                  (size_t)(HEAD + (rows + 2) * words) * sizeof *m->words);
@@ -175,7 +174,7 @@ mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, const mpsi_grid *grid
   uint64_t *row = (uint64_t *)m->words + HEAD;
   memset(m->words, 0, (size_t)(HEAD + rows * words) * sizeof *m->words);
   m->words[FAILED] = status != MPS_OK;
-  m->words[CONSTRAINTS] = contacts->impulses.constraint_count;
+  m->words[CONSTRAINTS] = contacts->impulses.contact_count;
   if (status == MPS_OK && rows == 1)
     send_rows(grid, mps_domain_rank(domain), row);
   else if (status == MPS_OK) {

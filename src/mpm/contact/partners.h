@@ -11,7 +11,7 @@
 #include "mpm/base/parts.h"
 #include "core/base/room.h"
 
-#include <mps/domain.h>
+#include <mps/experimental/domain.h>
 #include <mps/mpm.h>
 
 struct mpsi_contacts;

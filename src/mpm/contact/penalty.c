@@ -2,7 +2,7 @@
  * block are summed into tiles of the worker, one for each pair of the block and a body, and these
  * are added to the nodes in the order of the colours. Tiles of other ranks arrive with those of
  * momentum (step/tiles.c). SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "mpm/contact/pairs.h"
 
 #include <string.h>
 

@@ -3,7 +3,10 @@
  * contact of either method. The equations of one particle or node are in src/contact: friction.c
  * has (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/all_parts.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/particles/loads.h"
+#include "mpm/ranks/partition.h"
+#include "mpm/step/damping.h"
 
 #include <string.h>
 

@@ -1,6 +1,8 @@
 /* removal.c - bodies that remove particles from their inside: when the contact is made, and before
  * each step those deeper than the contact's `depth`. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 /* shared_nodes.c - replicas of the nodes that constraints of all partner ranks use, each once,
  * found by a hash of their coordinates (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
+#include "mpm/contact/thin_bodies.h"
 
 #include "mpm/grid/blocks.h"
 
@@ -27,7 +28,7 @@ static double *find_home(const mpsi_grid *grid, const int32_t *at, bool across) 
   }
   if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
   if (across && grid->nodes[low].across < 0) return NULL;
-  return grid->node[mpsi_grid_first_node(grid, across ? grid->nodes[low].across : low) + local];
+  return grid->node[mpsi_first_node(grid, across ? grid->nodes[low].across : low) + local];
 }
 
 /* Slot of the hash table that has the node, or is free for it. */

@@ -3,6 +3,7 @@
  * instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact/update.h"
 #include "mpm/base/loops.h"
+#include "mpm/contact/pairs.h"
 
 #define WAYS 8 /* independent partial sums: additions do not wait for one another */
 
@@ -66,6 +67,21 @@ void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t con
   velocity_at(all, constraint, v);
 }
 
+/* Applies the impulses of listed particles to the nodes, or their opposites. */
+MPSI_INLINE void kick_groups(mpsi_impulses *all, const mpsi_constraint_block *block, double sign) {
+  const int64_t first = block->first + block->count;
+  for (int64_t n = first; n < first + block->groups; n++) {
+    const double *by = all->constraint[n].impulse.tangent_impulse;
+    kick_nodes(all->node + n * all->stride, all->weight[n * all->stride], false,
+               all->constraint[n].nodes,
+               (mpsi_quad){0.0, sign * by[0], sign * by[1], sign * by[2]});
+  }
+}
+
+void MPSI_LEVELLED(mpsi_mpm_release)(mpsi_impulses *all, const mpsi_constraint_block *block) {
+  kick_groups(all, block, -1.0);
+}
+
 /* Warm start: applies the impulses of the last step, in `tangent_impulse`, in the ratio of the
  * steps' dt. */
 void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
@@ -78,6 +94,32 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
     mpsi_impulse_warm(c, &all->body[all->constraint[n].body], last, fraction, by);
     if (c->normal_impulse > 0.0) kick(all, n, by);
   }
+  if (block->groups > 0) kick_groups(all, block, 1.0);
+}
+
+/* Share of an impulse by which a constraint of listed particles yields: bounds the impulses of
+ * constraints that contradict one another. */
+#define YIELD 1e-8
+
+/* One update of the constraints of listed particles. */
+MPSI_APART void sweep_groups(mpsi_impulses *all, mpsi_constraint_block *block, bool back) {
+  double changed = 0.0, impulses = 0.0;
+  for (int64_t i = 0; i < block->groups; i++) {
+    const int64_t n = block->first + block->count + (back ? block->groups - 1 - i : i);
+    mpsi_impulse *c = &all->constraint[n].impulse;
+    double u[3], by[3];
+    velocity_at(all, n, u);
+    for (int a = 0; a < 3; a++) {
+      by[a] = -(u[a] + YIELD * c->mobility[a] * c->tangent_impulse[a]) * c->normal[a];
+      c->tangent_impulse[a] += by[a];
+    }
+    kick_nodes(all->node + n * all->stride, all->weight[n * all->stride], false,
+               all->constraint[n].nodes, (mpsi_quad){0.0, by[0], by[1], by[2]});
+    changed += mpsi_dot3(by, by);
+    impulses += mpsi_dot3(c->tangent_impulse, c->tangent_impulse);
+  }
+  block->group_changed = changed;
+  block->group_impulses = impulses;
 }
 
 /* One Gauss-Seidel update of each constraint of a block, with the sums of squares of impulses and
@@ -85,6 +127,7 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
 void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,
                                    bool back) {
   double changed = 0.0, impulses = 0.0;
+  if (block->groups > 0 && back) sweep_groups(all, block, back);
   for (int64_t i = 0; i < block->count; i++) {
     const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
     const mpsi_impulse_body *body = &all->body[all->constraint[n].body];
@@ -102,4 +145,5 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constra
   }
   block->changed = changed;
   block->impulses = impulses;
+  if (block->groups > 0 && !back) sweep_groups(all, block, back);
 }

@@ -1,7 +1,9 @@
 /* thin_bodies.c - nodes that thin bodies separate from particles: see thin_bodies.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/all_parts.h"
+#include "core/base/room_array.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/pairs.h"
 
 #include <string.h>
 
@@ -21,15 +23,9 @@ bool mpsi_mpm_begin_across(mps_context *context, const mpsi_grid *grid, const mp
   }
   if (!contact->thin) return true;
   const int64_t block = grid->block_nodes;
-  const bool good =
-      mpsi_room_ensure(context, &contact->sight_room, contact->node_pair_count * block,
-                       sizeof *contact->sight) &&
-      mpsi_room_ensure(context, &contact->beside_room, contact->mask_count * block,
-                       sizeof *contact->beside) &&
-      mpsi_room_ensure(context, &contact->across_room, p->count, sizeof *contact->across);
-  contact->sight = contact->sight_room.item;
-  contact->beside = contact->beside_room.item;
-  contact->across = contact->across_room.item;
+  const bool good = MPSI_ENSURE(context, contact, sight, contact->node_pair_count * block) &&
+                    MPSI_ENSURE(context, contact, beside, contact->mask_count * block) &&
+                    MPSI_ENSURE(context, contact, across, p->count);
   return good;
 }
 
@@ -79,11 +75,9 @@ void mpsi_mpm_find_sight(const mpsi_grid *grid, const mpsi_contacts *contacts, i
 
 /* Memory for `count` blocks of nodes, keeping the present ones. */
 static bool keep_and_widen(mps_context *context, mpsi_grid *grid, int64_t count) {
-  const bool good =
-      mpsi_room_keep(context, &grid->nodes_room, count, sizeof *grid->nodes) &&
-      mpsi_room_ensure(context, &grid->node_room, count * grid->block_nodes, sizeof *grid->node);
+  const bool good = mpsi_room_keep(context, &grid->nodes_room, count, sizeof *grid->nodes) &&
+                    MPSI_ENSURE(context, grid, node, count * grid->block_nodes);
   grid->nodes = grid->nodes_room.item;
-  grid->node = grid->node_room.item;
   return good;
 }
 
@@ -92,10 +86,8 @@ static bool ensure_tiles(mps_context *context, mpsi_grid *grid, mpsi_mirrors *mi
   const int64_t tile = grid->tile_nodes, plane = mpsi_mirror_plane(grid->tile_nodes);
   if (!mpsi_room_ensure(context, &grid->across_room, 2 * tile * grid->worker_count,
                         sizeof *grid->node) ||
-      !mpsi_room_ensure(context, &mirrors->mass_room, 2 * mirrors->count * plane,
-                        sizeof *mirrors->mass))
+      !MPSI_ENSURE(context, mirrors, mass, 2 * mirrors->count * plane))
     return false;
-  mirrors->mass = mirrors->mass_room.item;
   for (int32_t k = 0; k < grid->worker_count; k++) {
     grid->workers[k].across_tile = (mpsi_node *)grid->across_room.item + 2 * tile * k;
     grid->workers[k].across_force = grid->workers[k].across_tile + tile;

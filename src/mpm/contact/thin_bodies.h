@@ -17,6 +17,7 @@
 #define MPSI_MPM_THIN_BODIES_H
 
 #include "mpm/base/parts.h"
+#include <stdbool.h>
 
 #include <mps/mpm.h>
 

@@ -1,12 +1,64 @@
-/* warm_start.c - warm-start impulses on several ranks: after a step each rank has those of its own
- * particles and of its contact partners' (partners.h). SPDX-License-Identifier: BSD-3-Clause */
+/* warm_start.c - impulses of the last step, from which the sweeps start, by particle and body. On
+ * several ranks each has, after a step, those of its own particles and of its contact partners'
+ * (partners.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
+#include "mpm/ranks/partition.h"
+
+#include "core/base/room_array.h"
+#include "pairs.h"
 
 #include "core/particles/particles_internal.h"
 #include "domain/domain_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
+  const uint64_t key = ((uint64_t)id * 64u + (uint64_t)body) * UINT64_C(0x9E3779B97F4A7C15);
+  return (key >> 20) & all->lookup_mask;
+}
+
+/* Hash table with at least twice as many slots as impulses. */
+bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts) {
+  mpsi_impulses *all = &contacts->impulses;
+  int64_t slots = 16;
+  while (slots < 2 * all->warm_count) slots *= 2;
+  if (!MPSI_ENSURE(context, all, lookup, slots)) return false;
+  all->lookup = all->lookup_room.item;
+  all->lookup_mask = (uint64_t)slots - 1;
+  for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
+  for (int64_t k = 0; k < all->warm_count; k++) {
+    uint64_t at = slot_of(all, all->warm[k].id, all->warm[k].body);
+    while (all->lookup[at] >= 0) at = (at + 1) & all->lookup_mask;
+    all->lookup[at] = (int32_t)k;
+  }
+  return true;
+}
+
+const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
+                                               int32_t body) {
+  const mpsi_impulses *all = &contacts->impulses;
+  for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
+       at = (at + 1) & all->lookup_mask) {
+    const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
+    if (warm->id == id && warm->body == body) return warm;
+  }
+  return NULL;
+}
+
+void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body) {
+  mpsi_impulses *all = &contacts->impulses;
+  int64_t to = 0;
+  for (int64_t k = 0; k < all->warm_count; k++) {
+    mpsi_warm_impulse warm = all->warm[k];
+    if (warm.body == body) continue;
+    warm.body -= warm.body > body;
+    all->warm[to++] = warm;
+  }
+  all->warm_count = to;
+}
+
+/* ---- several ranks --------------------------------------------------------------------------- */
 
 /* Keeps the impulses of this rank's particles; returns their number. */
 static int64_t keep_local(mpsi_impulses *all, const mps_particles *particles) {

@@ -49,7 +49,7 @@ typedef struct mpsi_cell_block {
    *   thin    a thin body may separate nodes of its stencils from particles (thin_bodies.h)
    *   apart   cut or split: the tile of forces is in use */
   bool edge, inside, cut, split, thin, apart;
-  uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
+  uint8_t mirrors; /* bit k: its stencils may have nodes on side k or beyond, a mirror (mirror.h) */
   int32_t first_mirror; /* first of these in mirrors.mirror */
   bool light; /* some block of nodes under it is light: retained momentum is returned (cut_gather.c)
                */
@@ -64,6 +64,7 @@ typedef struct mpsi_cell_block {
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
   bool lost;                  /* that particle is outside the domain; all are finite */
   double speed;               /* largest c + |v|, m/s */
+  double vis_viva;            /* twice the kinetic energy of its particles, J */
   double flow;                /* the same of the flow of pore water (laws.h) */
   /* On several ranks (partition.h): */
   bool ghost;      /* block of another rank, without particles here */
@@ -111,7 +112,10 @@ typedef struct mpsi_worker {
   mpsi_node *across_tile, *across_force; /* values across thin bodies (thin_bodies.h) */
   struct mpsi_penalty_node *penalty;     /* one tile for each pair of the block: see penalty.c */
   uint8_t *state;                        /* states of the tile's nodes, MPSI_... bits; 0: free */
+  void *room; /* MPSI_WORKER_ROOM bytes, aligned to 64: arrays of one call of P2G, G2P or the update
+                 of nodes, too large for the stack of a host's thread */
 } mpsi_worker;
+enum { MPSI_WORKER_ROOM = 104 << 10 };
 
 /* Least-squares fit of a particle beside bodies, stored by the scatter of a step for its gather
  * (least_squares.h). */
@@ -159,7 +163,7 @@ typedef struct mpsi_grid {
   mps_mpm_geometry geometry;
   double measure;         /* thickness, m, or sector angle, rad */
   double origin[3], cell; /* m */
-  /* For comparison (mps/experimental.h): */
+  /* For comparison (mps/experimental/papers.h): */
   bool by_weight;     /* momentum is transferred to the nodes by weights */
   bool strain_by_fit; /* the laws see the slopes of the fit */
   bool standard;      /* the original material point method: no support is fitted */
@@ -191,6 +195,14 @@ typedef struct mpsi_grid {
   mpsi_room fit_room, fitted_room;
 } mpsi_grid;
 
+/* A particle nearer than this (cells: more than round-off, less than any distance that matters) to
+ * a border between two cells belongs to both: of which one, round-off would decide, and differently
+ * in a mirror image. A side of the domain is no border. */
+#define MPSI_ON_BORDER 0x1p-30
+/* Weight along an axis from which on a node is seen by a particle. The stencil of a particle on a
+ * border has a node without weight on one side, and not the same one in a mirror image. */
+#define MPSI_SEEN 0x1p-60
+
 /* Coordinates within a block or tile of `side` nodes an axis. */
 static inline void mpsi_unravel(int k, int side, int *at) {
   at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
@@ -216,11 +228,13 @@ static inline double mpsi_base(int32_t spline, double X) {
   return spline == 3 ? floor(X) - 1.0 : floor(X - 0.5);
 }
 
-/* The block that a particle is sorted to, by the lowest node of its stencil. */
-static inline int64_t mpsi_block_of(int64_t base) {
-  const int64_t n = base - 1;
+/* The block of node n of an axis, which may be negative. */
+static inline int64_t mpsi_block_with(int64_t n) {
   return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
 }
+
+/* The block that a particle is sorted to, by the lowest node of its stencil. */
+static inline int64_t mpsi_block_of(int64_t base) { return mpsi_block_with(base - 1); }
 
 /* The order of blocks in lists: in z, then y, then x. */
 static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
@@ -234,8 +248,71 @@ static inline double mpsi_grid_at(const mpsi_grid *grid, int c, double x) {
   return (x - grid->origin[c]) * grid->inverse;
 }
 
-static inline int64_t mpsi_grid_first_node(const mpsi_grid *grid, int64_t g) {
+static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {
   return g * grid->block_nodes;
+}
+
+/* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
+static inline int64_t mpsi_own_cell(const mpsi_grid *grid, int c, double X) {
+  const int64_t cell = (int64_t)floor(X);
+  return cell < grid->high[c] ? cell : grid->high[c] - 1;
+}
+
+/* Number of nodes of a stencil beyond its lowest along axis c, as the loops read and write them:
+ * four nodes along x whatever the spline. */
+static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ? 3 : grid->spline; }
+
+/* Bytes of scratch memory of one worker. */
+static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
+  return MPSI_WORKER_ROOM + (size_t)grid->tile_nodes * (3 * sizeof(mpsi_node) + 1) +
+         sizeof(uint64_t);
+}
+
+/* Position x[3] (m) of the node with the coordinates `local` in the block at `at`. */
+static inline void mpsi_node_position(const mpsi_grid *grid, const int32_t *at, const double *local,
+                                      double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] =
+        c < grid->dim ? grid->origin[c] + grid->cell * ((double)at[c] * MPSI_SIDE + local[c]) : 0.0;
+}
+
+/* Position x[3] (m) of node k of the block of nodes at `at`. */
+static inline void mpsi_node_place(const mpsi_grid *grid, const int32_t *at, int k, double *x) {
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  const double local[3] = {place[0], place[1], place[2]};
+  mpsi_node_position(grid, at, local, x);
+}
+
+/* Block of nodes under the node (i, j, k) of a tile; number of the node in it. */
+static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
+  return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];
+}
+
+static inline int mpsi_local_under(int i, int j, int k) {
+  return ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
+}
+
+/* Node of the grid under the node (i, j, k) of a tile. */
+static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
+                                      int j, int k) {
+  return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
+}
+
+/* Number in grid->side of what a split node, or that across thin bodies, under the node (i, j, k)
+ * of a tile had before the forces. */
+static inline int64_t mpsi_side_under(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                                      bool across, int i, int j, int k) {
+  const int32_t own = mpsi_block_under(cells, i, j, k);
+  const mpsi_node_block *nodes = &grid->nodes[across ? grid->nodes[own].across : own];
+  return mpsi_first_node(grid, nodes->side) + mpsi_local_under(i, j, k);
+}
+
+/* Node of the grid with the values across thin bodies under the node (i, j, k) of a tile. */
+static inline int64_t mpsi_node_across(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
+                                       int j, int k) {
+  const int32_t across = grid->nodes[mpsi_block_under(cells, i, j, k)].across;
+  return mpsi_first_node(grid, across) + mpsi_local_under(i, j, k);
 }
 
 /* order.c: sorted keys and indices of the particles, with the block above the lower `own_bits`
@@ -257,9 +334,11 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
                                  mpsi_partition *partition, const char *function, int64_t count,
                                  const mpsi_block *block);
 /* node_update.c, of one block of nodes: sets its sums to zero; velocities and normal penalty
- * forces; friction, boundaries, damping. */
+ * forces; friction, boundaries, and, unless lists of particles follow, damping; damping after
+ * these. */
 void mpsi_mpm_clear_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_finish_nodes(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_damp_after_lists(void *solver, int64_t g, int32_t worker);
 
 #endif

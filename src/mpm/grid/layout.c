@@ -1,7 +1,10 @@
 /* layout.c - the blocks of cells that hold particles, and the blocks of nodes that their tiles
  * need. Both lists ascend in z, then y, then x. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
-
+#include "mpm/base/run.h"
+#include "mpm/grid/blocks.h"
+#include "mpm/contact/thin_bodies.h"
+#include "mpm/ranks/partition.h"
+#include "core/base/room_array.h"
 #include "core/particles/particles_internal.h"
 
 #include <string.h>
@@ -189,11 +192,9 @@ static void sort_colours(mpsi_grid *grid) {
 }
 
 bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells) {
-  const bool good = mpsi_room_ensure(context, &grid->cells_room, cells, sizeof *grid->cells) &&
-                    mpsi_room_ensure(context, &grid->coloured_room, cells, sizeof *grid->coloured);
+  const bool good =
+      MPSI_ENSURE(context, grid, cells, cells) && MPSI_ENSURE(context, grid, coloured, cells);
   grid->cell_count = grid->node_count = grid->across_count = 0;
-  grid->cells = grid->cells_room.item;
-  grid->coloured = grid->coloured_room.item;
   return good;
 }
 
@@ -202,15 +203,13 @@ bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells) 
   grid->cell_count = cells;
   sort_colours(grid);
   const int64_t nodes = make_nodes(grid, NULL);
-  if (!mpsi_room_ensure(context, &grid->nodes_room, nodes, sizeof *grid->nodes) ||
-      !mpsi_room_ensure(context, &grid->node_room, nodes * grid->block_nodes, sizeof *grid->node)) {
+  if (!MPSI_ENSURE(context, grid, nodes, nodes) ||
+      !MPSI_ENSURE(context, grid, node, nodes * grid->block_nodes)) {
     grid->cell_count = 0;
     return false;
   }
   grid->node_count = nodes;
   grid->across_count = 0;
-  grid->nodes = grid->nodes_room.item;
-  grid->node = grid->node_room.item;
   make_nodes(grid, grid->nodes);
   mpsi_mpm_link_blocks(grid);
   return mpsi_mpm_ensure_pass(context, grid);

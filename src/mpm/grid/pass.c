@@ -16,6 +16,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "blocks.h"
 #include "core/internal.h"
+#include "mpm/ranks/partition.h"
 
 #include <stdatomic.h>
 
@@ -29,6 +30,8 @@
 static int parity_of(const mpsi_node_block *nodes) {
   return (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
 }
+
+static bool awaits(const mpsi_pass *pass) { return pass->ranks && pass->arrive; }
 
 /* Whether this rank updates the block of nodes g, or gathers the block of cells b: see
  * partition.h. */
@@ -158,10 +161,10 @@ static void run_wave(const mpsi_grid *grid, const mpsi_pass *pass) {
   for (int32_t g = 0; pass->between && g < grid->node_count; g++)
     if (grid->nodes[g].waits) update_in_turn(&w, g);
   if (pass->between && !pass->between(pass->step)) return;
-  if (!gather_in_turn(&w, false) && !pass->arrive) return;
+  if (!gather_in_turn(&w, false) && !awaits(pass)) return;
   for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
     if (!grid->cells[b].late) scatter_in_turn(&w, b);
-  if (pass->arrive) pass->arrive(pass->data);
+  if (awaits(pass)) pass->arrive(pass->ranks);
   gather_in_turn(&w, true);
 }
 
@@ -315,7 +318,7 @@ static int32_t claim(const flow *f, int32_t worker, int32_t look, int32_t *entry
 
 /* Receives the sums of ghosts, on the caller's thread; their blocks are then ready to scatter. */
 static void receive(flow *f) {
-  f->pass->arrive(f->pass->data);
+  f->pass->arrive(f->pass->ranks);
   for (int32_t b = 0; b < f->cells; b++)
     if (f->grid->cells[b].ghost && count_down(&f->scatter_waits[b])) put(lane_of_cells(f, b), b);
   atomic_store_explicit(&f->arrived, true, memory_order_release);
@@ -363,7 +366,7 @@ static void fill(flow *f) {
   const mpsi_grid *grid = f->grid;
   int32_t held = 0;
   for (int32_t b = 0; b < f->cells; b++) {
-    const int32_t message = f->pass->arrive && grid->cells[b].ghost;
+    const int32_t message = awaits(f->pass) && grid->cells[b].ghost;
     atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits + message,
                           memory_order_relaxed);
     atomic_store_explicit(&f->gather_waits[b], 1 << grid->dim, memory_order_relaxed);
@@ -375,7 +378,7 @@ static void fill(flow *f) {
     if (atomic_load_explicit(&f->scatter_waits[b], memory_order_relaxed) == 0)
       put(lane_of_cells(f, b), b);
   }
-  atomic_init(&f->arrived, f->pass->arrive == NULL);
+  atomic_init(&f->arrived, !awaits(f->pass));
   for (int32_t g = 0; !f->pass->scatter && g < f->nodes; g++)
     put(lane_of_nodes(f, g), 2 * f->cells + g);
   for (int32_t k = 0; k < f->lanes; k++) {

@@ -21,7 +21,7 @@
 typedef void (*mpsi_mpm_task)(void *data, int64_t index, int32_t worker);
 
 typedef struct mpsi_pass {
-  void *data;                  /* of the tasks and of `arrive` */
+  void *data;                  /* of the tasks */
   mpsi_mpm_task clear;         /* of nodes, before the first block of cells adds to them */
   mpsi_mpm_task scatter;       /* of cells; NULL: none, and nothing is cleared */
   mpsi_mpm_task update;        /* of nodes, after all have added to them; NULL: none */
@@ -31,8 +31,10 @@ typedef struct mpsi_pass {
   void *step;                  /* data of `between` */
   mpsi_mpm_task finish;        /* of nodes; NULL: none */
   mpsi_mpm_task gather;        /* of cells; NULL: none */
-  void (*arrive)(void *data);  /* NULL: nothing; else receives the sums of ghosts (partition.h), on
-                                    the caller's thread, when little or nothing else is left to do */
+  mpsi_partition *ranks;       /* NULL: one process */
+  void (*arrive)(mpsi_partition *ranks); /* on several ranks, or NULL: receives the messages of
+                                    ghosts (ranks/messages.h), on the caller's thread, when little
+                                    or nothing else is left to do */
   bool ghosts; /* ghosts gather too, and nodes that only they cover are updated and finished */
 } mpsi_pass;
 

@@ -1,61 +1,158 @@
-/* conditions.c - the public functions for what acts on a solver: boundaries, loads and contacts.
- * They take its parts; the work is done by boundary/boundaries.c, particles/loads.c and
+/* conditions.c - what acts on a solver: boundaries and loads as numbered conditions
+ * (solver/conditions.h), contacts. The work is done by boundary/boundaries.c, particles/loads.c and
  * contact/contacts.c. SPDX-License-Identifier: BSD-3-Clause */
+#include "conditions.h"
 #include "mpm/base/mpm_solver.h"
+#include "mpm/particles/mpm_particles.h"
 
-#include "core/base/digits.h"
+#include "core/particles/particles_internal.h"
+
+#include <string.h>
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static mps_status check_ids(void *solver, const char *function, const void *def, int64_t count,
+                            const int64_t *ids) {
+  const mps_mpm *mpm = solver;
+  (void)def;
+  if (mpm->partition) return MPS_OK; /* they may be of another rank */
+  return mpsi_particles_check_ids(mpm->p.set, function, count, ids);
+}
+
+static bool counts(const void *solver, int64_t id) {
+  return mps_particles_index(((const mps_mpm *)solver)->p.set, id) >= 0;
+}
+
+static bool item(const void *solver, const void *def, int64_t k, double x[3], int64_t *id) {
+  const mps_mpm *mpm = solver;
+  (void)def;
+  if (k >= mpm->p.count) return false;
+  for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
+  *id = mpsi_particles_integers(mpm->p.set, "id")[k];
+  return true;
+}
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
-mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *def, int32_t *number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
-  return mpsi_mpm_add_boundary(&setup, __func__, def, number);
+static bool has_side(const void *solver, int32_t number) {
+  return mpsi_mpm_has_side(&((const mps_mpm *)solver)->grid, number);
 }
 
-mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *def) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
-  return mpsi_mpm_set_boundary(&setup, __func__, number, def);
+/* Sides are rollers until the caller says otherwise, and free once removed. */
+static void describe_side(const void *solver, int32_t number, void *def) {
+  const int32_t kind = ((const mps_mpm *)solver)->boundaries.hold[number].kind;
+  ((mps_mpm_boundary_def *)def)->kind = kind == MPSI_BOUNDARY_NONE ? MPS_BOUNDARY_FREE : kind;
 }
 
-mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
-  return mpsi_mpm_remove_boundary(&setup, __func__, number);
+static mps_status check_boundary(void *solver, const char *function, int32_t number,
+                                 const void *def) {
+  const mps_mpm_boundary_def *d = def;
+  const mps_mpm *mpm = solver;
+  const int64_t most = mpm->partition ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
+  if (number >= MPSI_SIDES && d->id_count > most)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld, allowed are 1 to %lld particles", (long long)d->id_count,
+                     (long long)most);
+  return mpsi_mpm_check_boundary(&setup, function, number, def);
 }
 
-mps_status mps_mpm_get_reaction_sized(const mps_mpm *mpm, int32_t number, mps_reaction *out,
-                                      size_t size) {
-  static const char function[] = "mps_mpm_get_reaction";
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_reaction reaction;
-  /* scratch and messages only: the state stays */
-  const mpsi_boundary_setup setup = mpsi_boundary_setup_of((mps_mpm *)mpm);
-  const mps_status status = mpsi_mpm_find_reaction(&setup, function, number, &reaction);
-  if (status != MPS_OK) return status;
-  return mpsi_out_write(mpm->context, function, out, size, &reaction, sizeof reaction);
+/* The nodes of a box are those of the grid. */
+static bool keeps(const void *def, mpsi_selected by) {
+  (void)def, (void)by;
+  return true;
+}
+
+static mps_status make_boundary(void *solver, const char *function, int32_t number, void *def,
+                                void *own) {
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
+  return mpsi_mpm_make_boundary(&setup, function, number, def, own);
+}
+
+static mps_status apply_boundary(void *solver, const char *function, int32_t number, void *def,
+                                 void *own, void *former) {
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
+  (void)former;
+  return def ? mpsi_mpm_set_boundary(&setup, function, number, def, own)
+             : mpsi_mpm_remove_boundary(&setup, function, number);
+}
+
+const mpsi_condition_kind mpsi_mpm_boundary_kind = {
+    .kind = MPS_DEF_MPM_BOUNDARY,
+    .definition = &mpsi_definition_of_mps_mpm_boundary_def,
+    .what = "boundary",
+    .add = "mps_mpm_add_boundary",
+    .set = "mps_mpm_set_boundary",
+    .get = "mps_mpm_get_boundary",
+    .remove = "mps_mpm_remove_boundary",
+    .role = MPSI_SIGNAL_MOTION,
+    .list = {{"ids", "id_count", 1}},
+    .first = MPSI_SIDES,
+    .most = INT32_MAX - 8,
+    .size = sizeof(mpsi_boundary),
+    .has = has_side,
+    .describe = describe_side,
+    .check = check_boundary,
+    .selects = true,
+    .keeps = keeps,
+    .check_ids = check_ids,
+    .counts = counts,
+    .make = make_boundary,
+    .apply = apply_boundary,
+};
+
+mps_status mpsi_mpm_get_reaction(void *solver, const char *function, mps_status status,
+                                 int32_t number, mps_reaction *out) {
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
+  return mpsi_mpm_find_reaction(&setup, function, status, number, out);
 }
 
 /* ---- loads ----------------------------------------------------------------------------------- */
 
-mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *def, int32_t *number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_load_setup setup = mpsi_load_setup_of(mpm);
-  return mpsi_mpm_add_load(&setup, __func__, def, number);
+static mps_status check_load(void *solver, const char *function, int32_t number, const void *def) {
+  const mps_mpm *mpm = solver;
+  (void)number;
+  return mpsi_mpm_check_load(mpm->context, &mpm->grid, &mpm->p, mpm->partition, function, def);
 }
 
-mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *def) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_load_setup setup = mpsi_load_setup_of(mpm);
-  return mpsi_mpm_set_load(&setup, __func__, number, def);
+static mps_status make_load(void *solver, const char *function, int32_t number, void *def,
+                            void *own) {
+  mps_mpm *mpm = solver;
+  (void)number;
+  ((mpsi_traction *)own)->def = def;
+  return mpsi_mpm_make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, function);
 }
 
-mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_load_setup setup = mpsi_load_setup_of(mpm);
-  return mpsi_mpm_remove_load(&setup, __func__, number);
+static mps_status apply_load(void *solver, const char *function, int32_t number, void *def,
+                             void *own, void *former) {
+  mpsi_traction *now = own;
+  (void)solver, (void)function, (void)number, (void)def;
+  if (!now || !former) return MPS_OK;
+  memcpy(now->now, ((mpsi_traction *)former)->now, sizeof now->now);
+  memcpy(now->former, ((mpsi_traction *)former)->former, sizeof now->former);
+  return MPS_OK;
 }
+
+const mpsi_condition_kind mpsi_mpm_load_kind = {
+    .kind = MPS_DEF_MPM_LOAD,
+    .definition = &mpsi_definition_of_mps_mpm_load_def,
+    .what = "load",
+    .add = "mps_mpm_add_load",
+    .set = "mps_mpm_set_load",
+    .get = "mps_mpm_get_load",
+    .remove = "mps_mpm_remove_load",
+    .role = MPSI_SIGNAL_NUMBER,
+    .list = {{"ids", "id_count", 1}, {"area", "id_count", 1}},
+    .most = INT32_MAX - 8,
+    .size = sizeof(mpsi_traction),
+    .check = check_load,
+    .selects = true,
+    .item = item,
+    .check_ids = check_ids,
+    .counts = counts,
+    .make = make_load,
+    .apply = apply_load,
+};
 
 /* ---- contacts -------------------------------------------------------------------------------- */
 
@@ -78,8 +175,8 @@ static mps_status list_particles(void *owner, mps_contact *contact, const mpsi_c
 mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_def *def,
                                mps_contact **out) {
   static const mpsi_contact_owner owner = {
-      .check = check_owner, .end = end, .particles = list_particles};
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+      .check = check_owner, .end = end, .particles = list_particles, .def_kind = MPS_DEF_CONTACT};
+  if (!mpm) return mpsi_null(__func__, "mpm");
   const mpsi_contact_setup setup = mpsi_contact_setup_of(mpm);
   return mpsi_mpm_add_contact(&setup, __func__, &owner, mpm, body, def, out);
 }

@@ -1,6 +1,10 @@
 /* create.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "mpm/life/conditions.h"
+#include "mpm/life/restart.h"
+#include "mpm/reading/totals.h"
+#include "mpm/base/march.h"
 #include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
@@ -8,31 +12,18 @@
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
-#include "core/base/digits.h"
+#include "core/definition/digits.h"
+#include "solver/linear.h"
 
-#include <mps/experimental.h>
+#include <mps/experimental/papers.h>
+#include <mps/experimental/domain.h>
 
 #include <string.h>
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
-#define FAR 1e9      /* m, m/s2, s: largest accepted size */
-#define LEAST_MEASURE 1e-9
 /* spacings: smaller cells, or cells larger than COARSEST, are taken for errors */
 #define FINEST 0.5
 #define COARSEST 100.0
-
-static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
-                                         .spline = 0,
-                                         .cell = NAN,
-                                         .lower = {-INFINITY, -INFINITY, -INFINITY},
-                                         .upper = {INFINITY, INFINITY, INFINITY},
-                                         .measure = NAN,
-                                         .dt = NAN,
-                                         .courant = 0.5};
-
-mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_mpm_def, def, size, &mpm_defaults);
-}
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -42,61 +33,6 @@ static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_GEOMETRY
 
 /* Radius of the weights, m. */
 static double radius_of(const mps_mpm_def *d) { return (d->spline == 2 ? 1.5 : 2.0) * d->cell; }
-
-static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
-  if (d->geometry < MPS_MPM_GEOMETRY_PLANE_STRAIN || d->geometry > MPS_MPM_GEOMETRY_SPACE)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
-                     d->geometry);
-  if (d->spline != 0 && d->spline != 2 && d->spline != 3)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "spline is %d, allowed are 2 and 3, and 0 for 3", d->spline);
-  if (d->volumetric < MPS_MPM_VOLUMETRIC_BY_LAW || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "volumetric is %d, allowed are 0 (by law), 1 (point), 2 (cell) and 3 (nodes)",
-                     d->volumetric);
-  if (d->budget != 0 && d->budget != 1)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
-                     d->budget);
-  if (d->walls != MPS_MPM_WALLS_MIRROR && d->walls != MPS_MPM_WALLS_FIT)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "walls is %d, allowed are 0 (mirror) and 1 (fit)", d->walls);
-  if (d->step_from != MPS_MPM_STEP_FROM_SPEED && d->step_from != MPS_MPM_STEP_FROM_WAVE)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "step_from is %d, allowed are 0 (speed) and 1 (wave)", d->step_from);
-  return MPS_OK;
-}
-
-static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
-  if (!(d->cell > 0.0 && d->cell <= FAR))
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "cell is %s m, must be > 0 and at most %g",
-                     mpsi_outside(d->cell, 0.0, FAR).text, FAR);
-  if (!isnan(d->dt) && !(d->dt >= MPSI_MPM_LEAST_DT && d->dt <= FAR))
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "dt is %s s, must be %g to %g s, or NaN for a step that follows the limit",
-                     mpsi_outside(d->dt, MPSI_MPM_LEAST_DT, FAR).text, MPSI_MPM_LEAST_DT, FAR);
-  if (!(d->courant > 0.0 && d->courant <= 1.0))
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %s, must be in (0, 1]",
-                     mpsi_outside(d->courant, 0.0, 1.0).text);
-  if (!(d->local_damping >= 0.0 && d->local_damping < 1.0) ||
-      !(d->viscous_damping >= 0.0 && d->viscous_damping <= FAR))
-    return mpsi_fail(
-        context, create, MPS_ERROR_ARGUMENT,
-        "local_damping is %s and viscous_damping %s 1/s, must be in [0, 1) and 0 to %g",
-        mpsi_outside(d->local_damping, 0.0, 1.0).text,
-        mpsi_outside(d->viscous_damping, 0.0, FAR).text, FAR);
-  if (!(d->flip_time >= 0.0 && d->flip_time <= FAR))
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "flip_time is %s s, must be 0 to %g",
-                     mpsi_outside(d->flip_time, 0.0, FAR).text, FAR);
-  for (int c = 0; c < dim_of(d); c++)
-    if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
-      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                       "origin[%d] is %g m and gravity[%d] %g m/s2, must be within +-%g", c,
-                       d->origin[c], c, d->gravity[c], FAR);
-  return MPS_OK;
-}
 
 /* Degree of the caller's weights, which must be those of the grid. */
 static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
@@ -113,21 +49,6 @@ static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
   return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                    "kernel has radius %g m, must be %g cells of %g m, %g m", radius,
                    wanted / d->cell, d->cell, wanted);
-}
-
-/* Thickness, or angle of the sector. */
-static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
-  const bool ring = d->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC,
-             space = d->geometry == MPS_MPM_GEOMETRY_SPACE;
-  const double whole = 8.0 * atan(1.0), most = ring ? whole * (1.0 + 1e-12) : FAR;
-  if (isnan(d->measure)) d->measure = ring ? whole : 1.0;
-  if (d->measure >= LEAST_MEASURE && d->measure <= most && !(space && d->measure != 1.0))
-    return MPS_OK;
-  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                   "measure is %g, must be %s, or NaN for the default", d->measure,
-                   space  ? "1 in space"
-                   : ring ? "an angle of 1e-9 to 2 pi rad in axisymmetry"
-                          : "a thickness of 1e-9 to 1e9 m in plane strain");
 }
 
 /* Node of a wall, or MPSI_NO_WALL without a wall. */
@@ -280,7 +201,8 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     mpsi_worker *w = &grid->workers[k];
     char *memory = w->memory = mpsi_alloc(context, 1, bytes);
     if (!memory) return mpsi_fail_memory(context, create, bytes);
-    w->tile = (mpsi_node *)memory;
+    w->room = memory;
+    w->tile = (mpsi_node *)(memory + MPSI_WORKER_ROOM);
     w->force = w->tile + tile;
     w->strain = w->force + tile;
     w->state = (uint8_t *)(w->strain + tile); /* with a margin: rows are read as four */
@@ -314,7 +236,7 @@ static mps_status find_speed(mps_mpm *mpm) {
 
 /* Checks a given dt against the limit of the initial state. */
 static mps_status check_step(const mps_mpm *mpm) {
-  const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
+  const double dt = mpm->def.dt, limit = mpsi_mpm_limit(mpm);
   if (isnan(dt) || dt <= limit) return MPS_OK;
   return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                    "dt is %g s, above the Courant limit h/(c + v) of the first state, %g s: choose "
@@ -357,7 +279,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     if (status == MPS_OK)
       status = mpsi_mpm_check_amounts(mpm->context, &mpm->grid, &mpm->p, create);
     if (status == MPS_OK)
-      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, mpm->p.count);
+      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
     if (status == MPS_OK && !shared) status = save_columns(mpm->context, &mpm->p, &copy);
     if (status == MPS_OK) status = begin(mpm);
@@ -370,7 +292,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
   const mpsi_rank_part part = mpsi_rank_part_of(mpm);
   if (shared && status == MPS_OK) status = mpsi_mpm_partition_create(&part, create, former);
   if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->p.set, fields);
-  mpm->boundaries.outdated = true; /* listed with the first step */
+  mpm->boundaries.outdated = mpm->boundaries.renew = true; /* listed with the first step */
   return status;
 }
 
@@ -395,7 +317,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
     if (status == MPS_OK)
       status = mpsi_mpm_check_amounts(mpm->context, &mpm->grid, &mpm->p, create);
     if (status == MPS_OK)
-      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, mpm->p.count);
+      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
   }
   if (status == MPS_OK && writes_given(&mpm->p, fields))
@@ -412,7 +334,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
     status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create);
   status = mpsi_mpm_share_take_part(&part, create, status);
   if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->p.set, fields);
-  mpm->boundaries.outdated = true;
+  mpm->boundaries.outdated = mpm->boundaries.renew = true;
   return status;
 }
 
@@ -420,115 +342,23 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
 static mps_status complete(mps_context *context, mps_particles *particles, mps_mpm_def *def,
                            int64_t *low, int64_t *high) {
   mps_status status = check_set(context, particles);
-  if (status == MPS_OK) status = check_choices(context, def);
   if (status == MPS_OK && mps_particles_dim(particles) != dim_of(def))
     status = mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                        "geometry is %d, and the set has %d dimensions: it needs %s", def->geometry,
                        mps_particles_dim(particles),
                        dim_of(def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
-  if (status == MPS_OK) status = check_numbers(context, def);
   if (status == MPS_OK) status = read_kernel(context, def);
-  if (status == MPS_OK) status = read_measure(context, def);
+  if (isnan(def->measure))
+    def->measure = def->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 8.0 * atan(1.0) : 1.0;
   if (status == MPS_OK) status = check_cell(context, def, particles);
   if (status == MPS_OK) status = read_domain(context, def, low, high);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, create, def->domain);
-  return status == MPS_OK ? mpsi_particles_check_hold(particles, create, MPSI_USE_MOVE) : status;
-}
-
-static void hold(mps_mpm *mpm, const char *function, bool shared) {
-  mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
-                              .self = mpm,
-                              .kind = MPSI_USE_MOVE,
-                              .guard = &mpm->run.guard,
-                              .commit = mpsi_mpm_note_edit,
-                              .compares = mpsi_mpm_compares,
-                              .insert = mpsi_mpm_insert,
-                              .remove = mpsi_mpm_remove,
-                              .leaving = mpsi_mpm_thin_out,
-                              .renew = mpsi_mpm_renew};
-  if (shared) {
-    mpm->holder.runs = mpsi_mpm_row_runs;
-    mpm->holder.agree = mpsi_mpm_agree_on_insertion;
-    mpm->holder.find = mpsi_mpm_find_removed;
-  }
-  (void)mpsi_particles_hold(mpm->p.set, function, &mpm->holder);
-}
-
-/* Sets the members that depend on the definition alone. */
-static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
-                     const int64_t *high) {
-  mpm->def = *def;
-  mpm->def.domain = mpsi_domain_retain(def->domain);
-  mpm->grid.dim = dim_of(def);
-  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->grid.dim == 3 ? MPSI_SIDE : 1);
-  mpm->grid.tile_nodes =
-      MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->grid.dim == 3 ? MPSI_TILE_SIDE : 1);
-  mpm->energy.counts = def->budget != 0;
-  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
-  mpm->p.count = mps_particles_count(mpm->p.set);
-  mpm->p.laws.at_once = true; /* until some law needs means */
-  mpm->grid.inverse = 1.0 / def->cell;
-  mpm->grid.spline = def->spline, mpm->grid.cell = def->cell;
-  mpm->grid.geometry = (mps_mpm_geometry)def->geometry, mpm->grid.measure = def->measure;
-  memcpy(mpm->grid.origin, def->origin, sizeof mpm->grid.origin);
-  memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
-  memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
-}
-
-mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
-                          const mps_mpm_def *user_def, mps_mpm **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  *out = NULL;
-  if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
-  mps_mpm_def def = mpm_defaults;
-  int64_t low[3], high[3];
-  mps_status status = MPS_OK;
-  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
-  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
-  if (status != MPS_OK) return status;
-  status = complete(context, particles, &def, low, high);
-  mpsi_backup backup = {0};
-  mpsi_storage *former = NULL;
-  mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
-  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.hold_room, MPSI_SIDES,
-                                                   sizeof(mpsi_boundary))))
-    status = mpsi_fail_memory(context, __func__, sizeof *mpm + MPSI_SIDES * sizeof(mpsi_boundary));
-  if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
-    status = mpsi_particles_back_up(particles, __func__, &backup);
-  status = mpsi_domain_agree(def.domain, __func__, status);
-  if (status != MPS_OK) {
-    if (backup.memory) mpsi_backup_drop(particles, &backup);
-    if (mpm) mpsi_free(context, mpm->boundaries.hold_room.item);
-    mpsi_free(context, mpm);
-    return status;
-  }
-  mpm->reader.mpm = mpm;
-  mpm->context = mpsi_context_retain(context);
-  mpm->p.set = particles;
-  hold(mpm, __func__, is_shared(&def)); /* checked above */
-  describe(mpm, &def, low, high);
-  if (!mpsi_mpm_begin_sides(mpm->context, &mpm->grid, &mpm->boundaries))
-    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_boundary_sums));
-  if (def.kernel)
-    mpm->weights = mpsi_kernel_retain(def.kernel);
-  else if (status == MPS_OK)
-    status = mpsi_as(context, __func__,
-                     mps_kernel_create(context,
-                                       def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
-                                       radius_of(&def), &mpm->weights));
-  status = in_parts(&mpm->p) ? build_parts(mpm, material, status, &backup)
-                             : build(mpm, material, status, &former);
-  if (status != MPS_OK) {
-    mpsi_particles_take_back(particles, &former);
-    if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);
-    mps_mpm_destroy(&mpm);
-    return status;
-  }
-  mpsi_backup_drop(particles, &backup);
-  mpsi_storage_drop(particles, &former);
-  *out = mpm;
-  return MPS_OK;
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, create, MPSI_USE_MOVE);
+  const mpsi_amount amount = {def->measure, def->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC};
+  if (status == MPS_OK)
+    status = mpsi_fail_of(context, mpsi_particles_check_crowding(particles, create, 0, &amount),
+                          "particles");
+  return status;
 }
 
 static void free_rooms(mps_mpm *mpm) {
@@ -575,6 +405,7 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
                    mpm->rooms.stencil.item,
+                   mpm->rooms.places.item,
                    mpm->rooms.strain.item,
                    mpm->rooms.rough.item,
                    mpm->rooms.gone.item,
@@ -586,19 +417,16 @@ static void free_rooms(mps_mpm *mpm) {
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
 }
 
-void mps_mpm_destroy(mps_mpm **pointer) {
-  if (!pointer || !*pointer) return;
-  mps_mpm *mpm = *pointer;
+static void destroy(void *solver) {
+  mps_mpm *mpm = solver;
   mps_context *context = mpm->context;
-  if (mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__) != MPS_OK) return;
-  *pointer = NULL;
   mpsi_mpm_end_contacts(&mpm->contact);
   free_rooms(mpm);
   mpsi_pore_free(mpm);
   mpsi_mpm_free_impulses(mpm->context, &mpm->contact);
   mpsi_mpm_free_contact_exchange(mpm->context, &mpm->contact);
   mpsi_mpm_free_partners(&mpm->contact.partners, context);
-  mpsi_mpm_drop_loads(mpm->context, &mpm->loads);
+  mpsi_mpm_free_prescribed(context, &mpm->prescribed);
   mpsi_mpm_drop_boundaries(mpm->context, &mpm->boundaries);
   for (int32_t k = 0; k < mpm->p.laws.count; k++) {
     mps_material_destroy(&mpm->p.laws.law[k].material);
@@ -607,30 +435,183 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_free(context, mpm->p.laws.room.item);
   mps_kernel_destroy(&mpm->weights);
   mpsi_mpm_partition_free(context, &mpm->partition);
-  mps_domain_destroy(&mpm->def.domain);
-  mpsi_state_forget(&mpm->identity);
-  mpsi_particles_release(mpm->p.set, &mpm->holder);
-  mpsi_free(context, mpm);
-  mpsi_context_release(context);
 }
 
-mps_status mps_mpm_get_def_sized(const mps_mpm *mpm, mps_mpm_def *out, size_t size) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  return mpsi_def_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
+/* ---- as one of all solvers ------------------------------------------------------------------- */
+
+static double time_of(const void *solver) { return ((const mps_mpm *)solver)->run.time; }
+static int64_t steps_of(const void *solver) { return ((const mps_mpm *)solver)->run.steps; }
+
+static double dt_of(void *solver, const char *function) {
+  (void)function;
+  return mpsi_mpm_dt(solver);
 }
 
-mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->p.set : NULL; }
+static mps_status agree(void *solver, const char *function, mps_status status) {
+  mps_mpm *mpm = solver;
+  if (!mpm->partition) return status;
+  return mpsi_mpm_agree_alike(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, function, status,
+                              0, NULL);
+}
 
-mps_kernel *mps_mpm_kernel(const mps_mpm *mpm) { return mpm ? mpm->weights : NULL; }
+static mps_status use_dt(void *solver, const char *function, double dt) {
+  (void)function;
+  mps_mpm *mpm = solver;
+  if (mpm->bound.beyond >= 0)
+    mpm->run.renewed = true; /* the caller continues from the present state */
+  mpm->def.dt = dt;
+  return MPS_OK;
+}
 
-mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }
+static void changing(void *solver) { ((mps_mpm *)solver)->run.changed = true; }
+
+static void get_def(const void *solver, void *out) {
+  *(mps_mpm_def *)out = ((const mps_mpm *)solver)->def;
+}
+
+/* Whether a linear solver can be set. */
+static mps_status linear_ready(void *solver, const char *function) {
+  mps_mpm *mpm = solver;
+  const mps_status status = mpsi_mpm_usable(mpm, function);
+  if (status != MPS_OK || mpm->water) return status;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "the solver has no pore water: mps_mpm_add_pore_water adds it");
+}
+
+static const mpsi_solver_kind mpm_kind = {
+    .name = MPSI_SOLVER_NAMES("mpm"),
+    .task = "mpm",
+    .def_kind = MPS_DEF_MPM,
+    .get_def = get_def,
+    .time = time_of,
+    .steps = steps_of,
+    .dt = dt_of,
+    .limit = mpsi_mpm_limit,
+    .changing = changing,
+    .agree = agree,
+    .check_dt = mpsi_mpm_check_dt,
+    .use_dt = use_dt,
+    .equation = MPS_LINEAR_EQUATION_PORE_PRESSURE,
+    .linear_ready = linear_ready,
+    .get_totals = mpsi_mpm_get_totals,
+    .get_reaction = mpsi_mpm_get_reaction,
+    .boundary = &mpsi_mpm_boundary_kind,
+    .load = &mpsi_mpm_load_kind,
+    .begin = mpsi_mpm_begin_march,
+    .advance = mpsi_mpm_advance_march,
+    .end = mpsi_mpm_end_march,
+    .stopped = mpsi_mpm_stopped,
+    .state = mpsi_mpm_state,
+    .settle = mpsi_mpm_settle_state,
+    .settled = mpsi_mpm_settled_state,
+    .returned = mpsi_mpm_returned,
+    .save = mpsi_mpm_save_state,
+    .destroy = destroy,
+};
+
+static void hold(mps_mpm *mpm, const char *function, mps_context *context, mps_particles *particles,
+                 mps_domain *domain, bool shared) {
+  mpsi_holder holder = {.name = "a WLS-MPM solver (mps_mpm)",
+                        .kind = MPSI_USE_MOVE,
+                        .commit = mpsi_mpm_note_edit,
+                        .compares = mpsi_mpm_compares,
+                        .insert = mpsi_mpm_insert,
+                        .remove = mpsi_mpm_remove,
+                        .leaving = mpsi_mpm_thin_out,
+                        .renew = mpsi_mpm_renew};
+  if (shared) {
+    holder.runs = mpsi_mpm_row_runs;
+    holder.agree = mpsi_mpm_agree_on_insertion;
+    holder.find = mpsi_mpm_find_removed;
+  }
+  mpsi_solver_start(&mpm->base, function, &mpm_kind, context, particles, domain, &holder);
+  mpm->run.guard = &mpm->guard;
+  mpm->p.set = particles;
+  mpm->loads.list = &mpm->conditions[MPSI_LOADS];
+}
+
+/* Sets the members that depend on the definition alone. */
+static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
+                     const int64_t *high) {
+  mpm->def = *def;
+  mpm->grid.dim = dim_of(def);
+  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->grid.dim == 3 ? MPSI_SIDE : 1);
+  mpm->grid.tile_nodes =
+      MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->grid.dim == 3 ? MPSI_TILE_SIDE : 1);
+  mpm->energy.counts = def->budget != 0;
+  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
+  mpm->p.count = mps_particles_count(mpm->p.set);
+  mpm->p.laws.at_once = true; /* until some law needs means */
+  mpm->grid.inverse = 1.0 / def->cell;
+  mpm->grid.spline = def->spline, mpm->grid.cell = def->cell;
+  mpm->grid.geometry = (mps_mpm_geometry)def->geometry, mpm->grid.measure = def->measure;
+  memcpy(mpm->grid.origin, def->origin, sizeof mpm->grid.origin);
+  memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
+  memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
+}
+
+mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
+                          const mps_mpm_def *user_def, mps_mpm **out) {
+  if (!context) return mpsi_null(__func__, "context");
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
+  mps_mpm_def def = mps_mpm_defaults();
+  int64_t low[3], high[3];
+  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_mpm_def, user_def, &def);
+  if (mpsi_domain_check(context, __func__, def.domain) != MPS_OK) return MPS_ERROR_ARGUMENT;
+  /* what one rank refuses, all do: they agree below */
+  if (status == MPS_OK) status = complete(context, particles, &def, low, high);
+  mpsi_backup backup = {0};
+  mpsi_storage *former = NULL;
+  mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
+  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.hold_room, MPSI_SIDES,
+                                                   sizeof(mpsi_boundary))))
+    status = mpsi_fail_memory(context, __func__, sizeof *mpm + MPSI_SIDES * sizeof(mpsi_boundary));
+  if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
+    status = mpsi_particles_back_up(particles, __func__, &backup);
+  status = mpsi_domain_agree(def.domain, __func__, status);
+  if (status != MPS_OK) {
+    if (backup.memory) mpsi_backup_drop(particles, &backup);
+    if (mpm) mpsi_free(context, mpm->boundaries.hold_room.item);
+    mpsi_free(context, mpm);
+    return status;
+  }
+  mpm->reader.mpm = mpm;
+  hold(mpm, __func__, context, particles, def.domain, is_shared(&def)); /* checked above */
+  mpm->run.changed = mpm->run.renewed = true;
+  describe(mpm, &def, low, high);
+  if (!mpsi_mpm_begin_sides(mpm->context, &mpm->grid, &mpm->boundaries))
+    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_boundary_sums));
+  if (def.kernel)
+    mpm->weights = mpsi_kernel_retain(def.kernel);
+  else if (status == MPS_OK)
+    status = mpsi_as(context, __func__,
+                     mps_kernel_create(context,
+                                       def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
+                                       radius_of(&def), &mpm->weights));
+  status = in_parts(&mpm->p) ? build_parts(mpm, material, status, &backup)
+                             : build(mpm, material, status, &former);
+  if (status != MPS_OK) {
+    mpsi_particles_take_back(particles, &former);
+    if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);
+    mpsi_solver_end(&mpm->base);
+    return status;
+  }
+  mpsi_backup_drop(particles, &backup);
+  mpsi_storage_drop(particles, &former);
+  *out = mpm;
+  return MPS_OK;
+}
+
+mps_solver *mps_mpm_solver(const mps_mpm *mpm) { return mpm ? (mps_solver *)&mpm->base : NULL; }
+
 
 /* ---- variants for comparison ----------------------------------------------------------------- */
 
 /* Checks that a variant is chosen before the first step, the same on all ranks. */
-static mps_status check_before_steps(mps_context *context, const mpsi_run *run,
-                                     const mps_mpm_def *def, const char *function, const char *name,
-                                     double value) {
+static mps_status check_before_steps(mps_context *context, mpsi_run *run, const mps_mpm_def *def,
+                                     const char *function, const char *name, double value) {
   mps_status status = mpsi_mpm_between_steps(context, run, function);
   if (status != MPS_OK) return status;
   if (run->steps > 0)
@@ -641,7 +622,7 @@ static mps_status check_before_steps(mps_context *context, const mpsi_run *run,
 }
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   const mps_status status =
       check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer);
   if (status != MPS_OK) return status;
@@ -660,7 +641,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
 }
 
 mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   const mps_status status =
       check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain);
   if (status != MPS_OK) return status;
@@ -672,7 +653,7 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
 }
 
 mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   const mps_status status =
       check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip);
   if (status != MPS_OK) return status;

@@ -1,8 +1,8 @@
-/* pore_water.c - definition of the pore water of a solver (mps/pore_water.h): checks, fields,
- * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
+/* pore_water.c - definition of the pore water of a solver (mps/experimental/pore_water.h): checks,
+ * fields, faces, budget, report of the solution. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/water/solve/coarse.h"
 #include "mpm/water/water.h"
 
 #include <string.h>
@@ -11,57 +11,9 @@
 #define SLOW 1e-3  /* m/s, permeability above which the inertia of the water matters */
 #define LARGE 1e15 /* Pa */
 
-static const mps_pore_water_def water_defaults = {.struct_size = sizeof(mps_pore_water_def),
-                                                  .porosity = NAN,
-                                                  .permeability = NAN,
-                                                  .bulk = NAN,
-                                                  .density = 1000.0,
-                                                  .exponent = 0.0,
-                                                  .ratio_slope = INFINITY};
-static const mps_pore_face_def face_defaults = {.struct_size = sizeof(mps_pore_face_def),
-                                                .lower = {-INFINITY, -INFINITY, -INFINITY},
-                                                .upper = {INFINITY, INFINITY, INFINITY}};
-
-mps_status mps_pore_water_def_init(mps_pore_water_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_pore_water_def, def, size, &water_defaults);
-}
-
-mps_status mps_pore_face_def_init(mps_pore_face_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_pore_face_def, def, size, &face_defaults);
-}
-
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static const char add[] = "mps_mpm_add_pore_water";
-
-/* Error of a value that is not from `low` to `high`. */
-static mps_status refuse(mps_context *context, const char *name, double value, double low,
-                         double high, const char *allowed) {
-  return mpsi_fail(context, add, MPS_ERROR_ARGUMENT, "%s is %s, must be %s", name,
-                   mpsi_outside(value, low, high).text, allowed);
-}
-
-static mps_status check_definition(mps_context *context, const mps_pore_water_def *d) {
-  if (d->scheme != MPS_PORE_SCHEME_EXPLICIT && d->scheme != MPS_PORE_SCHEME_IMPLICIT)
-    return mpsi_fail(context, add, MPS_ERROR_ARGUMENT,
-                     "scheme is %d, allowed are 0 (explicit) and 1 (implicit)", d->scheme);
-  if (!isnan(d->porosity) && !(d->porosity > 0.0 && d->porosity < 1.0))
-    return refuse(context, "porosity", d->porosity, 0.0, 1.0,
-                  "in (0, 1), or NaN for the field 'porosity'");
-  if (!isnan(d->permeability) && !(d->permeability > 0.0 && d->permeability <= MPSI_PORE_FASTEST))
-    return refuse(context, "permeability", d->permeability, 0.0, MPSI_PORE_FASTEST,
-                  "in (0, 1] m/s, or NaN for the field 'permeability' or undrained ground");
-  if (!isnan(d->bulk) && !(d->bulk > 0.0 && d->bulk <= LARGE))
-    return refuse(context, "bulk", d->bulk, 0.0, LARGE, "in (0, 1e15] Pa, or NaN for the default");
-  if (!(d->density > 0.0 && d->density <= 1e6))
-    return refuse(context, "density", d->density, 0.0, 1e6, "in (0, 1e6] kg/m3");
-  if (!(d->exponent >= 0.0 && d->exponent <= 100.0))
-    return refuse(context, "exponent", d->exponent, 0.0, 100.0, "0 to 100");
-  if (!(d->ratio_slope >= 1e-3))
-    return refuse(context, "ratio_slope", d->ratio_slope, 1e-3, INFINITY,
-                  "at least 0.001, or infinite");
-  return MPS_OK;
-}
 
 static mps_status check_solver(mps_mpm *mpm) {
   mps_status status = mpsi_mpm_usable(mpm, add);
@@ -108,12 +60,12 @@ static mps_status renew_limit(mps_mpm *mpm) {
   mpm->p.laws.one_modulus = false;
   mpsi_mpm_find_speeds(mpm);
   mps_status status = mpsi_mpm_collect_block_results(mpm, add);
-  if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mps_mpm_limit(mpm)) return status;
+  if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mpsi_mpm_limit(mpm)) return status;
   return mpsi_fail(
       mpm->context, add, MPS_ERROR_ARGUMENT,
       "bulk is %g Pa: dt of the solver is %g s, above the limit with water, %g s: choose "
       "at most half of that, or NaN for a step that follows the limit",
-      mpm->water->def.bulk, mpm->def.dt, mps_mpm_limit(mpm));
+      mpm->water->def.bulk, mpm->def.dt, mpsi_mpm_limit(mpm));
 }
 
 /* A layer without a permeability of the definition has that of the field. */
@@ -127,6 +79,8 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
   mps_status status = fill(mpm->context, &mpm->p, "porosity", def->porosity);
   if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure", NAN);
   if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN);
+  if (status == MPS_OK && mpsi_pore_predicts(mpm))
+    status = fill(mpm->context, &mpm->p, "pore_pressure_mean", NAN);
   if (status == MPS_OK && mpm->water->flows)
     status = fill(mpm->context, &mpm->p, "permeability", def->permeability);
   if (status != MPS_OK) return status;
@@ -200,24 +154,18 @@ static mps_status agree_on_water(mps_mpm *mpm, mps_status status, const mps_pore
   mpsi_given given;
   if (!mpm->partition) return status;
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, def, scheme);
-  MPSI_GIVE(&given, def, porosity);
-  MPSI_GIVE(&given, def, permeability);
-  MPSI_GIVE(&given, def, bulk);
-  MPSI_GIVE(&given, def, density);
-  MPSI_GIVE(&given, def, exponent);
-  MPSI_GIVE(&given, def, ratio_slope);
+  MPSI_GIVE_DEF(&given, mps_pore_water_def, def);
   mpsi_give(&given, "having a field 'permeability'", has_layers(&mpm->p));
   return mpsi_domain_agree_given(mpm->partition->domain, add, status, &given);
 }
 
 mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_pore_water_def def = water_defaults;
+  if (!mpm) return mpsi_null(__func__, "mpm");
+  mps_pore_water_def def = mps_pore_water_defaults();
   mps_status status = check_solver(mpm);
-  if (status == MPS_OK && user_def)
-    status = MPSI_DEF_READ(mpm->context, __func__, mps_pore_water_def, user_def, &def);
-  if (status == MPS_OK) status = check_definition(mpm->context, &def);
+  if (status == MPS_OK)
+    status =
+        MPSI_DEF_READ_OR_DEFAULTS(mpm->context, __func__, mps_pore_water_def, user_def, &def);
   status = agree_on_water(mpm, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
@@ -231,7 +179,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   status = begin(mpm, status);
   if (status == MPS_OK) {
     warn(mpm->context, &mpm->p);
-    mpm->boundaries.outdated = true; /* dashpots */
+    mpm->boundaries.renew = true; /* dashpots */
   } else if (kept_values) {
     restore(mpm, &before);
   }
@@ -248,7 +196,7 @@ static mps_status check_water(mps_context *context, mpsi_water *water, const cha
 }
 
 mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *out, size_t size) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   const mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status != MPS_OK) return status;
   return mpsi_def_write(mpm->context, "mps_mpm_get_pore_water", out, size, &mpm->water->def,
@@ -265,7 +213,7 @@ static mps_status sum_ranks(const mps_mpm *mpm, const char *function, mps_status
 }
 
 mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *out, size_t size) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   enum { MASS, START, DRAINED, ENTERED, SUMS };
   mpsi_exact sum[SUMS] = {{{0}}};
   mps_status status = check_water(mpm->context, mpm->water, __func__);
@@ -288,7 +236,7 @@ mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *ou
 }
 
 mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rate, double *mass) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   mpsi_exact sum[2] = {{{0}}};
   mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status == MPS_OK && (number < -1 || number >= mpm->water->faces))
@@ -328,7 +276,7 @@ static mps_status check_level(mps_mpm *mpm, const char *function, const double *
 }
 
 mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   mps_status status = check_level(mpm, __func__, point);
   if (mpm->partition) {
     mpsi_given given;
@@ -346,6 +294,7 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
     for (int c = 0; c < mpm->grid.dim; c++)
       p->g[c][k] = u > 0.0 ? mpm->water->def.density * mpm->def.gravity[c] : 0.0;
   }
+  mpsi_pore_begin_means(p);
   return MPS_OK;
 }
 
@@ -356,45 +305,20 @@ static mps_status agree_on_face(const mps_mpm *mpm, const char *function, mps_st
   if (!mpm->partition) return status;
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
-  MPSI_GIVE(&given, def, kind);
-  MPSI_GIVE(&given, def, sides);
-  MPSI_GIVE(&given, def, at_rest);
-  MPSI_GIVE(&given, def, pressure);
-  MPSI_GIVE_VECTOR(&given, def, lower, mpm->grid.dim);
-  MPSI_GIVE_VECTOR(&given, def, upper, mpm->grid.dim);
+  MPSI_GIVE_DEF(&given, mps_pore_face_def, def);
   return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
 static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_water *water,
-                            const mpsi_run *run, const char *function,
-                            const mps_pore_face_def *user_def, mps_pore_face_def *def) {
-  *def = face_defaults;
+                            mpsi_run *run, const char *function, const mps_pore_face_def *user_def,
+                            mps_pore_face_def *def) {
+  *def = mps_pore_face_defaults();
   mps_status status = mpsi_mpm_between_steps(context, run, function);
   if (status == MPS_OK) status = check_water(context, water, function);
-  if (status == MPS_OK) status = MPSI_DEF_READ(context, function, mps_pore_face_def, user_def, def);
-  if (status != MPS_OK) return status;
-  if (def->kind != MPS_PORE_FACE_IMPERVIOUS && def->kind != MPS_PORE_FACE_DRAINED)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed are 0 (impervious) and 1 (drained)", def->kind);
-  if (def->sides >> (2 * grid->dim) != 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides, 2 * grid->dim - 1);
-  if (def->at_rest != 0 && def->at_rest != 1)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "at_rest is %d, allowed are 0 and 1",
-                     def->at_rest);
-  if (!(fabs(def->pressure) <= LARGE))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "pressure is %g Pa, must be within +-1e15", def->pressure);
-  if (def->kind == MPS_PORE_FACE_IMPERVIOUS && (def->pressure != 0.0 || def->at_rest))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "%s, but kind is 0 (impervious): only a drained face has a pressure",
-                     def->at_rest ? "at_rest is 1" : "pressure is not 0");
-  for (int c = 0; c < grid->dim; c++)
-    if (!(def->lower[c] < def->upper[c]))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "lower[%d] is %g m and upper[%d] %g m, the first must be below the second",
-                       c, def->lower[c], c, def->upper[c]);
-  return MPS_OK;
+  if (status == MPS_OK)
+    status = MPSI_DEF_READ_IN(context, function, mps_pore_face_def, user_def,
+                              mpsi_scene_of(grid->dim), def);
+  return status;
 }
 
 /* As where the permeability was forgotten. */
@@ -407,7 +331,7 @@ static void warn_of_face(const mps_mpm *mpm, const mps_pore_face_def *def) {
 }
 
 mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def, int32_t *number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   mps_pore_face_def def;
   mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
@@ -424,7 +348,7 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
 }
 
 mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_face_def *user_def) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!mpm) return mpsi_null(__func__, "mpm");
   mps_pore_face_def def;
   mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
@@ -437,4 +361,19 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
   mpm->water->face[number] = def;
   if (!drained) warn_of_face(mpm, &def); /* once, whatever its pressure does from step to step */
   return MPS_OK;
+}
+
+mps_status mps_mpm_get_pore_report_sized(const mps_mpm *mpm, mps_pore_report *out, size_t size) {
+  if (!mpm) return mpsi_null(__func__, "mpm");
+  mps_pore_report report = {0};
+  if (!mpm->water)
+    return mpsi_fail(mpm->context, "mps_mpm_get_pore_report", MPS_ERROR_STATE,
+                     "the solver has no pore water");
+  const mpsi_pore_system *s = mpm->water->system;
+  if (s && s->coarse && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT) {
+    report.unknowns = s->unknowns;
+    report.coarse = s->coarse->used ? s->coarse->matrix.rows : 0;
+    report.iterations = s->iterations;
+  }
+  return mpsi_out_write(mpm->context, "mps_mpm_get_pore_report", out, size, &report, sizeof report);
 }

@@ -19,7 +19,7 @@ typedef enum merging {
 
 static merging merging_of(const mpsi_value *value) {
   const char *name = value->name;
-  if (value->agrees) return SAME;
+  if (value->agrees || value->optional) return SAME;
   if (strcmp(name, "sizes") == 0) return SIZES;
   if (strcmp(name, "blocks") == 0) return BLOCKS;
   if (strcmp(name, "dashpots") == 0) return DASHES;
@@ -101,7 +101,11 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
   if (mpm->contact.bodies > 0)
     status =
         mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, domain, function, status);
+  if (mpm->prescribed.on)
+    status = mpsi_mpm_share_warm_start(&mpm->prescribed.constraints.impulses, mpm->p.set, domain,
+                                       function, status);
   mpsi_mpm_order_warm_start(&mpm->contact.impulses);
+  mpsi_mpm_order_warm_start(&mpm->prescribed.constraints.impulses);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK)

@@ -1,12 +1,13 @@
 /* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
  * Sums over particles are taken block by block in the order of the set: a run that continues bit
  * for bit needs both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
+#include "restart.h"
 #include "rank_files.h"
 #include "mpm/base/mpm_solver.h"
+#include "mpm/water/water.h"
 #include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
-#include "mpm/water/solve/outside.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -138,7 +139,7 @@ static void get_dashes(const void *solver, void *values) {
   }
 }
 
-/* On several ranks dashpots are restored after the ghosts are found: restore_dashpots. */
+/* On several ranks dashpots are restored after the ghosts are found: mpsi_mpm_returned. */
 static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   (void)values;
@@ -156,7 +157,8 @@ static void set_dashpots(void *solver, int64_t rows, const void *values) {
 
 /* On several ranks, after the lists are restored: finds the ghosts, then restores the dashpots.
  * Collective. */
-static mps_status restore_dashpots(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_returned(void *solver, const char *function) {
+  mps_mpm *mpm = solver;
   if (!mpm->partition || !mpm->partition->outdated) return MPS_OK;
   const bool stale = mpm->run.stale;
   const mpsi_rank_part part = mpsi_rank_part_of(mpm);
@@ -171,47 +173,66 @@ static mps_status restore_dashpots(mps_mpm *mpm, const char *function) {
   return status;
 }
 
-/* ---- warm-start impulses of contacts --------------------------------------------------------- */
+/* ---- warm-start impulses ----------------------------------------------------------------------
+ */
+
+/* Of contacts, then of lists of particles, whose bodies are negative (contact/prescribed.h). */
+static mpsi_impulses *impulses_of(const void *solver, int which) {
+  mps_mpm *mpm = (mps_mpm *)solver;
+  return which == 0 ? &mpm->contact.impulses : &mpm->prescribed.constraints.impulses;
+}
 
 static int64_t count_warm_start(const void *solver) {
-  return ((const mps_mpm *)solver)->contact.impulses.warm_count;
+  return impulses_of(solver, 0)->warm_count + impulses_of(solver, 1)->warm_count;
 }
 
 static void get_warm_start_owners(const void *solver, void *values) {
-  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
   int64_t *row = values;
-  for (int64_t k = 0; k < all->warm_count; k++)
-    row[2 * k] = all->warm[k].id, row[2 * k + 1] = all->warm[k].body;
+  for (int which = 0; which < 2; which++) {
+    const mpsi_impulses *all = impulses_of(solver, which);
+    for (int64_t k = 0; k < all->warm_count; k++, row += 2)
+      row[0] = all->warm[k].id, row[1] = all->warm[k].body;
+  }
 }
 
 static bool reserve_kept(void *solver, int64_t rows, const void *values) {
-  mps_mpm *mpm = solver;
-  mpsi_impulses *all = &mpm->contact.impulses;
+  bool good = true;
   (void)values;
-  const bool good = keep_room(mpm->context, &all->warm_room, rows, sizeof *all->warm);
-  all->warm = all->warm_room.item;
+  for (int which = 0; which < 2; which++) {
+    mpsi_impulses *all = impulses_of(solver, which);
+    good =
+        good && keep_room(((mps_mpm *)solver)->context, &all->warm_room, rows, sizeof *all->warm);
+    all->warm = all->warm_room.item;
+  }
   return good;
 }
 
 static void set_kept_owners(void *solver, int64_t rows, const void *values) {
-  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
   const int64_t *row = values;
-  all->warm_count = rows;
-  for (int64_t k = 0; k < rows; k++)
-    all->warm[k].id = row[2 * k], all->warm[k].body = row[2 * k + 1];
+  for (int which = 0; which < 2; which++) impulses_of(solver, which)->warm_count = 0;
+  for (int64_t k = 0; k < rows; k++, row += 2) {
+    mpsi_impulses *all = impulses_of(solver, row[1] < 0);
+    all->warm[all->warm_count].id = row[0], all->warm[all->warm_count++].body = row[1];
+  }
 }
 
 static void get_kept(const void *solver, void *values) {
-  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
   double *row = values;
-  for (int64_t k = 0; k < all->warm_count; k++)
-    memcpy(row + 3 * k, all->warm[k].by, sizeof all->warm[k].by);
+  for (int which = 0; which < 2; which++) {
+    const mpsi_impulses *all = impulses_of(solver, which);
+    for (int64_t k = 0; k < all->warm_count; k++, row += 3)
+      memcpy(row, all->warm[k].by, sizeof all->warm[k].by);
+  }
 }
 
 static void set_kept(void *solver, int64_t rows, const void *values) {
-  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
   const double *row = values;
-  for (int64_t k = 0; k < rows; k++) memcpy(all->warm[k].by, row + 3 * k, sizeof all->warm[k].by);
+  (void)rows;
+  for (int which = 0; which < 2; which++) {
+    mpsi_impulses *all = impulses_of(solver, which);
+    for (int64_t k = 0; k < all->warm_count; k++, row += 3)
+      memcpy(all->warm[k].by, row, sizeof all->warm[k].by);
+  }
 }
 
 /* ---- the list ------------------------------------------------------------------------------- */
@@ -231,10 +252,10 @@ static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_warm_sta
 static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads *all_loads,
                          const mpsi_contacts *contacts, const mps_mpm_def *def) {
   int64_t loads = 0;
-  for (int32_t k = 0; k < all_loads->count; k++) loads += all_loads->traction[k].count > 0;
+  for (int32_t k = 0; k < all_loads->list->room; k++) loads += mpsi_load_of(all_loads, k) != NULL;
   mpsi_state_agree_integer(s, "geometry", grid->geometry);
   mpsi_state_agree_integer(s, "scheme", grid->standard);
-  mpsi_state_agree_integer(s, "walls", def->walls);
+  mpsi_state_agree_integer(s, "walls", def->edge);
   mpsi_state_agree_integer(s, "spline", grid->spline);
   mpsi_state_agree_number(s, "cell", grid->cell);
   for (int c = 0; c < grid->dim; c++) {
@@ -281,9 +302,8 @@ static void list_state(mpsi_state *s, void *solver) {
     /* a side that has been set free still shows its last force and what it has done */
     if (hold && hold->field) mpsi_mpm_list_free_field(s, hold->field);
     if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
-      mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_BOUNDARY_MASS * MPSI_EXACT_LIMBS);
-      mpsi_state_i64(s, "all", hold->sums->all[0].limb,
-                     (MPSI_BOUNDARY_MASS + 1) * MPSI_EXACT_LIMBS);
+      mpsi_state_exact(s, "step", hold->sums->step, MPSI_BOUNDARY_MASS);
+      mpsi_state_exact(s, "all", hold->sums->all, MPSI_BOUNDARY_MASS + 1);
       mpsi_state_i64(s, "count", &hold->count, 1);
       mpsi_state_i64(s, "removed", &hold->removed, 1);
       mpsi_state_bool(s, "finds", &hold->finds);
@@ -298,8 +318,8 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_leave(s);
   }
   mpsi_state_f64(s, "time", &mpm->run.time, 1);
-  mpsi_state_f64(s, "boundaries_dt", &mpm->boundaries.dt, 1);
-  mpsi_state_i64(s, "boundaries_work", mpm->boundaries.work.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_f64(s, "boundaries_dt", &mpm->run.dt, 1);
+  mpsi_state_exact(s, "boundaries_work", &mpm->boundaries.work, 1);
   mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
   mpsi_state_f64(s, "flow", &mpm->run.flow, 1);
@@ -307,7 +327,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "moments", &mpm->run.moments);
   list_settling(s, &mpm->settling);
   mpsi_pore_list_state(s, mpm->water);
-  mpsi_state_i64(s, "energies", mpm->energy.sum[0].limb, MPSI_ENERGY_SUMS * MPSI_EXACT_LIMBS);
+  mpsi_state_exact(s, "energies", mpm->energy.sum, MPSI_ENERGY_SUMS);
   mpsi_state_f64(s, "work_bodies", &mpm->energy.work_bodies, 1);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);
@@ -411,7 +431,8 @@ static bool holds_impulses(const mpsi_contacts *contacts, const mps_snapshot *fr
   if (!(dt >= 0.0) || !isfinite(dt)) return false;
   for (int64_t k = 0; k < owners->rows; k++) {
     const int64_t body = ((const int64_t *)owners->data)[2 * k + 1];
-    if (body < 0 || body >= contacts->bodies) return false;
+    const bool list = body < -MPSI_SIDES && body >= INT32_MIN; /* contact/prescribed.h */
+    if (!list && (body < 0 || body >= contacts->bodies)) return false;
     for (int c = 0; c < 3; c++)
       if (!isfinite(((const double *)impulses->data)[3 * k + c])) return false;
   }
@@ -447,15 +468,20 @@ static void bind(void *solver) {
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
 }
 
-/* Marks edits as applied: a snapshot is of such a state. */
-static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
+/* Marks edits as applied: a snapshot is of such a state, and had passed all checks. */
+static void forget_edits(void *solver) {
+  mpsi_run *run = &((mps_mpm *)solver)->run;
+  run->edited = run->unchecked = false;
+  run->begun = run->changed = run->renewed = true;
+}
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
   mps_mpm *mpm = solver;
   return mpsi_mpm_agree(mpm->partition, function, status);
 }
 
-static mpsi_state_of state_of(mps_mpm *mpm) {
+mpsi_state_of mpsi_mpm_state(void *solver) {
+  mps_mpm *mpm = solver;
   return (mpsi_state_of){.solver = mpm,
                          .name = "WLS-MPM",
                          .context = mpm->context,
@@ -469,71 +495,34 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .bind = bind,
                          .after = forget_edits,
                          .time = mpm->run.time,
-                         .dt = mps_mpm_dt(mpm),
+                         .dt = mpsi_mpm_dt(mpm),
                          .steps = mpm->run.steps};
 }
 
 /* The lists in a snapshot must be those of the present boundaries. */
-static mps_status make_whole(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
-  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);
+mps_status mpsi_mpm_settle_state(void *solver, const char *function) {
+  mps_mpm *mpm = solver;
+  mpm->run.as_kept = mpsi_mpm_edit_state(&mpm->run);
+  if (mpm->run.broken)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                     "step %lld has failed: there is no state to go on from",
+                     (long long)mpm->run.steps);
+  const mps_status status = mpsi_mpm_apply_edits(mpm, function);
   if (status != MPS_OK) return status;
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
-  if (!mpm->run.broken) {
-    status = mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
-    return status == MPS_OK ? mpsi_pore_forget(mpm, function) : status;
-  }
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "step %lld has failed: there is no state to go on from",
-                   (long long)mpm->run.steps);
+  return mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
 }
 
-mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
-  mps_status status = make_whole(mpm, __func__);
-  const mpsi_state_of of = state_of(mpm);
-  if (status == MPS_OK) status = mpsi_state_snapshot(&of, __func__, snapshot);
-  status = mpsi_mpm_agree(mpm->partition, __func__, status);
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
-  return status;
+void mpsi_mpm_settled_state(void *solver, mps_status status) {
+  mpsi_run *run = &((mps_mpm *)solver)->run;
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(run, &run->as_kept);
 }
 
-/* Before a former state returns. `status`: of this rank. All ranks have a solver of the caller or
- * none has, and agree on what its forget says: later those that are well wait for the others. */
-static mps_status forget_solver(mps_mpm *mpm, const char *function, mps_status status) {
-  if (status != MPS_OK || !mpm->water || !mpm->water->outside) return status;
-  return mpsi_mpm_agree(mpm->partition, function, mpsi_pore_forget(mpm, function));
-}
-
-mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  const mpsi_state_of of = state_of(mpm);
-  status = forget_solver(mpm, __func__, status);
-  if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
-  return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
-}
-
-mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
-  mps_status status = mpsi_mpm_agree(mpm->partition, __func__, make_whole(mpm, __func__));
-  const mpsi_state_of of = state_of(mpm);
-  if (status == MPS_OK) {
-    mpsi_mpm_order_warm_start(&mpm->contact.impulses);
-    status = mpm->partition ? mpsi_mpm_save_on_ranks(mpm, &of, __func__, path, info)
-                            : mpsi_checkpoint_save(&of, __func__, path, info);
-  }
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
-  return status;
-}
-
-mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  const mpsi_state_of of = state_of(mpm);
-  status = forget_solver(mpm, __func__, status);
-  if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
-  return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
+mps_status mpsi_mpm_save_state(void *solver, const mpsi_state_of *of, const char *function,
+                               const char *path, const mps_checkpoint *info) {
+  mps_mpm *mpm = solver;
+  mpsi_mpm_order_warm_start(&mpm->contact.impulses);
+  mpsi_mpm_order_warm_start(&mpm->prescribed.constraints.impulses);
+  return mpm->partition ? mpsi_mpm_save_on_ranks(mpm, of, function, path, info)
+                        : mpsi_checkpoint_save(of, function, path, info);
 }

@@ -54,16 +54,27 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
                        "ids: particle %lld has a volume_ratio of %g, must be > 0, or 0 for 1",
                        (long long)mpm->p.laws.ids[k], J[k]);
   }
+  return MPS_OK;
+}
+
+/* Whether the particles' present state can be a first one of the law. Before the first step the
+ * answer waits for it: the solver may be built for a state that is restored. */
+static mps_status check_start(mps_mpm *mpm, const char *function, const mps_material *material,
+                              int64_t count, const int64_t *ids) {
   if (!mpsi_material_has_start(material)) return MPS_OK;
+  if (!mpm->run.begun) {
+    mpm->run.unchecked = true;
+    return MPS_OK;
+  }
   mpsi_first_state first;
   mpsi_mpm_find_state(&mpm->p, material, &first);
-  for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
+  mps_status status = MPS_OK;
+  for (int64_t i = 0; i < listed(&mpm->p, count, ids) && status == MPS_OK; i++) {
     const int64_t k = place(&mpm->p, ids, i);
-    status = k >= 0 ? mpsi_mpm_check_state(mpm->context, &mpm->grid, &mpm->p, function, &first, k)
-                    : MPS_OK;
-    if (status != MPS_OK) return status;
+    if (k >= 0)
+      status = mpsi_mpm_check_state(mpm->context, &mpm->grid, &mpm->p, function, &first, k);
   }
-  return MPS_OK;
+  return status;
 }
 
 /* Adds the column of the laws' numbers, which a set with one law lacks. */
@@ -94,15 +105,16 @@ static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *mat
   return status;
 }
 
-mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t count,
-                                const int64_t *ids) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, const int64_t *ids,
+                                int64_t count) {
+  if (!mpm) return mpsi_null(__func__, "mpm");
   int32_t number = 0;
   mps_status status = mpsi_mpm_usable(mpm, __func__);
   if (mpm->partition)
     status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, __func__,
                                     status);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
+  if (status == MPS_OK) status = check_start(mpm, __func__, material, count, ids);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
@@ -113,7 +125,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is one law */
     mpsi_mpm_begin_law(&mpm->grid, &mpm->p, &mpm->p.laws.law[number], k);
   }
-  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls depend on the laws */
+  mpm->boundaries.renew = true; /* the dashpots of absorbing walls depend on the laws */
   /* the limit is updated with the other edits */
   if (mpm->run.edited || mpm->run.lost) return MPS_OK;
   mpsi_mpm_find_speeds(mpm);

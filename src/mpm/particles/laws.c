@@ -1,6 +1,5 @@
 /* laws.c - the materials' laws on the particles of a block, Nakamura (45)-(48): a law is called
  * with runs of particles that have it. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
 #include "mpm/water/water.h"
 
 #include <stdio.h>

@@ -88,9 +88,9 @@ void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
 mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                 const char *function, const mpsi_first_state *first,
                                 int64_t particle);
-/* Of the particles [begin, end) under the law of creation. */
+/* Of those of the particles [begin, end) that are under law `number`. */
 mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                                 const char *function, int64_t begin, int64_t end);
+                                 const char *function, int32_t number, int64_t begin, int64_t end);
 /* materials.c: where the columns of a law's own fields are now. */
 void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law);
 void mpsi_mpm_begin_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_law_use *law,

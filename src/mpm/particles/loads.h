@@ -4,46 +4,37 @@
 #define MPSI_MPM_LOADS_H
 
 #include "mpm/base/parts.h"
+#include "solver/conditions.h"
 
 #include <mps/mpm.h>
 
-/* A load: force area * traction on each particle. */
+/* A load of the kept definition: force area * traction on each particle. */
 typedef struct mpsi_traction {
-  int64_t count; /* 0: none */
-  int64_t *id;
-  double *area; /* NULL: by the spacing */
-  double traction[3], factor[3];
-  mps_signal *signal[3];
-  double now[3]; /* value of the signals at the beginning of the step being made; 1 without */
+  const mps_mpm_load_def *def;
+  double now[3];    /* value of the signals at the beginning of the step being made; 1 without */
+  double former[3]; /* in the step before */
 } mpsi_traction;
 
 typedef struct mpsi_loads {
-  mpsi_traction *traction;
-  int32_t count;
+  const mpsi_conditions *list;
   double *body_acceleration[3]; /* m/s2; NULL where the set has no such field */
   double *external_force[3];    /* N; likewise */
 } mpsi_loads;
 
-/* What changing loads works on. */
-struct mpsi_load_setup {
-  mps_context *context;
-  const mpsi_grid *grid;
-  mpsi_columns *p;
-  mpsi_rooms *rooms;
-  mpsi_loads *loads;
-  mpsi_partition *partition; /* NULL: one rank */
-  const mpsi_run *run;
-};
+/* The load of a number below list->room; NULL where it is free. */
+static inline mpsi_traction *mpsi_load_of(const mpsi_loads *loads, int32_t number) {
+  return loads->list->own[number];
+}
 
-/* loads.c: mps_mpm_add_load and its like, for the public `function`. */
-mps_status mpsi_mpm_add_load(const mpsi_load_setup *setup, const char *function,
-                             const mps_mpm_load_def *user, int32_t *number);
-mps_status mpsi_mpm_set_load(const mpsi_load_setup *setup, const char *function, int32_t number,
-                             const mps_mpm_load_def *user);
-mps_status mpsi_mpm_remove_load(const mpsi_load_setup *setup, const char *function, int32_t number);
+/* loads.c: for life/conditions.c: rules that the table of the definition does not have
+ * (`partition` NULL: one rank), and memory for forces. */
+mps_status mpsi_mpm_check_load(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const mpsi_partition *partition, const char *function,
+                               const mps_mpm_load_def *def);
+mps_status mpsi_mpm_make_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                                mpsi_rooms *rooms, const char *function);
 /* loads.c: sums force fields and loads of the step in the columns f. */
 mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                                 mpsi_rooms *rooms, mpsi_loads *loads, const char *function);
-void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads);
 
 #endif

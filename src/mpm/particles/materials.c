@@ -3,6 +3,7 @@
 
 #include "core/particles/particles_internal.h"
 #include "mpm_particles.h"
+#include "mpm/particles/rooms.h"
 
 /* ---- one law --------------------------------------------------------------------------------- */
 
@@ -12,7 +13,7 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
   if (status == MPS_OK && law->needs_deformation)
     status = mps_particles_add_field(set, "deformation_gradient", 0);
   for (int32_t h = 0; h < law->columns && status == MPS_OK; h++)
-    status = mps_particles_add_field(set, mps_material_history_field(law->material, h), 1);
+    status = mps_particles_add_field(set, mpsi_material_history_field(law->material, h), 1);
   return status;
 }
 
@@ -22,7 +23,7 @@ void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law) {
   for (int c = 0; c < 9 && law->needs_deformation; c++)
     p->F[c] = mpsi_particles_column(set, "deformation_gradient", c);
   for (int32_t h = 0; h < law->columns; h++)
-    law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
+    law->history[h] = mpsi_particles_column(set, mpsi_material_history_field(law->material, h), 0);
   law->stiffness = mpsi_material_stiffness(law->material, law->history);
   p->laws.ids = mpsi_particles_integers(set, "id");
   p->laws.temperature = mpsi_particles_column(set, "temperature", 0);
@@ -59,7 +60,7 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
   mpsi_law_use law = {.material = material,
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
-                      .needs_deformation = mps_material_needs_deformation(material) != 0,
+                      .needs_deformation = mpsi_material_needs_deformation(material),
                       .bulk = mpsi_material_rest_modulus(material) -
                               4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
@@ -112,7 +113,7 @@ void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
                          mpsi_first_state *out) {
   out->material = material;
   for (int32_t h = 0; h < mps_material_history_count(material); h++)
-    out->history[h] = mpsi_particles_column(p->set, mps_material_history_field(material, h), 0);
+    out->history[h] = mpsi_particles_column(p->set, mpsi_material_history_field(material, h), 0);
 }
 
 mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
@@ -131,12 +132,14 @@ mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, con
 }
 
 mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                                 const char *function, int64_t begin, int64_t end) {
+                                 const char *function, int32_t number, int64_t begin, int64_t end) {
+  const mps_material *material = p->laws.law[number].material;
   mpsi_first_state first;
   mps_status status = MPS_OK;
-  if (!mpsi_material_has_start(p->laws.law[0].material)) return MPS_OK;
-  mpsi_mpm_find_state(p, p->laws.law[0].material, &first);
+  if (!mpsi_material_has_start(material)) return MPS_OK;
+  mpsi_mpm_find_state(p, material, &first);
   for (int64_t k = begin; k < end && status == MPS_OK; k++)
-    status = mpsi_mpm_check_state(context, grid, p, function, &first, k);
+    if ((p->law ? p->law[k] : 0) == number)
+      status = mpsi_mpm_check_state(context, grid, p, function, &first, k);
   return status;
 }

@@ -15,6 +15,9 @@
 /* Columns of pore water; NULL without water, though the set may have such fields. */
 static void bind_water(mps_particles *set, mpsi_columns *p, const mpsi_water *water) {
   p->u = water ? mpsi_particles_column(set, "pore_pressure", 0) : NULL;
+  p->slow = p->u;
+  if (water && !mpsi_pore_responds(water))
+    p->slow = mpsi_particles_column(set, "pore_pressure_mean", 0);
   p->n = water ? mpsi_particles_column(set, "porosity", 0) : NULL;
   p->k = water ? mpsi_particles_column(set, "permeability", 0) : NULL;
   for (int c = 0; c < 3; c++)

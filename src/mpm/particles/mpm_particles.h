@@ -3,7 +3,9 @@
 #ifndef MPSI_MPM_PARTICLES_H
 #define MPSI_MPM_PARTICLES_H
 
-#include "mpm/base/all_parts.h"
+#include "core/particles/particles_internal.h"
+#include "mpm/base/run.h"
+#include "mpm/grid/blocks.h"
 
 #define MPSI_MPM_MOST_PARTICLES INT32_MAX
 
@@ -38,12 +40,7 @@ mps_status mpsi_mpm_renew_masses(mps_context *context, const mpsi_grid *grid, co
 /* Volume of a particle for which the caller gave none: that of the lattice. */
 double mpsi_mpm_lattice_volume(const mpsi_grid *grid, const mpsi_columns *p, int64_t particle);
 
-/* ready.c: what mpsi_mpm_apply_edits changes, for a call that fails after it: the speed that limits
- * the step, and that edits are waiting. */
-typedef struct mpsi_edit_state {
-  double speed, flow;
-  bool edited;
-} mpsi_edit_state;
+/* ready.c */
 mpsi_edit_state mpsi_mpm_edit_state(const mpsi_run *run);
 void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before);
 

@@ -1,8 +1,9 @@
 /* rooms.c - see rooms.h: memory for the sort, loads, means of the change of volume and the filter
  * of stresses. SPDX-License-Identifier: BSD-3-Clause */
 #include "rooms.h"
+#include "core/particles/particles_internal.h"
 
-#include "mpm/base/all_parts.h"
+#include "mpm/grid/blocks.h"
 
 #include <string.h>
 
@@ -29,7 +30,8 @@ bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_colu
   means = means || r->strain.item, filter = filter || r->rough.item;
   const bool stencil = means || filter;
   const bool good =
-      (!stencil || mpsi_room_ensure(context, &r->stencil, particles, sizeof *p->stencil)) &&
+      (!stencil || (mpsi_room_ensure(context, &r->stencil, particles, sizeof *p->stencil) &&
+                    make_columns(context, &r->places, particles, grid->dim, p->t))) &&
       (!means || make_columns(context, &r->strain, particles, grid->dim * grid->dim, p->D)) &&
       (!filter || make_columns(context, &r->rough, particles, 1, &p->rough));
   p->stencil = r->stencil.item;
@@ -48,12 +50,13 @@ bool mpsi_mpm_make_room(mps_context *context, mpsi_grid *grid, mpsi_columns *p, 
 
 bool mpsi_mpm_shrink_room(mps_context *context, mpsi_grid *grid, mpsi_columns *p, mpsi_rooms *r,
                           int64_t particles) {
-  mpsi_room *const rooms[] = {&r->radix, &r->stencil, &r->strain, &r->rough};
+  mpsi_room *const rooms[] = {&r->radix, &r->stencil, &r->places, &r->strain, &r->rough};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
     mpsi_free(context, rooms[k]->item);
     *rooms[k] = (mpsi_room){0};
   }
   memset(p->D, 0, sizeof p->D);
+  memset(p->t, 0, sizeof p->t);
   p->rough = NULL;
   return mpsi_mpm_make_room(context, grid, p, r, particles);
 }

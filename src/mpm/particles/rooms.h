@@ -9,8 +9,8 @@
 #include <mps/context.h>
 
 typedef struct mpsi_rooms {
-  mpsi_room radix, stencil;
-  mpsi_room strain; /* memory of the columns D */
+  mpsi_room radix, stencil, places; /* places: memory of the columns t */
+  mpsi_room strain;                 /* memory of the columns D */
   mpsi_room rough;
   mpsi_room gone;  /* marks of particles to remove; none where none can be removed */
   mpsi_room force; /* memory of the columns f; none without loads */

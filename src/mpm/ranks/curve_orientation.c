@@ -3,9 +3,10 @@
  * of the body. The axes of the curve may be any permutation of those of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_orientation.h"
+#include "mpm/grid/blocks.h"
 
 #include "domain/curve.h"
-#include "mpm/base/all_parts.h"
+#include "mpm/ranks/partition.h"
 
 #include <stdlib.h>
 #include <string.h>

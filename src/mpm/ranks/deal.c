@@ -7,6 +7,8 @@
  * laid over the bounds of all blocks. Results do not depend on the owners.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
 
 #include <stdlib.h>
 #include <string.h>

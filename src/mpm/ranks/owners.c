@@ -5,6 +5,9 @@
 #include "domain/curve.h"
 #include "domain/migrate.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/particles/rooms.h"
+#include "mpm/ranks/partition.h"
+#include "mpm/step/damping.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,30 +4,27 @@
  * Ghosts are found from the blocks that exist: each rank sends the list of its blocks to the ranks
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/mpm_particles.h"
-#include "block_range.h"
-#include "parcels.h"
+#include "core/base/room_array.h"
+#include "messages.h"
+#include "notices.h"
+#include "mpm/contact/pairs.h"
+#include "mpm/particles/rooms.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- ghosts ---------------------------------------------------------------------------------- */
-
-/* A block as it is sent to another rank. */
-typedef struct notice {
-  int32_t number; /* index among its owner's blocks */
-  int32_t at[3], low[3], high[3];
-} notice;
 
 /* Search for ghosts. */
 typedef struct search {
   const mpsi_rank_part *part;
   const char *function;
   mpsi_cell_block *own; /* own blocks in order */
+  mpsi_notice *announced;
   int64_t count;
-  int64_t *range; /* of the blocks of each rank (block_range.h) */
-  notice *sent;   /* blocks sent, rank by rank */
-  mps_domain_message *message;
-  mpsi_mailbox box;
-  notice *ghost; /* ghosts in the order of their owners */
+  mpsi_block_range range; /* of these */
+  mpsi_notice *ghost;     /* in the order of their owners, then of blocks: `number` is then their
+                             place in the former */
   int32_t *rank;
   int64_t *index;
   int64_t ghosts;
@@ -60,107 +57,58 @@ static bool beside_own(const search *s, const int32_t *at) {
 static mps_status copy_own(search *s) {
   const mpsi_grid *grid = s->part->grid;
   mps_context *context = s->part->context;
-  const int64_t ranks = mps_domain_size(s->part->partition->domain);
   s->own = mpsi_alloc(context, grid->cell_count, sizeof *s->own);
-  s->range = mpsi_alloc(context, MPSI_BLOCK_RANGE * ranks, sizeof *s->range);
-  if (!s->own || !s->range)
+  s->announced = mpsi_alloc(context, grid->cell_count, sizeof *s->announced);
+  if (!s->own || !s->announced)
     return mpsi_fail_memory(context, s->function, (size_t)grid->cell_count * sizeof *s->own);
-  for (int64_t b = 0; b < grid->cell_count; b++)
-    if (!grid->cells[b].ghost) s->own[s->count++] = grid->cells[b];
-  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(s->part->partition->domain);
-  memset(s->range, 0, (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
-  for (int64_t b = 0; b < s->count; b++) mpsi_block_range_add(mine, s->own[b].at);
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
+    mpsi_notice *notice = &s->announced[s->count];
+    if (cells->ghost) continue;
+    mpsi_mpm_add_to_range(s->range, cells->at);
+    notice->number = (int32_t)s->count;
+    memcpy(notice->at, cells->at, sizeof notice->at);
+    memcpy(notice->low, cells->low, sizeof notice->low);
+    memcpy(notice->high, cells->high, sizeof notice->high);
+    s->own[s->count++] = *cells;
+  }
   return MPS_OK;
 }
 
-static bool is_sent(const search *s, int32_t rank, int64_t b) {
-  return rank != mps_domain_rank(s->part->partition->domain) &&
-         mpsi_block_range_near(s->range + MPSI_BLOCK_RANGE * rank, s->own[b].at);
-}
-
-static mps_status exchange_search(search *s) {
+/* Of the blocks announced, those beside own ones. */
+static mps_status choose_ghosts(search *s, int64_t announced) {
   mps_context *context = s->part->context;
-  mps_domain *domain = s->part->partition->domain;
-  const int32_t ranks = mps_domain_size(domain);
-  int64_t notices = 0;
-  int32_t messages = 0;
-  for (int32_t r = 0; r < ranks; r++)
-    for (int64_t b = 0; b < s->count; b++) notices += is_sent(s, r, b);
-  s->sent = mpsi_alloc(context, notices, sizeof *s->sent);
-  s->message = mpsi_alloc(context, ranks, sizeof *s->message);
-  mps_status status = MPS_OK;
-  if (!s->sent || !s->message)
-    status = mpsi_fail_memory(context, s->function, (size_t)notices * sizeof *s->sent);
-  notices = 0;
-  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
-    const int64_t first = notices;
-    for (int64_t b = 0; b < s->count; b++) {
-      if (!is_sent(s, r, b)) continue;
-      notice *n = &s->sent[notices++];
-      n->number = (int32_t)b;
-      memcpy(n->at, s->own[b].at, sizeof n->at);
-      memcpy(n->low, s->own[b].low, sizeof n->low);
-      memcpy(n->high, s->own[b].high, sizeof n->high);
-    }
-    if (notices > first)
-      s->message[messages++] =
-          (mps_domain_message){.rank = r,
-                               .bytes = (notices - first) * (int64_t)sizeof *s->sent,
-                               .data = s->sent + first};
-  }
-  status = mpsi_domain_agree(domain, s->function, status);
-  if (status != MPS_OK) return status;
-  return mpsi_domain_exchange(domain, s->function, messages, s->message, &s->box);
-}
-
-static mps_status choose_ghosts(search *s) {
-  mps_context *context = s->part->context;
-  int64_t most = 0;
-  for (int32_t m = 0; m < s->box.count; m++)
-    most += s->box.mail[m].bytes / (int64_t)sizeof *s->ghost;
-  s->ghost = mpsi_alloc(context, most, sizeof *s->ghost);
-  s->rank = mpsi_alloc(context, most, sizeof *s->rank);
-  s->index = mpsi_alloc(context, most, sizeof *s->index);
-  if (!s->ghost || !s->rank || !s->index)
-    return mpsi_fail_memory(context, s->function, (size_t)most * sizeof *s->ghost);
-  for (int32_t m = 0; m < s->box.count; m++) {
-    const notice *from = s->box.mail[m].data;
-    for (int64_t k = 0; k < s->box.mail[m].bytes / (int64_t)sizeof *from; k++) {
-      if (!beside_own(s, from[k].at)) continue;
-      s->ghost[s->ghosts] = from[k];
-      s->rank[s->ghosts] = s->box.mail[m].rank;
-      s->index[s->ghosts++] = from[k].number;
-    }
+  s->rank = mpsi_alloc(context, announced, sizeof *s->rank);
+  s->index = mpsi_alloc(context, announced, sizeof *s->index);
+  if (!s->rank || !s->index)
+    return mpsi_fail_memory(context, s->function, (size_t)announced * sizeof *s->index);
+  for (int64_t k = 0; k < announced; k++) {
+    if (!beside_own(s, s->ghost[k].at)) continue;
+    s->ghost[s->ghosts] = s->ghost[k];
+    s->rank[s->ghosts] = s->ghost[k].rank;
+    s->index[s->ghosts++] = s->ghost[k].number;
   }
   return MPS_OK;
 }
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/* Sorts the ghosts in the order of blocks. */
-static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
-  for (int64_t k = 0; k < s->ghosts; k++) order[k] = k;
-  for (int64_t width = 1; width < s->ghosts; width *= 2) {
-    for (int64_t begin = 0; begin < s->ghosts; begin += 2 * width) {
-      const int64_t middle = begin + width < s->ghosts ? begin + width : s->ghosts;
-      const int64_t end = middle + width < s->ghosts ? middle + width : s->ghosts;
-      int64_t a = begin, b = middle;
-      for (int64_t k = begin; k < end; k++)
-        other[k] = b >= end || (a < middle &&
-                                !mpsi_block_before(s->ghost[order[b]].at, s->ghost[order[a]].at))
-                       ? order[a++]
-                       : order[b++];
-    }
-    memcpy(order, other, (size_t)s->ghosts * sizeof *order);
-  }
+static int compare_ghosts(const void *left, const void *right) {
+  const mpsi_notice *a = left, *b = right;
+  return mpsi_block_before(a->at, b->at) ? -1 : mpsi_block_before(b->at, a->at) ? 1 : 0;
+}
+
+static void sort_ghosts(const search *s) {
+  for (int64_t k = 0; k < s->ghosts; k++) s->ghost[k].number = (int32_t)k;
+  if (s->ghosts > 1) qsort(s->ghost, (size_t)s->ghosts, sizeof *s->ghost, compare_ghosts);
 }
 
 /* Merges own blocks and ghosts in one list; `place`: index of each own block in it. */
-static void merge(const search *s, const int64_t *order, int32_t *place) {
+static void merge(const search *s, int32_t *place) {
   mpsi_cell_block *cells = s->part->grid->cells;
   int64_t own = 0, ghost = 0;
   for (int64_t b = 0; b < s->count + s->ghosts; b++) {
-    const notice *next = ghost < s->ghosts ? &s->ghost[order[ghost]] : NULL;
+    const mpsi_notice *next = ghost < s->ghosts ? &s->ghost[ghost] : NULL;
     if (own < s->count && (!next || mpsi_block_before(s->own[own].at, next->at))) {
       cells[b] = s->own[own];
       cells[b].parcel = -1;
@@ -170,7 +118,7 @@ static void merge(const search *s, const int64_t *order, int32_t *place) {
     }
     const int64_t begin = own < s->count ? s->own[own].begin : s->part->p->count;
     cells[b] = (mpsi_cell_block){
-        .begin = begin, .end = begin, .bad = -1, .ghost = true, .parcel = order[ghost++]};
+        .begin = begin, .end = begin, .bad = -1, .ghost = true, .parcel = s->ghost[ghost++].number};
     memcpy(cells[b].at, next->at, sizeof next->at);
     memcpy(cells[b].low, next->low, sizeof next->low);
     memcpy(cells[b].high, next->high, sizeof next->high);
@@ -181,23 +129,19 @@ static bool put_lists(search *s) {
   const mpsi_rank_part *part = s->part;
   mpsi_partition *partition = part->partition;
   const int64_t all = s->count + s->ghosts;
-  int64_t *order = mpsi_alloc(part->context, 2 * s->ghosts, sizeof *order);
   int32_t *place = mpsi_alloc(part->context, s->count, sizeof *place);
-  bool good = order && place && mpsi_mpm_ensure_cells(part->context, part->grid, all) &&
-              mpsi_room_ensure(part->context, &partition->border_room, s->count,
-                               sizeof *partition->border) &&
+  bool good = place && mpsi_mpm_ensure_cells(part->context, part->grid, all) &&
+              MPSI_ENSURE(part->context, partition, border, s->count) &&
               mpsi_room_ensure(part->context, &partition->rank_room, s->ghosts, sizeof *s->rank);
   if (good) {
-    partition->border = partition->border_room.item;
     partition->ghost_rank = partition->rank_room.item;
     if (s->ghosts > 0) memcpy(partition->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
-    sort_ghosts(s, order, order + s->ghosts);
-    merge(s, order, place);
+    sort_ghosts(s);
+    merge(s, place);
     for (int64_t k = 0; k < s->count; k++) partition->border[k] = place[k];
     partition->ghosts = s->ghosts;
     good = mpsi_mpm_build_nodes(part->context, part->grid, all);
   }
-  mpsi_free(part->context, order);
   mpsi_free(part->context, place);
   return good;
 }
@@ -217,7 +161,7 @@ static void mark_blocks(const mpsi_grid *grid) {
     grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(grid, g);
 }
 
-/* Own blocks requested by other ranks; memory for parcels. */
+/* Own blocks requested by other ranks; memory for messages. */
 static mps_status find_border(const mpsi_rank_part *part, const char *function) {
   mpsi_partition *partition = part->partition;
   const int64_t *item;
@@ -227,7 +171,8 @@ static mps_status find_border(const mpsi_rank_part *part, const char *function) 
     partition->border[k] = partition->border[item[k]];
     part->grid->cells[partition->border[k]].parcel = k;
   }
-  return mpsi_mpm_reserve_parcels(part->context, part->contact, part->partition, function);
+  return mpsi_mpm_reserve_messages(part->context, partition, function,
+                                   mpsi_mpm_most_doubles(partition, part->contact));
 }
 
 static double widest(const search *s) {
@@ -240,11 +185,11 @@ static double widest(const search *s) {
   return most;
 }
 
-static mps_status join(search *s) {
+static mps_status join(search *s, mps_status status, int64_t announced) {
   const mpsi_rank_part *part = s->part;
   mpsi_partition *partition = part->partition;
-  double most = widest(s);
-  mps_status status = choose_ghosts(s);
+  double most = status == MPS_OK ? widest(s) : 0.0;
+  if (status == MPS_OK) status = choose_ghosts(s, announced);
   if (status == MPS_OK && !put_lists(s))
     status = mpsi_fail_memory(part->context, s->function,
                               (size_t)(s->count + s->ghosts) * sizeof *part->grid->cells);
@@ -262,15 +207,13 @@ static mps_status join(search *s) {
 mps_status mpsi_mpm_partition_find_ghosts(const mpsi_rank_part *part, const char *function) {
   mpsi_partition *partition = part->partition;
   if (!partition->outdated) return MPS_OK;
-  search s = {.part = part, .function = function, .box.context = part->context};
-  mps_status status = mpsi_domain_agree(partition->domain, function, copy_own(&s));
-  if (status == MPS_OK)
-    status = mpsi_domain_sum(partition->domain, function,
-                             MPSI_BLOCK_RANGE * mps_domain_size(partition->domain), s.range);
-  if (status == MPS_OK) status = exchange_search(&s);
-  if (status == MPS_OK) status = join(&s);
-  mpsi_domain_free_mail(&s.box);
-  void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
+  search s = {.part = part, .function = function};
+  int64_t announced;
+  mps_status status = copy_own(&s);
+  status = mpsi_mpm_exchange_notices(part->context, partition->domain, function, status, s.range,
+                                     s.count, s.announced, &s.ghost, &announced);
+  status = join(&s, status, announced);
+  void *parts[] = {s.own, s.announced, s.ghost, s.rank, s.index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(part->context, parts[k]);
   partition->outdated = status != MPS_OK;
   partition->searches++;
@@ -327,28 +270,12 @@ static mps_status keep_own(const mpsi_rank_part *part, const char *function,
 }
 
 /* Checks that all ranks are given the same definition. */
-static mps_status compare_ranks(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *d,
-                                const char *function, mps_status status) {
+static mps_status compare_ranks(const mpsi_columns *p, const mps_mpm_def *d, const char *function,
+                                mps_status status) {
   mpsi_given given;
   mpsi_given_begin(&given);
-  MPSI_GIVE(&given, d, geometry);
-  MPSI_GIVE(&given, d, spline);
-  MPSI_GIVE(&given, d, volumetric);
-  MPSI_GIVE(&given, d, step_from);
-  MPSI_GIVE(&given, d, budget);
-  MPSI_GIVE(&given, d, walls);
-  MPSI_GIVE(&given, d, measure);
-  MPSI_GIVE(&given, d, local_damping);
-  MPSI_GIVE(&given, d, viscous_damping);
-  MPSI_GIVE(&given, d, flip_time);
-  MPSI_GIVE(&given, d, cell);
-  MPSI_GIVE(&given, d, dt);
-  MPSI_GIVE(&given, d, courant);
+  MPSI_GIVE_DEF(&given, mps_mpm_def, d);
   mpsi_give(&given, "having a kernel", d->kernel != NULL);
-  MPSI_GIVE_VECTOR(&given, d, origin, grid->dim);
-  MPSI_GIVE_VECTOR(&given, d, gravity, grid->dim);
-  MPSI_GIVE_VECTOR(&given, d, lower, grid->dim);
-  MPSI_GIVE_VECTOR(&given, d, upper, grid->dim);
   if (status == MPS_OK) mpsi_material_give(&given, p->laws.law[0].material);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(p->set)) return status;
@@ -373,7 +300,7 @@ mps_status mpsi_mpm_share_begin(mps_context *context, const mpsi_columns *p, mps
 mps_status mpsi_mpm_partition_create(const mpsi_rank_part *part, const char *function,
                                      mpsi_storage **former) {
   mps_domain *domain = part->def->domain;
-  mps_status status = compare_ranks(part->grid, part->p, part->def, function, MPS_OK);
+  mps_status status = compare_ranks(part->p, part->def, function, MPS_OK);
   if (status == MPS_OK)
     status = mpsi_mpm_partition_cut(part->context, part->grid, part->partition, function, true);
   if (status == MPS_OK)
@@ -383,7 +310,7 @@ mps_status mpsi_mpm_partition_create(const mpsi_rank_part *part, const char *fun
 
 mps_status mpsi_mpm_share_take_part(const mpsi_rank_part *part, const char *function,
                                     mps_status status) {
-  status = compare_ranks(part->grid, part->p, part->def, function, status);
+  status = compare_ranks(part->p, part->def, function, status);
   return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(part, function) : status;
 }
 

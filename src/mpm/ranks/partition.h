@@ -35,14 +35,14 @@ typedef struct mpsi_partition {
   bool apart, thin; /* some tile that is sent has forces, values across thin bodies, in the step
                        being made */
   int32_t penalty_bodies; /* most tiles of penalty contact, one a body, that are sent with a tile */
-  int32_t item;           /* bytes of a parcel: a tile, or other sums */
-  double *out, *in;       /* parcels */
+  int64_t doubles;        /* length of the messages under way (messages.h), */
+  const char *function;   /* and the function of the caller that sends them */
   int64_t *first;         /* for each rank, the first key of its blocks on the curve (curve.h) */
   mpsi_curve_orientation orientation; /* orientation of the curve over the blocks */
   double heaviest;                    /* largest number of particles of a rank after the last cut */
   bool cancel;                        /* a hook of any rank has cancelled the run */
   mps_status lost;                    /* status of the messages in the step being made */
-  mpsi_room border_room, rank_room, out_room, in_room;
+  mpsi_room border_room, rank_room, out_room, in_room; /* out, in: messages */
 } mpsi_partition;
 
 /* What the functions of this room work on: the particles of this rank, their blocks of cells and

@@ -1,6 +1,7 @@
 /* row_order.c - order of the rows of all ranks in the whole set (partition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/all_parts.h"
+#include "mpm/grid/blocks.h"
+#include "mpm/ranks/partition.h"
 
 #include <string.h>
 

@@ -8,6 +8,7 @@
 #include "mpm/base/shape.h"
 
 #include <mps/grid.h>
+#include <mps/experimental/domain.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -278,11 +279,13 @@ static double value_of(fit *f, int32_t column) {
 static mps_status check(const mps_mpm *mpm, const char *function, const char *field,
                         int32_t component, int64_t count, const double *points,
                         const double *values, int32_t *components) {
-  if (!field || count < 0 || (count > 0 && (!points || !values)))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "field is %s, count %lld, points %s and values %s: must be given, count >= 0",
-                     field ? "given" : "NULL", (long long)count, points ? "given" : "NULL",
-                     values ? "given" : "NULL");
+  if (!field) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "field is NULL");
+  if (count < 0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (count > 0 && (!points || !values))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     points ? "values" : "points");
   mps_status status = mpsi_particles_ready(mpm->p.set, function);
   if (status == MPS_OK && (mpm->run.broken || mpm->run.lost))
     status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
@@ -326,7 +329,7 @@ static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partiti
 
 mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t component,
                              int64_t count, const double *points, double *values, int32_t *states) {
-  if (!grid) return MPS_ERROR_ARGUMENT;
+  if (!grid) return mpsi_null(__func__, "grid");
   mps_mpm *mpm = grid->mpm;
   near list = {.mpm = mpm};
   int32_t components = 0;

@@ -1,10 +1,11 @@
 /* totals.c - sums over the particles, the energy budget, and the memory of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "totals.h"
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 
-#include <mps/mpm_energy.h>
+#include <mps/experimental/mpm_energy.h>
 
 static int64_t grid_bytes(const mps_mpm *mpm) {
   const struct {
@@ -40,7 +41,8 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
               {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->grid.dim * sizeof(double)},
-              {mpm->rooms.strain.capacity + mpm->rooms.rough.capacity, sizeof(double)},
+              {mpm->rooms.strain.capacity + mpm->rooms.rough.capacity + mpm->rooms.places.capacity,
+               sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
               {mpm->p.count, 2 * sizeof *mpm->grid.radix}};
   int64_t bytes = 0;
@@ -116,13 +118,11 @@ static mps_status sum_energies(mpsi_partition *partition, const mpsi_energy *ene
   return status;
 }
 
-mps_status mps_mpm_get_totals_sized(const mps_mpm *handle, mps_totals *out, size_t size) {
-  mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
-  static const char function[] = "mps_mpm_get_totals";
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_get_totals(void *solver, const char *function, mps_totals *out) {
+  mps_mpm *mpm = solver;
   mpsi_exact sum[SUMS] = {{{0}}};
   double e[MPSI_ENERGY_SUMS];
-  mps_status status = MPS_OK;
+  mps_status status = mpsi_particles_committed(mpm->p.set, function);
   if (mpm->partition)
     status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, function,
                                     status);
@@ -146,13 +146,15 @@ mps_status mps_mpm_get_totals_sized(const mps_mpm *handle, mps_totals *out, size
                  e[MPSI_ENERGY_FRICTION_LOSS] + e[MPSI_ENERGY_DAMPING_LOSS] + t.scheme;
   t.work_loads = e[MPSI_ENERGY_LOADS];
   if (!mpm->energy.counts) t.strain = t.scheme = t.dissipated = t.work_loads = NAN;
-  return mpsi_out_write(mpm->context, function, out, size, &t, sizeof t);
+  *out = t;
+  return MPS_OK;
 }
 
-mps_status mps_mpm_get_losses_sized(const mps_mpm *handle, mps_mpm_losses *out, size_t size) {
+mps_status mps_mpm_get_energy_report_sized(const mps_mpm *handle, mps_mpm_energy_report *out,
+                                           size_t size) {
   mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
-  static const char function[] = "mps_mpm_get_losses";
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+  static const char function[] = "mps_mpm_get_energy_report";
+  if (!mpm) return mpsi_null(__func__, "mpm");
   if (!mpm->energy.counts)
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
@@ -160,25 +162,25 @@ mps_status mps_mpm_get_losses_sized(const mps_mpm *handle, mps_mpm_losses *out, 
   mps_status status = mpsi_mpm_agree(mpm->partition, function, MPS_OK);
   if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
   if (status != MPS_OK) return status;
-  mps_mpm_losses l = {.laws = e[MPSI_ENERGY_SPENT],
-                      .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],
-                      .bodies = e[MPSI_ENERGY_FRICTION_LOSS],
-                      .damping = e[MPSI_ENERGY_DAMPING_LOSS],
-                      .transfer = e[MPSI_ENERGY_TRANSFER],
-                      .stepping = e[MPSI_ENERGY_STEPPING],
-                      .strain = e[MPSI_ENERGY_STRAIN]};
+  mps_mpm_energy_report l = {.laws = e[MPSI_ENERGY_SPENT],
+                             .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],
+                             .bodies = e[MPSI_ENERGY_FRICTION_LOSS],
+                             .damping = e[MPSI_ENERGY_DAMPING_LOSS],
+                             .transfer = e[MPSI_ENERGY_TRANSFER],
+                             .stepping = e[MPSI_ENERGY_STEPPING],
+                             .strain = e[MPSI_ENERGY_STRAIN]};
   l.residual = e[MPSI_ENERGY_LOADS] + e[MPSI_ENERGY_BOUNDARIES] + mpm->energy.work_bodies -
                e[MPSI_ENERGY_KINETIC] - e[MPSI_ENERGY_KEPT] - e[MPSI_ENERGY_SPRINGS] - l.laws -
                l.boundaries - l.bodies - l.damping - l.transfer - l.stepping - l.strain;
   return mpsi_out_write(mpm->context, function, out, size, &l, sizeof l);
 }
 
-mps_status mps_mpm_get_usage_sized(const mps_mpm *mpm, mps_mpm_usage *out, size_t size) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_mpm_usage usage = {.blocks = mpm->grid.cell_count,
-                               .nodes = mpm->grid.node_count * mpm->grid.block_nodes,
-                               .bytes = grid_bytes(mpm),
-                               .sweeps = mpm->contact.impulses.sweeps,
-                               .left = mpm->contact.impulses.left};
-  return mpsi_out_write(mpm->context, "mps_mpm_get_usage", out, size, &usage, sizeof usage);
+mps_status mps_mpm_get_report_sized(const mps_mpm *mpm, mps_mpm_report *out, size_t size) {
+  if (!mpm) return mpsi_null(__func__, "mpm");
+  const mps_mpm_report usage = {.blocks = mpm->grid.cell_count,
+                                .nodes = mpm->grid.node_count * mpm->grid.block_nodes,
+                                .bytes = grid_bytes(mpm),
+                                .sweeps = mpm->contact.impulses.sweeps,
+                                .left = mpm->contact.impulses.left};
+  return mpsi_out_write(mpm->context, "mps_mpm_get_report", out, size, &usage, sizeof usage);
 }

@@ -2,9 +2,11 @@
  * speed, and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
-#include "mpm/contact/sweeps.h"
+#include "mpm/water/water.h"
 
 #include "core/particles/particles_internal.h"
+
+#define NOT_FINITE "is not finite, is beyond 1e100 m/s or has no volume"
 
 /* Reports the particle that ends the step; `what` is wrong with it. */
 static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
@@ -24,66 +26,75 @@ static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const 
   return status;
 }
 
-/* Reduces the results over all ranks. An error of one is that of all. */
-static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, double flow,
-                                int64_t bad, int64_t lost) {
-  mpsi_partition *partition = mpm->partition;
-  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, FOUND };
-  double most[MPSI_SWEEP_SUMS];
-  mpsi_mpm_sweep_sums(&mpm->contact, most);
-  mps_status own = MPS_OK, status = partition->lost;
-  if (bad >= 0)
-    own = report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
-                     "is not finite, is beyond 1e100 m/s or has no volume");
-  else if (lost >= 0)
-    own = report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, lost,
-                     "has left the domain");
-  if (bad < 0)
-    mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
-  double found[FOUND] = {speed,
-                         mpm->run.stale,
-                         bad >= 0,
-                         lost >= 0,
-                         mpm->run.edited,
-                         mpsi_cancelled(mpm->context),
-                         most[MPSI_SWEEP_CHANGED],
-                         most[MPSI_SWEEP_IMPULSES],
-                         flow};
-  status = mpsi_domain_agree_max(partition->domain, function, status, FOUND, found);
-  mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
-  if (status != MPS_OK) return status;
-  mpm->run.stale = found[STALE] > 0.0;
-  mpm->run.edited = found[EDITED] > 0.0;
-  partition->cancel = found[CANCEL] > 0.0;
-  mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
-  if (!mpm->run.broken) mpm->run.speed = found[SPEED], mpm->run.flow = found[FLOW];
-  mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
-  if (mpm->run.lost) mpm->run.stale = true;
-  if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
-  if (mpm->run.broken && bad < 0) own = MPS_OK; /* another rank reports a broken particle */
-  return mpsi_domain_agree(partition->domain, function, own);
+mps_status mpsi_mpm_report_undone(mps_mpm *mpm, const char *function) {
+  int64_t bad = -1;
+  char what[256];
+  for (int64_t b = 0; b < mpm->grid.cell_count && bad < 0; b++)
+    if (!mpm->grid.cells[b].lost) bad = mpm->grid.cells[b].bad;
+  const bool fast = bad < 0 && mpm->bound.beyond >= 0;
+  if (fast) bad = mpm->bound.beyond;
+  if (bad < 0) return MPS_OK; /* that of another rank */
+  if (fast) mpsi_bound_describe(mpm, what, sizeof what);
+  const bool described = fast || mpsi_pore_describe(mpm, bad, what, sizeof what);
+  return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
+                    described ? what : NOT_FINITE);
 }
 
-mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
-  double speed = 0.0, flow = 0.0;
-  int64_t bad = -1, lost = -1;
+/* The first bad and the first lost particle of this rank, or -1; its largest speeds (m/s). */
+static void read_blocks(mps_mpm *mpm, int64_t *bad, int64_t *lost, double *speed, double *flow) {
+  *bad = *lost = -1;
+  *speed = *flow = 0.0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    int64_t *which = cells->lost ? &lost : &bad;
+    int64_t *which = cells->lost ? lost : bad;
     if (cells->bad >= 0 && *which < 0) *which = cells->bad;
     if (cells->left) mpm->run.stale = true;
-    if (cells->speed > speed) speed = cells->speed;
-    if (cells->flow > flow) flow = cells->flow;
+    if (cells->speed > *speed) *speed = cells->speed;
+    if (cells->flow > *flow) *flow = cells->flow;
   }
-  if (mpm->partition) return collect_ranks(mpm, function, speed, flow, bad, lost);
-  mpm->run.broken = bad >= 0;
-  if (bad >= 0)
-    return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
-                      "is not finite, is beyond 1e100 m/s or has no volume");
-  mpm->run.speed = speed;
-  mpm->run.flow = flow;
-  if (lost < 0) return MPS_OK;
-  mpm->run.lost = mpm->run.stale = true;
-  return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, lost,
-                    "has left the domain");
+}
+
+/* On several ranks an error of one is that of all; particles leave before ranks compare. */
+mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
+  mpsi_partition *partition = mpm->partition;
+  mpsi_run *run = &mpm->run;
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, FASTEST, FOUND };
+  _Static_assert(FOUND <= MPSI_DOMAIN_ALONG, "values of one message");
+  int64_t bad, lost;
+  double speed, flow, most[MPSI_SWEEP_SUMS];
+  mps_status own = MPS_OK, status = MPS_OK;
+  read_blocks(mpm, &bad, &lost, &speed, &flow);
+  if (bad >= 0 || lost >= 0)
+    own = report_bad(mpm->context, &mpm->grid, &mpm->p, run, function, bad >= 0 ? bad : lost,
+                     bad >= 0 ? NOT_FINITE : "has left the domain");
+  if (bad < 0)
+    mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
+  mpsi_mpm_sweep_sums(&mpm->contact, most);
+  double found[FOUND] = {speed,
+                         run->stale,
+                         bad >= 0,
+                         lost >= 0,
+                         run->edited,
+                         partition && mpsi_cancelled(mpm->context),
+                         most[MPSI_SWEEP_CHANGED],
+                         most[MPSI_SWEEP_IMPULSES],
+                         flow,
+                         mpsi_bound_fastest(mpm)};
+  if (partition)
+    status = mpsi_domain_agree_max(partition->domain, function, partition->lost, FOUND, found);
+  run->broken = status != MPS_OK || found[BAD] > 0.0;
+  if (status != MPS_OK) return status;
+  run->stale = found[STALE] > 0.0;
+  run->edited = found[EDITED] > 0.0;
+  if (partition) {
+    partition->cancel = found[CANCEL] > 0.0;
+    mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
+  }
+  if (!run->broken) run->speed = found[SPEED], run->flow = found[FLOW];
+  mpm->bound.fastest = found[FASTEST];
+  run->lost = run->lost || (!run->broken && found[LOST] > 0.0);
+  if (run->lost) run->stale = true;
+  if (!run->broken && found[LOST] == 0.0) return MPS_OK;
+  if (run->broken && bad < 0) own = MPS_OK; /* another rank reports a broken particle */
+  return mpsi_mpm_agree(partition, function, own);
 }

@@ -2,6 +2,7 @@
  * forces are summed apart from momenta (see mpsi_cell_block).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "core/base/room_array.h"
 
 /* Range of nodes, low to high - 1, of a tile. */
 typedef struct box {
@@ -89,11 +90,8 @@ static bool list_fits(mps_context *context, mpsi_grid *grid) {
     cells->first_fit = cells->inside ? count : -1;
     if (cells->inside) count += cells->end - cells->begin;
   }
-  if (!mpsi_room_ensure(context, &grid->fit_room, count, sizeof *grid->fit) ||
-      !mpsi_room_ensure(context, &grid->fitted_room, count, sizeof *grid->fitted))
+  if (!MPSI_ENSURE(context, grid, fit, count) || !MPSI_ENSURE(context, grid, fitted, count))
     return false;
-  grid->fit = grid->fit_room.item;
-  grid->fitted = grid->fitted_room.item;
   return true;
 }
 
@@ -129,18 +127,20 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
   }
   if (!mpsi_mpm_list_across(mpm->context, &mpm->grid, &mpm->mirrors, &mpm->contact) ||
       !list_fits(mpm->context, &mpm->grid) ||
-      !mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
-                        mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
+      !MPSI_ENSURE(mpm->context, &mpm->grid, side, mpm->grid.side_count * mpm->grid.block_nodes))
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(mpm->grid.side_count * mpm->grid.block_nodes) *
                                 sizeof *mpm->grid.side);
-  mpm->grid.side = mpm->grid.side_room.item;
   return MPS_OK;
 }
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
   mpm->contact.penalty_bodies = 0;
-  mpsi_inside_search search = {&mpm->grid, &mpm->p, &mpm->contact, mpm->kernels};
+  mpsi_inside_search search = {.context = mpm->context,
+                               .grid = &mpm->grid,
+                               .p = &mpm->p,
+                               .contact = &mpm->contact,
+                               .kernels = mpm->kernels};
   const mpsi_pass pass = {.data = &search,
                           .update = mpsi_mpm_find_inside,
                           .gather = mpsi_mpm_mark_reached,
@@ -158,8 +158,8 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
     if (mpm->partition) { /* collective: also where the status of this rank is an error */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(&mpm->grid, &mpm->contact, &mpm->grid.cells[b]);
-      const mps_status lost =
-          mpsi_mpm_exchange_corners(&search, mpm->partition, function, status == MPS_OK);
+      search.failed = status != MPS_OK;
+      const mps_status lost = mpsi_mpm_exchange_corners(&search, mpm->partition, function);
       if (lost != MPS_OK) status = lost;
     }
   }

@@ -3,6 +3,7 @@
  * boundary prescribes, and both are applied after all other forces, so that the forces of
  * boundaries and bodies do not depend on them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "core/base/room_array.h"
 
 #include <string.h>
 
@@ -49,9 +50,8 @@ mps_status mpsi_mpm_begin_balance(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_columns *p, mpsi_settling *s, const mps_mpm_def *def,
                                   const char *function) {
   if (!s->on) return MPS_OK;
-  if (!mpsi_room_ensure(context, &s->nodes_room, mpsi_all_nodes(grid), sizeof *s->nodes))
+  if (!MPSI_ENSURE(context, s, nodes, mpsi_all_nodes(grid)))
     return mpsi_fail_memory(context, function, (size_t)mpsi_all_nodes(grid) * sizeof *s->nodes);
-  s->nodes = s->nodes_room.item;
   memset(&s->applied, 0, sizeof s->applied);
   for (int64_t b = 0; b < grid->cell_count; b++)
     if (!grid->cells[b].ghost)

@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_DAMPING_H
 #define MPSI_MPM_DAMPING_H
 
-#include "mpm/grid/blocks.h"
+#include "mpm/base/energy.h"
 #include "core/base/exact.h"
 
 /* A block of nodes in a step of mps_mpm_settle. */
@@ -38,5 +38,11 @@ void mpsi_mpm_measure_balance(const mpsi_grid *grid, const mpsi_contacts *contac
 /* Damps the velocities of the nodes of block g, but not their prescribed components (`fixed`). */
 void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double dt, int64_t g,
                          const uint8_t *fixed);
+
+/* Whether each node needs its velocity before the forces, so that all blocks are split. */
+static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
+                                     const mps_mpm_def *def) {
+  return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
+}
 
 #endif

@@ -44,17 +44,22 @@ typedef enum filtered_kind { SAND, FLUID } filtered_kind;
 
 static filtered_kind kind_of(const mpsi_law_use *law) { return law->gap < 0 ? FLUID : SAND; }
 
-/* Whether this step filters that kind, of which there is some law. */
-static bool filters(const mpsi_columns *p, const mpsi_run *run, filtered_kind kind) {
+/* Whether this step filters that kind, of which there is some law. Saturated sand is left alone
+ * where pore pressures follow the volumes of the particles: these would follow the filter's changes
+ * of volume too, K_w/(n K) times as large as those of the filtered stress, and feed it, until sand
+ * on quadratic weights bursts. Means over cells keep the pressures of the water smooth. */
+static bool filters(const mpsi_columns *p, const mpsi_water *water, const mpsi_run *run,
+                    filtered_kind kind) {
   bool any = false;
   if (run->steps % (kind == FLUID ? EVERY_OF_FLUID : EVERY) != 0) return false;
+  if (kind == SAND && mpsi_pore_responds(water)) return false;
   for (int32_t k = 0; k < p->laws.count; k++)
     any = any || (p->laws.law[k].filtered && kind_of(&p->laws.law[k]) == kind);
   return any;
 }
 
-bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run) {
-  return p->laws.some_filtered && (filters(p, run, SAND) || filters(p, run, FLUID));
+bool mpsi_mpm_filters(const mpsi_columns *p, const struct mpsi_water *water, const mpsi_run *run) {
+  return p->laws.some_filtered && (filters(p, water, run, SAND) || filters(p, water, run, FLUID));
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -127,24 +132,21 @@ typedef struct support {
   uint64_t across;            /* bit 16 k + 4 j + i: the node's values across (thin_bodies.h) */
 } support;
 
-/* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
+/* Stencil of a particle as G2P found it. */
 MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, const axes *all,
                               int dim, int spline, bool thin, int64_t k, support *out) {
-  const double least = spline == 3 ? 1.0 : 0.5;
-  const double dt = mpm->run.dt;
   int base[3];
-  mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
+  mpsi_unravel(mpsi_stencil_node(mpm->p.stencil[k]), MPSI_TILE_SIDE, base);
   for (int c = 0; c < dim; c++) {
-    const double x = mpm->p.x[c][k] - dt * mpm->p.v[c][k];
-    const double t = mpsi_grid_at(&mpm->grid, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
-    mpsi_weights(spline, t < least ? least : t > least + 1.0 ? least + 1.0 : t, out->w[c]);
+    const double t = mpm->p.t[c][k];
+    mpsi_weights(spline, t, out->w[c]);
     for (int i = 0; i <= spline; i++) out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
     out->at[c] = all->offset[c] + base[c];
   }
   out->across = 0;
   if (!thin) return;
   double x[3];
-  mpsi_former_place(&mpm->grid, &mpm->p, mpm->run.dt, k, x);
+  mpsi_former_place(&mpm->grid, &mpm->p, cells, base, k, x);
   out->across = mpsi_mpm_find_parted(&mpm->grid, &mpm->contact, cells, base, x).across;
 }
 
@@ -269,13 +271,15 @@ MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, filtered_k
 
 /* ---- stresses -------------------------------------------------------------------------------- */
 
-/* A volume after a volume strain, to the third order: strains to and fro leave it as it was. */
-static double grown(double V, double strain) {
-  return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
+/* Ratio of volumes after a volume strain, as the law takes it: to the third order, so that strains
+ * to and fro leave the volume as it was; exactly where the law reads V/V0. */
+static double growth_of(const mpsi_law_use *law, double strain) {
+  if (law->reads_volume) return exp(strain);
+  return (1.0 + 0.5 * strain) / (1.0 - 0.5 * strain);
 }
 
 /* e' = e - (r - S r), in p and the gap. */
-static void change_stress(const mpsi_columns *p, mpsi_water *water, int64_t k) {
+static void change_stress(const mpsi_columns *p, int64_t k) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
   double *gap = gap_of(law, k);
   const double bulk = bulk_of(p, k), was = mean_stress(p, k);
@@ -284,10 +288,9 @@ static void change_stress(const mpsi_columns *p, mpsi_water *water, int64_t k) {
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
   *gap = fmax(0.0, (closed - now) / bulk);
   for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
-  const double former = p->V[k];
-  p->V[k] = grown(former, (now - was) / bulk);
-  if (mpsi_pore_responds(water)) mpsi_pore_follow(p, water, k, former);
-  if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
+  const double growth = growth_of(law, (now - was) / bulk);
+  p->V[k] *= growth;
+  if (law->reads_volume) p->J[k] *= growth; /* of the same V0 */
 }
 
 /* The same for a fluid, whose state is its volume. One without tension bears none. */
@@ -310,7 +313,7 @@ static void change(mps_mpm *mpm, const mpsi_cell_block *cells, filtered_kind kin
     if (is_filtered(&mpm->p, k, kind) && kind == FLUID)
       change_pressure(&mpm->p, mpm->water, k);
     else if (is_filtered(&mpm->p, k, kind))
-      change_stress(&mpm->p, mpm->water, k);
+      change_stress(&mpm->p, k);
   if (kind == SAND) mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
 }
 
@@ -372,11 +375,11 @@ DEFINE_TASKS(sand, SAND)
 DEFINE_TASKS(fluid, FLUID)
 
 void mpsi_mpm_filter(mps_mpm *mpm) {
-  if (filters(&mpm->p, &mpm->run, SAND)) {
+  if (filters(&mpm->p, mpm->water, &mpm->run, SAND)) {
     mpsi_run_sums(mpm, sum_stress_of_sand, add_stress_of_sand, find_rough_of_sand);
     mpsi_run_sums(mpm, sum_rough_of_sand, add_rough_of_sand, filter_sand);
   }
-  if (filters(&mpm->p, &mpm->run, FLUID)) {
+  if (filters(&mpm->p, mpm->water, &mpm->run, FLUID)) {
     mpsi_run_sums(mpm, sum_stress_of_fluid, add_stress_of_fluid, find_rough_of_fluid);
     mpsi_run_sums(mpm, sum_rough_of_fluid, add_rough_of_fluid, filter_fluid);
   }

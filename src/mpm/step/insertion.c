@@ -13,6 +13,7 @@
 
 #include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/water/water.h"
 
 #include <string.h>
 
@@ -36,6 +37,7 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   mps_mpm *mpm = self;
   const bool moved = strcmp(field, "position") == 0;
   mps_status status = MPS_OK;
+  mpm->run.changed = true;
   if (read_by_steps(field)) return MPS_OK;
   if (moved)
     status = mpsi_mpm_check_places(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function, 0,
@@ -47,10 +49,12 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   mpm->run.edited = true;
   mpm->run.stale = mpm->run.stale || moved;
   if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
-  /* the gradients belong to the former pressures */
-  if (mpm->water && strcmp(field, "pore_pressure") == 0)
+  /* gradients and means belong to the former pressures */
+  if (mpm->water && strcmp(field, "pore_pressure") == 0) {
     for (int c = 0; c < mpm->grid.dim; c++)
       memset(mpm->p.g[c], 0, (size_t)mpm->p.count * sizeof *mpm->p.g[c]);
+    mpsi_pore_begin_means(&mpm->p);
+  }
   return MPS_OK;
 }
 
@@ -79,9 +83,14 @@ static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t firs
                                    mpm->contact.handle[b], first);
   if (status == MPS_OK)
     status =
-        mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, function, first, first + count);
+        mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, function, 0, first, first + count);
+  const mpsi_amount amount = {mpm->grid.measure,
+                              mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC};
+  if (status == MPS_OK)
+    status = mpsi_particles_check_crowding(mpm->p.set, function, first, &amount);
   for (int64_t k = first; k < first + count && status == MPS_OK; k++) {
     mpm->p.V[k] = mpsi_mpm_lattice_volume(&mpm->grid, &mpm->p, k);
+    if (mpm->water) mpm->p.slow[k] = mpm->p.u[k];
     mpsi_mpm_begin_law(&mpm->grid, &mpm->p, &mpm->p.laws.law[0], k);
   }
   return status;

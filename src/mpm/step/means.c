@@ -3,8 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "means.h"
 
-#include "mpm/ranks/parcels.h"
-#include "tiles.h"
+#include "mpm/ranks/messages.h"
 
 #include <string.h>
 
@@ -30,14 +29,37 @@ static void add_tile(const mpsi_grid *grid, const mpsi_cell_block *cells, const 
       }
 }
 
+/* The part of the worker's tiles in use, to or from a message. */
+static void copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *message,
+                       bool pack) {
+  message =
+      mpsi_mpm_copy_nodes(cells->low, cells->high, worker->tile, sizeof(mpsi_node), message, pack);
+  if (cells->thin)
+    mpsi_mpm_copy_nodes(cells->low, cells->high, worker->across_tile, sizeof(mpsi_node), message,
+                        pack);
+}
+
 void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (!mpm->partition)
+  double *message;
+  if (!mpsi_mpm_find_message(mpm->partition, cells, &message)) return;
+  if (message)
+    copy_tiles(cells, &mpm->grid.workers[number], message, false);
+  else
     sum(mpm, b, number);
-  else if (!mpsi_mpm_receive_sums(&mpm->grid, mpm->partition, b, number, sum, mpm))
-    return;
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     add_tile(&mpm->grid, cells, &mpm->grid.workers[number], across != 0);
+}
+
+typedef struct sums {
+  mps_mpm *mpm;
+  mpsi_mpm_task sum;
+} sums;
+
+static void pack(void *data, int64_t b, int32_t number, double *message) {
+  const sums *s = data;
+  s->sum(s->mpm, b, number);
+  copy_tiles(&s->mpm->grid.cells[b], &s->mpm->grid.workers[number], message, true);
 }
 
 void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
@@ -45,8 +67,13 @@ void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_
                           .clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
                           .gather = gather,
-                          .arrive = mpm->partition ? mpsi_step_receive_parcels : NULL};
-  if (mpm->partition) mpsi_mpm_send_sums(mpm->context, &mpm->grid, mpm->partition, sum, mpm);
+                          .ranks = mpm->partition,
+                          .arrive = mpsi_mpm_receive_messages};
+  sums s = {mpm, sum};
+  if (mpm->partition)
+    mpsi_mpm_send_messages(mpm->context, mpm->partition, "mps_mpm_step",
+                           mpsi_mpm_tile_doubles(mpm->partition, false, mpm->partition->thin, 0),
+                           pack, &s);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
 }
 

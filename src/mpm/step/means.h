@@ -8,10 +8,14 @@
 
 enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3 };
 
-/* Position (m) of a particle when G2P found its stencil: it has moved by dt v since. */
-static inline void mpsi_former_place(const mpsi_grid *grid, const mpsi_columns *p, double dt,
-                                     int64_t k, double *x) {
-  for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] - dt * p->v[c][k] : 0.0;
+/* Position (m) of a particle when G2P found its stencil, whose lowest tile node is `base`. It has
+ * moved since; not by dt v where it has a FLIP part or was moved back to a wall. */
+static inline void mpsi_former_place(const mpsi_grid *grid, const mpsi_columns *p,
+                                     const mpsi_cell_block *cells, const int *base, int64_t k,
+                                     double *x) {
+  double local[3] = {0.0};
+  for (int c = 0; c < grid->dim; c++) local[c] = base[c] + p->t[c][k];
+  mpsi_node_position(grid, cells->at, local, x);
 }
 
 /* Sums of tile node (i, j, k): those of a block, in the tile of a worker, or (worker NULL) those of
@@ -39,7 +43,7 @@ bool mpsi_any_refused(const mpsi_columns *p, mpsi_partition *partition);
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* filter.c: whether this step, by its number and the interval, filters the mean stresses of
  * frictional laws; the filter. */
-bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run);
+bool mpsi_mpm_filters(const mpsi_columns *p, const struct mpsi_water *water, const mpsi_run *run);
 void mpsi_mpm_filter(mps_mpm *mpm);
 
 #endif

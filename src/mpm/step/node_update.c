@@ -64,14 +64,21 @@ void mpsi_mpm_update_nodes(void *data, int64_t g, int32_t worker) {
   if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }
 
+/* Copies of the nodes of a block, in the worker's room. */
+typedef struct copies {
+  mpsi_node before[MOST], old[MOST], held[MOST], damped[MOST];
+  mpsi_side_impulses impulses;
+} copies;
+_Static_assert(sizeof(copies) <= MPSI_WORKER_ROOM, "room of a worker");
+
 /* Friction with bodies, after mirrors. `held` receives the velocities that the nodes would have
  * without boundaries. */
-static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
+static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held, copies *room) {
+  mpsi_node *before = room->before, *old = room->old;
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   memcpy(held, node, bytes);
   if (mpm->grid.nodes[g].pairs == 0 || mpm->grid.nodes[g].side < 0) return;
-  mpsi_node before[MOST], old[MOST];
   mpsi_node *side = mpm->grid.side + mpsi_first_node(&mpm->grid, mpm->grid.nodes[g].side);
   memcpy(old, side, bytes);
   mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
@@ -84,42 +91,67 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
 
 /* Friction, boundaries and damping of the nodes, with their energies and unbalanced forces where
  * these are needed. */
-static void finish_and_damp(mps_mpm *mpm, int64_t g) {
-  mpsi_node held[MOST], damped[MOST];
-  uint8_t fixed[MOST] = {0};
+static void damp(mps_mpm *mpm, int64_t g, const uint8_t *fixed, const mpsi_node *held,
+                 mpsi_node *damped) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
-  const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
-  apply_body_friction(mpm, g, held);
-  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
-  memcpy(damped, node, bytes);
+  memcpy(damped, node, (size_t)mpm->grid.block_nodes * sizeof *damped);
   if (mpm->settling.on)
     mpsi_mpm_measure_balance(&mpm->grid, &mpm->contact, &mpm->settling, mpm->run.dt, g, fixed,
-                             (const mpsi_node *)held);
+                             held);
   mpsi_mpm_damp_nodes(&mpm->grid, &mpm->def, mpm->run.dt, g, fixed);
   if (mpm->energy.counts)
-    mpsi_mpm_energy_nodes(&mpm->grid, &mpm->contact, &mpm->energy, mpm->run.dt, g,
-                          (const mpsi_node *)held, (const mpsi_node *)damped);
+    mpsi_mpm_energy_nodes(&mpm->grid, &mpm->contact, &mpm->energy, mpm->run.dt, g, held,
+                          (const mpsi_node *)damped);
 }
 
-static void finish(mps_mpm *mpm, int64_t g) {
-  uint8_t fixed[MOST];
-  if (mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) ||
-      mpm->def.viscous_damping > 0.0) {
-    finish_and_damp(mpm, g);
+static void finish_and_damp(mps_mpm *mpm, int64_t g, copies *room) {
+  uint8_t fixed[MOST] = {0};
+  apply_body_friction(mpm, g, room->held, room);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
+  damp(mpm, g, fixed, (const mpsi_node *)room->held, room->damped);
+}
+
+static bool damps(const mps_mpm *mpm) {
+  return mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) ||
+         mpm->def.viscous_damping > 0.0;
+}
+
+static void finish(mps_mpm *mpm, int64_t g, copies *room) {
+  uint8_t own[MOST], *fixed = own;
+  if (mpm->prescribed.on) {
+    fixed = mpm->prescribed.fixed + mpsi_first_node(&mpm->grid, g);
+    if (damps(mpm)) {
+      apply_body_friction(mpm, g, mpm->prescribed.before + mpsi_first_node(&mpm->grid, g), room);
+      mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
+      return;
+    }
+  } else if (damps(mpm)) {
+    finish_and_damp(mpm, g, room);
     return;
   }
   if (mpm->grid.nodes[g].pairs > 0) {
     mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
     mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   }
-  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
 }
 
 void mpsi_mpm_finish_nodes(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
-  (void)worker;
+  copies *room = mpm->grid.workers[worker].room;
   const int32_t across = mpm->grid.nodes[g].across;
   mpsi_mpm_begin_held(&mpm->grid, &mpm->boundaries, g);
-  finish(mpm, g);
-  if (across >= 0) finish(mpm, across);
+  finish(mpm, g, room);
+  if (across >= 0) finish(mpm, across, room);
+}
+
+void mpsi_mpm_damp_after_lists(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
+  const int64_t first = mpsi_first_node(&mpm->grid, g);
+  if (!damps(mpm)) return;
+  copies *room = mpm->grid.workers[worker].room;
+  damp(mpm, g, mpm->prescribed.fixed + first, (const mpsi_node *)mpm->prescribed.before + first,
+       room->damped);
+  if (mpm->grid.nodes[g].across >= 0)
+    mpsi_mpm_damp_after_lists(data, mpm->grid.nodes[g].across, worker);
 }

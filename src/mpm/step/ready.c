@@ -7,6 +7,7 @@
 
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
+  mpm->run.renewed = mpm->run.renewed || status == MPS_OK;
   return status == MPS_OK ? mpsi_mpm_check_whole(mpm->context, &mpm->p, &mpm->run, function)
                           : status;
 }
@@ -18,6 +19,9 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (mpm->contact.bodies > 0)
     status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,
                                        function, status);
+  if (mpm->prescribed.on)
+    status = mpsi_mpm_share_warm_start(&mpm->prescribed.constraints.impulses, mpm->p.set,
+                                       mpm->partition->domain, function, status);
   const mpsi_rank_part part = mpsi_rank_part_of(mpm);
   if (status == MPS_OK) return mpsi_mpm_partition_sort(&part, function);
   mpm->run.stale = true;
@@ -43,6 +47,20 @@ void mpsi_mpm_find_speeds(mps_mpm *mpm) {
   mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_speed, mpm);
 }
 
+/* What was given before the first step for a state that might have been restored. */
+static mps_status check_first_state(mps_mpm *mpm, const char *function) {
+  mps_status status = MPS_OK;
+  for (int32_t l = 0; l < mpm->p.laws.count && status == MPS_OK; l++)
+    status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, function, l, 0, mpm->p.count);
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
+    if (mpm->contact.handle[b]->def.inside != MPS_CONTACT_INSIDE_REMOVE)
+      status = mpsi_mpm_check_inside(mpm->context, &mpm->grid, &mpm->p, function,
+                                     mpm->contact.handle[b], 0);
+  return status == MPS_OK
+             ? mpsi_mpm_check_overlaps(mpm->context, &mpm->grid, &mpm->contact, function)
+             : status;
+}
+
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_check_whole(mpm->context, &mpm->p, &mpm->run, function);
   if (status == MPS_OK)
@@ -53,8 +71,10 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   /* no rank has a lost particle any more */
   if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true;
-  if (!mpm->run.edited) return status;
+  if (!mpm->run.edited && !mpm->run.unchecked) return status;
+  mpm->run.changed = mpm->run.renewed = true;
   status = mpsi_mpm_check_masses(mpm->context, &mpm->p, function);
+  if (status == MPS_OK && mpm->run.unchecked) status = check_first_state(mpm, function);
   if (status == MPS_OK)
     status = mpsi_mpm_check_deformations(mpm->context, &mpm->grid, &mpm->p, function);
   if (status == MPS_OK) status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, function);
@@ -65,7 +85,7 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_find_speeds(mpm);
-  mpm->run.edited = false;
+  mpm->run.edited = mpm->run.unchecked = false;
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 
@@ -81,21 +101,21 @@ void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before) {
 }
 
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
+  const mps_status status = mpsi_guard_check(&mpm->guard, mpm->context, function);
   return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
 }
 
 mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function) {
-  const double dt = mps_mpm_dt(mpm), time = mpm->run.time;
+  const double dt = mpsi_mpm_dt(mpm), time = mpm->run.time;
   if (time + dt > time) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "dt = %g s, courant = %g times the limit %g s, does not advance the time %g s: "
                    "set dt",
-                   dt, mpm->def.courant, mps_mpm_limit(mpm), time);
+                   dt, mpm->def.courant, mpsi_mpm_limit(mpm), time);
 }
 
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function) {
-  if (isfinite(mps_mpm_dt(mpm))) return mpsi_mpm_check_advance(mpm, function);
+  if (isfinite(mpsi_mpm_dt(mpm))) return mpsi_mpm_check_advance(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "the solver has no particles, and nothing bounds dt: set it, or run to a time");
 }

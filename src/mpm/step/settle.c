@@ -6,19 +6,13 @@
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
-#include <mps/mpm_settle.h>
+#include <mps/experimental/settle.h>
+#include <mps/experimental/pore_water.h>
 
 #include <string.h>
 
 #define TOLERANCE 1e-3
 #define MOST_STEPS 20000
-
-static const mps_mpm_settle_def settle_defaults = {
-    .struct_size = sizeof(mps_mpm_settle_def), .max_steps = MOST_STEPS, .tolerance = NAN};
-
-mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_mpm_settle_def, def, size, &settle_defaults);
-}
 
 /* ---- bodies at rest -------------------------------------------------------------------------- */
 
@@ -179,7 +173,7 @@ static mps_status sum_balance(const mpsi_grid *grid, const mpsi_contacts *contac
 
 /* The given dt may be that of implicit pressures, which are explicit here: below. */
 static double settling_dt(const mps_mpm *mpm) {
-  const double dt = mps_mpm_dt(mpm), most = mpm->def.courant * mps_mpm_limit(mpm);
+  const double dt = mpsi_mpm_dt(mpm), most = mpm->def.courant * mpsi_mpm_limit(mpm);
   return mpm->water && most < dt ? most : dt;
 }
 
@@ -246,18 +240,10 @@ static mps_status relax_with_explicit_pressures(mps_mpm *mpm, const char *functi
 
 static mps_status read_def(mps_context *context, const char *function,
                            const mps_mpm_settle_def *user, mps_mpm_settle_def *def) {
-  *def = settle_defaults;
-  mps_status status = MPS_OK;
-  if (user) status = MPSI_DEF_READ(context, function, mps_mpm_settle_def, user, def);
+  *def = mps_mpm_settle_defaults();
+  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_mpm_settle_def, user, def);
   if (status != MPS_OK) return status;
   if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
-  if (!(def->tolerance > 0.0 && def->tolerance < 1.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "tolerance is %g, must be in (0, 1), or NaN for %g", def->tolerance,
-                     TOLERANCE);
-  if (def->max_steps < 1)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "max_steps is %lld, must be at least 1",
-                     (long long)def->max_steps);
   return MPS_OK;
 }
 
@@ -265,15 +251,16 @@ static mps_status read_def(mps_context *context, const char *function,
 static mps_status check_sides(mps_context *context, const mpsi_boundaries *boundaries,
                               const char *function) {
   if (!mpsi_mpm_has_free_field(boundaries)) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_STATE,
-                   "a side is of kind 5 (FREE_FIELD): settle between rollers (2), then make it one");
+  return mpsi_fail(
+      context, function, MPS_ERROR_STATE,
+      "a side is of kind 5 (FREE_FIELD): settle between rollers (2), then make it one");
 }
 
 mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mps_mpm_settled *out,
                                 size_t size) {
   static const char function[] = "mps_mpm_settle";
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_settle_def def = settle_defaults;
+  if (!mpm) return mpsi_null(__func__, "mpm");
+  mps_mpm_settle_def def = mps_mpm_settle_defaults();
   mps_mpm_settled now = {0};
   const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
@@ -286,8 +273,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (mpm->partition) {
     mpsi_given given;
     mpsi_given_begin(&given);
-    MPSI_GIVE(&given, &def, tolerance);
-    MPSI_GIVE(&given, &def, max_steps);
+    MPSI_GIVE_DEF(&given, mps_mpm_settle_def, &def);
     status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   }
   double *motion = status == MPS_OK ? save_motion(mpm->context, &mpm->p, function) : NULL;
@@ -311,15 +297,16 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   now.peaks = settling->peaks;
   settling->on = true;
   settling->cut = false;
-  mpsi_guard_enter(&mpm->run.guard, mpm->context, function);
+  mpsi_guard_enter(&mpm->guard, mpm->context, function);
   if (mpm->water && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
     status = relax_with_explicit_pressures(mpm, function, &def, &now);
   else
     status = relax_until(mpm, function, &def, &now);
-  mpsi_guard_end(&mpm->run.guard);
+  mpsi_guard_end(&mpm->guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
   release_bodies(&mpm->contact);
   settling->on = false;
+  mpm->run.changed = mpm->run.renewed = true; /* works were not counted */
   if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->partition &&
       !mpm->run.broken) { /* no step was made */
     restore_motion(&mpm->p, motion);

@@ -1,6 +1,6 @@
-/* signals.c - the caller's signals in a step: factors of loads at its beginning, velocities of
- * boundaries at its middle, positions of bodies at its end. All are evaluated before anything of
- * the step changes, so that one that refuses leaves the state as it was.
+/* signals.c - the caller's signals in a step: factors of loads and of friction at its beginning,
+ * velocities of boundaries at its middle, positions of bodies at its end. All are evaluated before
+ * anything of the step changes, so that one that refuses leaves the state as it was.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
@@ -9,18 +9,24 @@
 static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
                                  const mpsi_loads *loads, const mpsi_run *run,
                                  const char *function) {
-  for (int32_t k = 0; k < loads->count; k++) {
-    mpsi_traction *load = &loads->traction[k];
-    for (int c = 0; load->count > 0 && c < grid->dim; c++) {
+  for (int32_t k = 0; k < loads->list->room; k++) {
+    mpsi_traction *load = mpsi_load_of(loads, k);
+    for (int c = 0; load && c < grid->dim; c++) {
       const mpsi_signal_use use = {context, function, "load", k, c};
-      mpsi_signal_motion m = {.u = 1.0};
       const mps_status status =
-          load->signal[c] ? mpsi_signal_evaluate(load->signal[c], use, run->time, &m) : MPS_OK;
+          mpsi_signal_factor(load->def->signal[c], use, run->time, &load->now[c]);
       if (status != MPS_OK) return status;
-      load->now[c] = m.u;
     }
   }
   return MPS_OK;
+}
+
+static mps_status evaluate_friction(const mpsi_contacts *contacts, const mpsi_run *run,
+                                    const char *function) {
+  mps_status status = MPS_OK;
+  for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++)
+    status = mpsi_contact_set_friction(contacts->handle[b], function, b, run->time);
+  return status;
 }
 
 static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *grid,
@@ -54,24 +60,27 @@ static mps_status evaluate_bodies(const mpsi_contacts *contacts, const mpsi_sett
 }
 
 mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves) {
-  const mpsi_guard outer =
-      mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
+  const mpsi_guard outer = mpsi_guard_close(&mpm->guard, mpm->context, "a signal of the solver");
   mps_status status = evaluate_loads(mpm->context, &mpm->grid, &mpm->loads, &mpm->run, function);
+  if (status == MPS_OK) status = evaluate_friction(&mpm->contact, &mpm->run, function);
   if (status == MPS_OK)
     status = evaluate_boundaries(mpm->context, &mpm->grid, &mpm->boundaries, &mpm->settling,
                                  &mpm->run, function, dt);
   if (status == MPS_OK && moves)
     status = evaluate_bodies(&mpm->contact, &mpm->settling, function, dt);
-  mpm->run.guard = outer;
+  mpm->guard = outer;
   return status;
 }
 
 bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
-                                 const mpsi_boundaries *boundaries) {
+                                 const mpsi_boundaries *boundaries, const mpsi_contacts *contacts) {
   bool may = false;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    may = may || mpsi_signal_may_fail(contacts->handle[b]->def.friction_factor);
   for (int c = 0; c < grid->dim; c++) {
-    for (int32_t k = 0; k < loads->count; k++)
-      may = may || mpsi_signal_may_fail(loads->traction[k].signal[c]);
+    for (int32_t k = 0; k < loads->list->room; k++)
+      may = may || (mpsi_load_of(loads, k) &&
+                    mpsi_signal_may_fail(mpsi_load_of(loads, k)->def->signal[c]));
     for (int32_t k = 0; k < boundaries->holds; k++)
       may = may || mpsi_signal_may_fail(boundaries->hold[k].signal[c]);
   }
@@ -87,9 +96,13 @@ static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
   for (int32_t k = 0; k < boundaries->holds; k++)
     if (boundaries->hold[k].kind != MPSI_BOUNDARY_NONE)
       mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->hold[k].v);
-  for (int32_t k = 0; k < loads->count; k++)
-    if (loads->traction[k].count > 0)
-      mpsi_give_vector(list, "the present factor on a load", grid->dim, loads->traction[k].now);
+  for (int32_t k = 0; k < loads->list->room; k++)
+    if (mpsi_load_of(loads, k))
+      mpsi_give_vector(list, "the present factor on a load", grid->dim,
+                       mpsi_load_of(loads, k)->now);
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    if (contacts->handle[b]->def.friction_factor)
+      mpsi_give(list, "the present friction of a contact", contacts->handle[b]->friction);
   for (int32_t b = 0; b < contacts->bodies && !settling->on; b++)
     if (contacts->handle[b]->source.moves) mpsi_body_give_ahead(list, contacts->body[b]);
 }

@@ -1,15 +1,14 @@
-/* tiles.c - tiles between ranks (ranks/partition.h): border blocks are summed and sent, the
- * interior is summed meanwhile, and then the tiles received are added to the nodes.
+/* tiles.c - scatter of a step, and its tiles between ranks (ranks/partition.h): border blocks are
+ * summed and sent, the interior is summed meanwhile, and then the tiles received are added to the
+ * nodes.
  *
- * A parcel has four numbers (whether its forces are apart, whether they are split, whether thin
- * bodies separate its nodes, whether it has contact constraints) and then the part of the tile that
- * is in use, that of the forces where some tile of the step has them, both across thin bodies
- * (thin_bodies.h) where some tile has these, and those of penalty contact, body by body
- * (penalty.c). SPDX-License-Identifier: BSD-3-Clause */
+ * A message has flags of the block and then the part of the tile that is in use, that of the forces
+ * where the block has them, both across thin bodies (thin_bodies.h), and those of penalty contact,
+ * body by body (penalty.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "tiles.h"
 
 #include "mpm/base/mpm_solver.h"
-#include "mpm/ranks/parcels.h"
+#include "mpm/ranks/messages.h"
 
 /* The contents of tiles and the memory of a step depend on bodies, boundaries and blocks alone. */
 bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
@@ -22,14 +21,15 @@ bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_
 
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_partition *partition = mpm->partition;
-  enum { APART, THIN, SPRINGS, FOUND };
+  enum { FORCES, ACROSS, SPRINGS, FOUND };
   double found[FOUND] = {0.0};
   if (status == MPS_OK)
-    status = mpsi_mpm_reserve_parcels(mpm->context, &mpm->contact, mpm->partition, function);
+    status = mpsi_mpm_reserve_messages(mpm->context, partition, function,
+                                       mpsi_mpm_most_doubles(partition, &mpm->contact));
   for (int64_t k = 0; status == MPS_OK && k < partition->borders; k++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
-    if (cells->apart) found[APART] = 1.0;
-    if (cells->thin) found[THIN] = 1.0;
+    if (cells->apart) found[FORCES] = 1.0;
+    if (cells->thin) found[ACROSS] = 1.0;
     double penalty_bodies = 0.0;
     for (int32_t q = 0; q < cells->pairs; q++)
       penalty_bodies += mpsi_mpm_has_penalty(&mpm->contact, cells, q);
@@ -37,68 +37,65 @@ mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_st
   }
   status = mpsi_mpm_agree_in_step(mpm, function, status, FOUND, found);
   partition->ready = status == MPS_OK;
-  partition->apart = found[APART] > 0.0;
-  partition->thin = found[THIN] > 0.0;
+  partition->apart = found[FORCES] > 0.0;
+  partition->thin = found[ACROSS] > 0.0;
   partition->penalty_bodies = (int32_t)found[SPRINGS];
   return status;
 }
 
-/* ---- packing --------------------------------------------------------------------------------- */
+/* ---- messages -------------------------------------------------------------------------------- */
 
-static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
-  return mpsi_mpm_copy_nodes(cells, tile, sizeof *tile, parcel, pack);
+static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *message,
+                         bool pack) {
+  return mpsi_mpm_copy_nodes(cells->low, cells->high, tile, sizeof *tile, message, pack);
 }
 
-/* Copies the tiles of momenta, those of forces where they are apart, and both across thin bodies,
- * to or from a parcel. */
-static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
-                          bool pack) {
-  parcel = copy_tile(cells, worker->tile, parcel, pack);
-  if (cells->apart) parcel = copy_tile(cells, worker->force, parcel, pack);
-  if (!cells->thin) return parcel;
-  parcel = copy_tile(cells, worker->across_tile, parcel, pack);
-  if (cells->apart) parcel = copy_tile(cells, worker->across_force, parcel, pack);
-  return parcel;
-}
-
-static void copy_penalty_tiles(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                               const mpsi_cell_block *cells, const mpsi_worker *worker,
-                               double *parcel, bool pack) {
+/* The tiles of a block, to or from its message. */
+static void copy_tiles(const mpsi_transfer *work, double *message, bool pack) {
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_worker *worker = work->worker;
+  message = copy_tile(cells, worker->tile, message, pack);
+  if (cells->apart) message = copy_tile(cells, worker->force, message, pack);
+  if (cells->thin) message = copy_tile(cells, worker->across_tile, message, pack);
+  if (cells->thin && cells->apart) message = copy_tile(cells, worker->across_force, message, pack);
   for (int32_t q = 0; q < cells->pairs; q++)
-    if (mpsi_mpm_has_penalty(contacts, cells, q))
-      parcel = mpsi_mpm_copy_nodes(cells, mpsi_mpm_penalty_tile(grid, worker, q),
-                                   sizeof(mpsi_penalty_node), parcel, pack);
+    if (mpsi_mpm_has_penalty(work->contact, cells, q))
+      message =
+          mpsi_mpm_copy_nodes(cells->low, cells->high, mpsi_mpm_penalty_tile(work->grid, worker, q),
+                              sizeof(mpsi_penalty_node), message, pack);
 }
 
-static void pack(void *data, int64_t k, int32_t number) {
+enum { APART = 1, SPLIT = 2, THIN = 4, IN_CONTACT = 8 };
+
+static void pack(void *data, int64_t b, int32_t number, double *message) {
   mps_mpm *mpm = data;
-  mpsi_partition *partition = mpm->partition;
-  const mpsi_transfer work = mpsi_transfer_of(mpm, partition->border[k], number);
-  const mpsi_worker *worker = work.worker;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
   const mpsi_cell_block *cells = work.cells;
-  double *parcel = mpsi_mpm_parcel(partition, false, k);
-  mpsi_mpm_clear_penalty(&mpm->grid, &mpm->contact, cells, worker);
+  mpsi_mpm_clear_penalty(work.grid, work.contact, cells, work.worker);
   mpm->kernels->tile[mpm->grid.geometry][mpm->grid.spline - 2](&work);
-  parcel[0] = cells->apart;
-  parcel[1] = cells->split;
-  parcel[2] = cells->thin;
-  parcel[3] = cells->in_contact;
-  parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, true);
-  copy_penalty_tiles(&mpm->grid, &mpm->contact, cells, worker, parcel, true);
+  *message = (cells->apart ? APART : 0) + (cells->split ? SPLIT : 0) + (cells->thin ? THIN : 0) +
+             (cells->in_contact ? IN_CONTACT : 0);
+  copy_tiles(&work, message + MPSI_TILE_FLAGS, true);
+}
+
+static void unpack(const mpsi_transfer *work, double *message) {
+  mpsi_cell_block *cells = work->cells;
+  const int flags = (int)*message;
+  cells->apart = (flags & APART) != 0;
+  cells->split = (flags & SPLIT) != 0;
+  cells->thin = (flags & THIN) != 0;
+  cells->in_contact = (flags & IN_CONTACT) != 0;
+  copy_tiles(work, message + MPSI_TILE_FLAGS, false);
 }
 
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
   mpsi_partition *partition = mpm->partition;
-  partition->item = mpsi_mpm_parcel_bytes(partition, partition->apart, partition->thin,
-                                          partition->penalty_bodies);
-  mpsi_parallel_for(mpm->context, partition->borders, pack, mpm);
-  partition->lost = mpsi_halo_begin_bytes(partition->halo, function, partition->item,
-                                          partition->out, partition->in);
+  partition->lost = MPS_OK;
+  mpsi_mpm_send_messages(mpm->context, partition, function,
+                         mpsi_mpm_tile_doubles(partition, partition->apart, partition->thin,
+                                               partition->penalty_bodies),
+                         pack, mpm);
   return partition->lost;
-}
-
-void mpsi_step_receive_parcels(void *solver) {
-  mpsi_mpm_receive_parcels(((mps_mpm *)solver)->partition);
 }
 
 /* ---- sums at the nodes ----------------------------------------------------------------------- */
@@ -107,29 +104,15 @@ void mpsi_step_scatter(void *solver, int64_t b, int32_t worker) {
   mps_mpm *mpm = solver;
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
   const bool penalty = mpm->contact.penalty_bodies > 0;
-  if (penalty) mpsi_mpm_clear_penalty(work.grid, work.contact, work.cells, work.worker);
-  mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](&work);
-  if (penalty) mpsi_mpm_add_penalty(work.grid, work.contact, work.cells, work.worker);
-}
-
-void mpsi_mpm_scatter_tile(void *data, int64_t b, int32_t number) {
-  mps_mpm *mpm = data;
-  mpsi_partition *partition = mpm->partition;
-  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
-  const mpsi_worker *worker = work.worker;
-  mpsi_cell_block *cells = work.cells;
-  if (cells->parcel < 0) {
-    mpsi_step_scatter(mpm, b, number);
-    return;
+  double *message;
+  if (!mpsi_mpm_find_message(mpm->partition, work.cells, &message))
+    return; /* the step has failed */
+  if (message) {
+    unpack(&work, message);
+    mpm->kernels->flush(&work);
+  } else {
+    if (penalty) mpsi_mpm_clear_penalty(work.grid, work.contact, work.cells, work.worker);
+    mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](&work);
   }
-  if (cells->ghost && partition->lost != MPS_OK) return; /* the step has failed */
-  double *parcel = mpsi_mpm_parcel(partition, cells->ghost, cells->parcel);
-  cells->apart = parcel[0] != 0.0;
-  cells->split = parcel[1] != 0.0;
-  cells->thin = parcel[2] != 0.0;
-  cells->in_contact = parcel[3] != 0.0;
-  parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, false);
-  copy_penalty_tiles(&mpm->grid, &mpm->contact, cells, worker, parcel, false);
-  mpm->kernels->flush(&work);
-  mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
+  if (penalty) mpsi_mpm_add_penalty(work.grid, work.contact, work.cells, work.worker);
 }

@@ -15,15 +15,10 @@ bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_
                                   const mpsi_run *run);
 /* Worst status of all ranks, after all preparations of a step that can fail. Collective. */
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
-/* Sums the border blocks into tiles and sends these; mpsi_mpm_receive_parcels receives those of
- * ghosts. Collective. */
+/* Sums the border blocks into tiles and sends these. Collective. */
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
-/* Completes the exchange of parcels in a pass, whose data is the solver. Collective. */
-void mpsi_step_receive_parcels(void *solver);
-/* Scatter task of a pass on one rank: P2G of a block of cells, with penalty contact. */
+/* Scatter task of a pass: P2G of a block of cells, with penalty contact; on several ranks by the
+ * tile that has been sent, whichever rank has summed it. */
 void mpsi_step_scatter(void *solver, int64_t b, int32_t worker);
-/* Scatter task of a pass on several ranks: adds the tile of a block of cells to its nodes,
- * whichever rank has summed it. Not collective. */
-void mpsi_mpm_scatter_tile(void *solver, int64_t b, int32_t worker);
 
 #endif

@@ -46,19 +46,49 @@ static void find_diagonal(const mpsi_grid *grid, const mpsi_columns *p, const do
   diagonal[2] = space ? p->D[8] : grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
-/* Sums of the particle's cell. A cell that a thin body divides counts as two. */
-static double *sums_of(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
-                       double dt, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                       int64_t particle) {
+/* Sums of the cells that a particle is in. One on a border between cells is in both by halves: the
+ * same as in a mirror image, whatever round-off makes of its place. A side of the domain is no
+ * border: a particle that a wall has stopped belongs to the cell inside. */
+typedef struct cells_of {
+  int count;
+  double *sums[8];
+} cells_of;
+
+/* Whether cell `at` (tile node) along axis c is in the domain and in the part of the tile in use.
+ */
+static bool has_cell(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int at) {
+  const int64_t base = (int64_t)cells->at[c] * MPSI_SIDE + at;
+  if (at < cells->low[c] || at >= cells->high[c]) return false;
+  return grid->spline != 3 || (base + 1 >= grid->low[c] && base + 1 < grid->high[c]);
+}
+
+/* A cell that a thin body divides counts as two. */
+static cells_of find_sums(const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                          const mpsi_worker *worker, int64_t particle) {
+  cells_of out = {.count = 1};
   bool across = false;
-  int at[3];
-  mpsi_unravel(p->stencil[particle], MPSI_TILE_SIDE, at);
+  int at[8][3];
+  const int32_t stencil = p->stencil[particle];
+  mpsi_unravel(mpsi_stencil_node(stencil), MPSI_TILE_SIDE, at[0]);
   if (cells->thin) {
     double x[3];
-    mpsi_former_place(grid, p, dt, particle, x);
-    across = mpsi_mpm_find_parted(grid, contacts, cells, at, x).across & 1;
+    mpsi_former_place(grid, p, cells, at[0], particle, x);
+    across = mpsi_mpm_find_parted(grid, contacts, cells, at[0], x).across & 1;
   }
-  return mpsi_sums_at(grid, cells, worker, across, at[0], at[1], at[2]);
+  for (int c = 0; c < grid->dim; c++) {
+    const int border = mpsi_stencil_border(stencil, c), own = at[0][c];
+    if (border == 0 || !has_cell(grid, cells, c, own + border)) continue;
+    const bool inside = has_cell(grid, cells, c, own);
+    for (int k = 0, before = out.count; k < before; k++) {
+      int *other = inside ? at[out.count++] : at[k];
+      if (inside) memcpy(other, at[k], sizeof at[k]);
+      other[c] = own + border;
+    }
+  }
+  for (int k = 0; k < out.count; k++)
+    out.sums[k] = mpsi_sums_at(grid, cells, worker, across, at[k][0], at[k][1], at[k][2]);
+  return out;
 }
 
 static const double level[3] = {0.0, 0.0, 0.0}; /* zero gradient */
@@ -81,23 +111,21 @@ typedef struct support {
   uint64_t across; /* nodes of which the values across are used (thin_bodies.h) */
 } support;
 
-/* Stencil of a particle as G2P found it: it has moved by dt v since, or was moved back to a
- * wall. */
+/* Stencil of a particle as G2P found it. */
 static support support_of(const mpsi_grid *grid, const mpsi_columns *p,
-                          const mpsi_contacts *contacts, double dt, const mpsi_cell_block *cells,
-                          int64_t k) {
-  const double least = grid->spline == 3 ? 1.0 : 0.5;
+                          const mpsi_contacts *contacts, const mpsi_cell_block *cells, int64_t k) {
   support out = {.w = {{1.0}, {1.0}, {1.0}}};
   int base[3];
-  double x[3];
-  mpsi_unravel(p->stencil[k], MPSI_TILE_SIDE, base);
-  mpsi_former_place(grid, p, dt, k, x);
-  if (cells->thin) out.across = mpsi_mpm_find_parted(grid, contacts, cells, base, x).across;
+  mpsi_unravel(mpsi_stencil_node(p->stencil[k]), MPSI_TILE_SIDE, base);
+  if (cells->thin) {
+    double x[3];
+    mpsi_former_place(grid, p, cells, base, k, x);
+    out.across = mpsi_mpm_find_parted(grid, contacts, cells, base, x).across;
+  }
   for (int c = 0; c < grid->dim; c++) {
-    const double t =
-        mpsi_grid_at(grid, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+    const double t = p->t[c][k];
     out.x[c] = (double)base[c] + t;
-    mpsi_weights(grid->spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
+    mpsi_weights(grid->spline, t, out.w[c]);
     for (int i = 0; i <= grid->spline; i++)
       out.at[c][i] = mpsi_mpm_mirror_partner(grid, cells, c, base[c] + i);
   }
@@ -172,7 +200,7 @@ static void sum_pressures(void *data, int64_t b, int32_t number) {
   mpsi_clear_sums(&mpm->grid, b, number);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (is_filtered(&mpm->p, k)) continue;
-    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
+    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, cells, k);
     double slope[3];
     slope_at_rest(&mpm->grid, &mpm->p, &mpm->def, k, slope);
     add_to_nodes(&mpm->grid, cells, worker, &s, mpm->p.V[k], mean_stress(&mpm->p, k), slope);
@@ -185,7 +213,7 @@ static void smooth_pressures(void *data, int64_t b, int32_t worker) {
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (is_filtered(&mpm->p, k)) continue;
-    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
+    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, cells, k);
     double fraction = 1.0, wave, shear, slope[3];
     slope_at_rest(&mpm->grid, &mpm->p, &mpm->def, k, slope);
     if (mpsi_material_kept(mpsi_law_of(&mpm->p, k)->material) != MPSI_KEPT_PRESSURE) {
@@ -213,13 +241,16 @@ static void sum_rates(void *data, int64_t b, int32_t number) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     if (keeps_own(&mpm->p, k)) continue;
     if (by_nodes(&mpm->def)) {
-      const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
+      const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, cells, k);
       add_to_nodes(&mpm->grid, cells, worker, &s, V[k], trace, level);
       continue;
     }
-    double *sums = sums_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, worker, k);
-    sums[MPSI_SUM_VOLUME] += V[k];
-    sums[MPSI_SUM_VALUE] += V[k] * trace;
+    const cells_of of = find_sums(&mpm->grid, &mpm->p, &mpm->contact, cells, worker, k);
+    const double part = of.count > 1 ? V[k] / of.count : V[k];
+    for (int i = 0; i < of.count; i++) {
+      of.sums[i][MPSI_SUM_VOLUME] += part;
+      of.sums[i][MPSI_SUM_VALUE] += part * trace;
+    }
   }
 }
 
@@ -228,7 +259,6 @@ static void mean_diagonals(const mpsi_transfer *work, int64_t begin, int64_t end
   const mpsi_grid *grid = work->grid;
   const mpsi_columns *p = work->p;
   const mpsi_cell_block *cells = work->cells;
-  const double dt = work->run->dt;
   const double *L[3];
   find_diagonal(grid, p, L);
   for (int64_t k = begin; k < end; k++) {
@@ -237,11 +267,14 @@ static void mean_diagonals(const mpsi_transfer *work, int64_t begin, int64_t end
     if (keeps_own(p, k)) {
       mean = own;
     } else if (by_nodes(work->def)) {
-      const support s = support_of(grid, p, work->contact, dt, cells, k);
+      const support s = support_of(grid, p, work->contact, cells, k);
       mean = mean_of_nodes(grid, cells, &s, level);
     } else {
-      const double *sums = sums_of(grid, p, work->contact, dt, cells, NULL, k);
-      mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];
+      const cells_of of = find_sums(grid, p, work->contact, cells, NULL, k);
+      mean = 0.0;
+      for (int i = 0; i < of.count; i++)
+        mean += of.sums[i][MPSI_SUM_VALUE] / of.sums[i][MPSI_SUM_VOLUME];
+      if (of.count > 1) mean /= of.count;
     }
     const double change = (mean - own) / 3.0;
     for (int c = 0; c < 3; c++) diagonal[c][k - begin] = (L[c] ? L[c][k] : 0.0) + change;
@@ -281,11 +314,14 @@ static void add_pressures(void *data, int64_t b, int32_t worker) {
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  const bool means = !mpm->p.laws.at_once, filters = mpsi_mpm_filters(&mpm->p, &mpm->run);
+  const bool means = !mpm->p.laws.at_once,
+             filters = mpsi_mpm_filters(&mpm->p, mpm->water, &mpm->run);
   if (!(means || filters) || mpsi_any_failed(&mpm->grid, mpm->partition)) return;
   if (means) mpsi_run_sums(mpm, sum_rates, add_rates, apply_laws);
   if (!(by_nodes(&mpm->def) || filters) || mpsi_any_refused(&mpm->p, mpm->partition)) return;
   if (means && by_nodes(&mpm->def))
     mpsi_run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
-  if (filters) mpsi_mpm_filter(mpm);
+  if (!filters) return;
+  mpsi_pore_note_rest(mpm);
+  mpsi_mpm_filter(mpm);
 }

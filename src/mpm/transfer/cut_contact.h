@@ -4,6 +4,7 @@
 #define MPSI_MPM_CUT_CONTACT_H
 
 #include "mpm/contact/particle.h"
+#include "mpm/base/run.h"
 #include "least_squares.h"
 
 /* Contact sums of body b at node `local` of block g. */
@@ -23,20 +24,23 @@ static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
                          (s->corner[2][k] ? side : 0) + s->local[2][k] / plane);
 }
 
-/* Whether the body of the block's pair `number` has penalty contact and contains a node of the
- * stencil, in the domain or outside. */
-static bool mpsi_contains_node(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                               const mpsi_cell_block *cells, int dim, int spline,
-                               const mpsi_support *s, int32_t number) {
-  const int32_t body = contacts->cell_pair[cells->first_pair + number].body;
+/* Whether the body of the block's pair `number` has penalty contact and contains a node that the
+ * particle sees, in the domain or outside. */
+static bool mpsi_sees_body(const mpsi_transfer *work, int dim, int spline, const mpsi_single *one,
+                           int32_t number) {
+  const mpsi_contacts *contacts = work->contact;
+  const int32_t body = contacts->cell_pair[work->cells->first_pair + number].body;
   bool any = false;
   if (mpsi_by_impulses(contacts->handle[body])) return false;
   MPSI_FOR_NODES(dim, spline) {
-    const mpsi_node_block *nodes = &grid->nodes[mpsi_support_block(cells, s, i, j, k)];
-    if (!nodes->inside) continue;
+    const mpsi_node_block *nodes =
+        &work->grid->nodes[mpsi_support_block(work->cells, one->at, i, j, k)];
+    if (!nodes->inside || !mpsi_sees(dim, one->batch, i, j, k)[one->lane]) continue;
     int32_t t = nodes->first_pair;
     while (contacts->node_pair[t].body != body) t++;
-    any = any || contacts->held[(int64_t)t * grid->block_nodes + mpsi_support_local(s, i, j, k)];
+    any =
+        any ||
+        contacts->held[(int64_t)t * work->grid->block_nodes + mpsi_support_local(one->at, i, j, k)];
     (void)n;
   }
   return any;

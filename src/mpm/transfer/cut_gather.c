@@ -5,6 +5,8 @@
  * cut_scatter.c. Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "cut_contact.h"
 #include "spin.h"
+#include "mpm/base/energy.h"
+#include "mpm/ranks/partition.h"
 
 /* ---- sums over the nodes --------------------------------------------------------------------- */
 
@@ -103,21 +105,24 @@ MPSI_INLINE void find_ratios(const mpsi_grid *grid, int spline, const mpsi_cut *
 }
 
 /* Derivatives of the velocity for the laws, along the axes whose stencil is full (with ghosts of
- * mirrors), if only sides of the domain cut the support. There the fit is a product of fits along
- * the axes (wall_support.h): phi/w is constant along such an axis, so that d phi = phi dw/w. Along
- * the other axes, and beside bodies, the slopes of the fit are used. */
+ * mirrors), if only sides of the domain cut the support: as in wall_support.h, means of dw/w over
+ * the other axes by their weights. Whether a block comes here may depend on what else is in it
+ * (`light`), and must change nothing. Along the other axes, and beside bodies, the slopes of the
+ * fit are used. */
 MPSI_INLINE void find_strain(const mpsi_transfer *work, int dim, int spline, bool thin,
                              const mpsi_cut *b, mpsi_gathered *out, int at) {
   const mpsi_grid *grid = work->grid;
   const mpsi_worker *worker = work->worker;
-  const mpsi_mask beside = b->parted != 0;
+  const mpsi_mask beside = b->beside | (b->parted != 0);
+  mpsi_quad weight = {0.0};
+  MPSI_FOR_NODES(dim, spline) weight += b->w[n];
   for (int d = 0; d < dim; d++) {
     const int64_t low = (int64_t)work->cells->at[d] * MPSI_SIDE + b->at[d];
     if (low < grid->use_low[d] || low + spline > grid->use_high[d]) continue;
     mpsi_quad ratio[4], sum[3] = {{0.0}};
     find_ratios(grid, spline, b, d, ratio);
     MPSI_FOR_NODES(dim, spline) {
-      const mpsi_quad by = ratio[d == 0 ? i : d == 1 ? j : k] * mpsi_phi(dim, b, n, i, j, k);
+      const mpsi_quad by = ratio[d == 0 ? i : d == 1 ? j : k] * (b->w[n] / weight);
       const mpsi_node *across = thin ? row_of(b, worker->across_tile, j, k) : NULL;
       for (int a = 0; a < dim; a++)
         sum[a] += by * value_at(b, row_of(b, worker->tile, j, k), across, n, i, MPSI_VECTOR + a);
@@ -238,7 +243,7 @@ MPSI_APART void gather_each(const mpsi_transfer *work, int dim, int spline, cons
     mpsi_take_single(work->grid, dim, spline, b, &at, lane, &one);
     if (work->grid->standard) gather_one(work, dim, spline, &one, out, to + lane);
     for (int32_t q = 0; q < pairs; q++)
-      if (mpsi_contains_node(work->grid, work->contact, work->cells, dim, spline, &at, q))
+      if (mpsi_sees_body(work, dim, spline, &one, q))
         mpsi_add_friction_load(work, dim, spline, &one,
                                &work->contact->cell_pair[work->cells->first_pair + q]);
   }
@@ -264,7 +269,7 @@ MPSI_INLINE void gather_cut(const mpsi_transfer *work, int dim, int spline, bool
     else
       mpsi_find_fit(work, dim, spline, thin, true, b);
     gather(work, dim, spline, thin, b, out, at);
-    if (b->held == 0) find_strain(work, dim, spline, thin, b, out, at);
+    if (mpsi_any_lane(~b->beside)) find_strain(work, dim, spline, thin, b, out, at);
     if (work->cells->light) return_momenta(work, dim, spline, b, out, at);
   }
   if (work->before) return;
@@ -272,59 +277,72 @@ MPSI_INLINE void gather_cut(const mpsi_transfer *work, int dim, int spline, bool
 }
 
 MPSI_INLINE bool gather_thin(const mpsi_transfer *work, int dim, int spline, uint32_t held,
-                             const mpsi_segment *segment, mpsi_gathered *out) {
+                             const mpsi_segment *segment, mpsi_gathered *out, mpsi_cut *b) {
   for (int k = segment->begin; k < segment->end; k += 4) {
-    mpsi_cut b;
-    mpsi_place_cut(dim, spline, segment, k, held, &b);
-    gather_cut(work, dim, spline, true, &b, out, k);
+    mpsi_place_cut(work->worker, dim, spline, segment, k, held, b);
+    gather_cut(work, dim, spline, true, b, out, k);
   }
   return true;
 }
 
 MPSI_INLINE bool gather_body(const mpsi_transfer *work, int dim, int spline, uint32_t held,
-                             const mpsi_segment *segment, mpsi_gathered *out) {
+                             const mpsi_segment *segment, mpsi_gathered *out, mpsi_cut *b) {
   if (work->cells->first_fit >= 0 && !work->cells->light &&
       are_full(work->grid, work->cells, segment))
     return false;
   for (int k = segment->begin; k < segment->end; k += 4) {
-    mpsi_cut b;
-    mpsi_place_cut(dim, spline, segment, k, held, &b);
-    gather_cut(work, dim, spline, false, &b, out, k);
+    mpsi_place_cut(work->worker, dim, spline, segment, k, held, b);
+    gather_cut(work, dim, spline, false, b, out, k);
   }
   return true;
 }
+
+#define DEFINE(body, dim, spline)                                                                  \
+  MPSI_APART bool body##_##dim##_##spline(const mpsi_transfer *work, uint32_t held,                \
+                                          const mpsi_segment *segment, mpsi_gathered *out) {       \
+    mpsi_cut b;                                                                                    \
+    return body(work, dim, spline, held, segment, out, &b);                                        \
+  }
+MPSI_INSTANCES(DEFINE, gather_thin)
+MPSI_INSTANCES(DEFINE, gather_body)
 
 bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(const mpsi_transfer *work, const mpsi_segment *segment,
                                         mpsi_gathered *out) {
   const int32_t first = segment->places->first[segment->begin];
   const uint32_t held =
       mpsi_support_state(work->worker, work->grid->dim, work->grid->spline, first) & MPSI_HELD;
-  return work->cells->thin ? MPSI_CHOOSE(gather_thin, held, segment, out)
-                           : MPSI_CHOOSE(gather_body, held, segment, out);
+  return work->cells->thin ? MPSI_CHOOSE_INSTANCE(gather_thin, held, segment, out)
+                           : MPSI_CHOOSE_INSTANCE(gather_body, held, segment, out);
 }
 
 /* ---- one particle ---------------------------------------------------------------------------- */
 
-MPSI_INLINE bool fit_body(const mpsi_transfer *work, int dim, int spline, int64_t particle,
+MPSI_INLINE void fit_body(const mpsi_transfer *work, int dim, int spline, int64_t particle,
                           mpsi_shape_values *out) {
-  mpsi_cut b;
+  mpsi_cut cut, *b = &cut;
   double determinant = 1.0;
-  mpsi_place_one(work, dim, spline, particle, &b);
+  mpsi_place_one(work, dim, spline, particle, b);
   if (!work->grid->standard && work->cells->thin)
-    determinant = mpsi_find_fit(work, dim, spline, true, false, &b)[0];
+    determinant = mpsi_find_fit(work, dim, spline, true, false, b)[0];
   else if (!work->grid->standard)
-    determinant = mpsi_find_fit(work, dim, spline, false, false, &b)[0];
-  mpsi_values_of(work->grid, dim, spline, &b, 0, out);
+    determinant = mpsi_find_fit(work, dim, spline, false, false, b)[0];
+  mpsi_values_of(work->grid, dim, spline, b, 0, out);
   out->determinant = determinant;
-  return true;
 }
+
+#define DEFINE_FIT(body, dim, spline)                                                              \
+  MPSI_APART void body##_##dim##_##spline(const mpsi_transfer *work, int64_t particle,             \
+                                          mpsi_shape_values *out) {                                \
+    body(work, dim, spline, particle, out);                                                        \
+  }
+MPSI_INSTANCES(DEFINE_FIT, fit_body)
 
 void MPSI_LEVELLED(mpsi_mpm_fit)(const mpsi_transfer *work, int64_t particle, mpsi_stencil *at,
                                  mpsi_shape_values *out) {
   memset(out, 0, sizeof *out);
   mpsi_make_stencil(work->grid, work->p, work->cells, work->grid->dim, work->grid->spline, particle,
                     at);
-  MPSI_CHOOSE(fit_body, particle, out);
+  MPSI_CHOOSE_INSTANCE(fit_body, particle, out);
 }
 
 /* psi = phi + grad phi . d by the fit that the scatter of this step has stored; q: upper half of

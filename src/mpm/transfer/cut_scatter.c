@@ -21,10 +21,10 @@ MPSI_INLINE void find_force(const mpsi_transfer *work, int dim, const mpsi_cut *
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
   const double viscosity = work->water ? work->water->viscosity : 0.0;
-  mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
-  for (int c = 0; from->u && c < dim; c++)
+  mpsi_quad u = from->slow ? mpsi_get_some(from->slow + p, n) : (mpsi_quad){0.0};
+  for (int c = 0; from->slow && c < dim; c++)
     u -= viscosity * mpsi_get_some(from->L[(dim + 1) * c] + p, n);
-  if (from->u && work->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+  if (from->slow && work->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     u -= viscosity * mpsi_get_some(from->L[4] + p, n);
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * work->def->gravity[a];
@@ -121,15 +121,15 @@ MPSI_INLINE void add_stencil(int dim, int spline, const mpsi_cut *b, const mpsi_
  * in the second tiles, the values across. */
 MPSI_INLINE void add_two_sided(const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
                                const mpsi_source *s) {
-  mpsi_quad w[2][MPSI_STENCIL];
-  MPSI_FOR_NODES(dim, spline) {
-    const mpsi_mask across = mpsi_has_node(b->across, n);
-    w[0][n] = (mpsi_quad)((mpsi_mask)b->w[n] & ~across);
-    w[1][n] = (mpsi_quad)((mpsi_mask)b->w[n] & across);
+  const bool parted = mpsi_any_lane(b->across != 0);
+  mpsi_quad w[MPSI_STENCIL];
+  for (int side = 0; side <= (parted ? 1 : 0); side++) {
+    const int64_t flip = side == 0 ? -1 : 0;
+    MPSI_FOR_NODES(dim, spline)
+    w[n] = (mpsi_quad)((mpsi_mask)b->w[n] & (mpsi_has_node(b->across, n) ^ flip));
+    add_stencil(dim, spline, b, s, true, w, side ? worker->across_tile : worker->tile,
+                side ? worker->across_force : worker->force);
   }
-  add_stencil(dim, spline, b, s, true, w[0], worker->tile, worker->force);
-  if (mpsi_any_lane(b->across != 0))
-    add_stencil(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
 }
 
 MPSI_INLINE void scatter(const mpsi_transfer *work, int dim, int spline, bool thin,
@@ -163,9 +163,9 @@ typedef struct particle_source {
 static particle_source source_of(const mpsi_grid *grid, const mpsi_columns *c,
                                  const mps_mpm_def *def, int dim, double viscosity, int64_t p) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  double u = c->u ? c->u[p] : 0.0;
-  for (int a = 0; c->u && a < dim; a++) u -= viscosity * c->L[(dim + 1) * a][p];
-  if (c->u && grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) u -= viscosity * c->L[4][p];
+  double u = c->slow ? c->slow[p] : 0.0;
+  for (int a = 0; c->slow && a < dim; a++) u -= viscosity * c->L[(dim + 1) * a][p];
+  if (c->slow && grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) u -= viscosity * c->L[4][p];
   particle_source out = {.v = {1.0}};
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
@@ -226,7 +226,7 @@ MPSI_APART void scatter_each(const mpsi_transfer *work, int dim, int spline, boo
     mpsi_take_single(work->grid, dim, spline, b, &at, lane, &one);
     if (variant) scatter_one(work, dim, spline, &one);
     for (int32_t q = 0; q < pairs; q++)
-      if (mpsi_contains_node(work->grid, work->contact, work->cells, dim, spline, &at, q))
+      if (mpsi_sees_body(work, dim, spline, &one, q))
         mpsi_scatter_contact(work, dim, spline, &one, q);
   }
 }
@@ -250,17 +250,16 @@ MPSI_INLINE void store_full_fits(const mpsi_grid *grid, const mpsi_cell_block *c
   }
 }
 
-/* Whether the supports of a segment are full although some of their nodes lie in bodies; stores the
- * fits if so. */
+/* Whether the supports of a segment are full although all its particles see nodes in bodies; stores
+ * the fits if so. */
 MPSI_INLINE bool find_full(const mpsi_transfer *work, int dim, int spline,
-                           const mpsi_segment *segment) {
+                           const mpsi_segment *segment, mpsi_cut *b) {
   const mpsi_places *places = segment->places;
   const int begin = segment->begin, end = segment->end;
   if (!mpsi_may_be_full(work->worker, dim, spline, places->first[begin])) return false;
   for (int k = begin; k < end; k += 4) {
-    mpsi_cut b;
-    mpsi_place_cut(dim, spline, segment, k, 0, &b);
-    if (!mpsi_is_full(work, dim, spline, &b)) return false;
+    mpsi_place_cut(work->worker, dim, spline, segment, k, MPSI_IMPULSE, b);
+    if (mpsi_any_lane(~b->beside) || !mpsi_is_full(work, dim, spline, b)) return false;
   }
   store_full_fits(work->grid, work->cells, dim, spline, places->chunk + begin, end - begin);
   return true;
@@ -281,33 +280,40 @@ MPSI_INLINE void scatter_cut(const mpsi_transfer *work, int dim, int spline, boo
 
 /* Adds a segment beside thin bodies, where no support counts as full. */
 MPSI_INLINE bool scatter_thin(const mpsi_transfer *work, int dim, int spline, uint32_t held,
-                              const mpsi_segment *segment) {
+                              const mpsi_segment *segment, mpsi_cut *b) {
   for (int k = segment->begin; k < segment->end; k += 4) {
-    mpsi_cut b;
-    mpsi_place_cut(dim, spline, segment, k, held, &b);
-    scatter_cut(work, dim, spline, true, &b);
+    mpsi_place_cut(work->worker, dim, spline, segment, k, held, b);
+    scatter_cut(work, dim, spline, true, b);
   }
   return true;
 }
 
 /* Adds a segment beside bodies or sides of the domain; false if its supports are full (loops.h). */
 MPSI_INLINE bool scatter_body(const mpsi_transfer *work, int dim, int spline, uint32_t held,
-                              const mpsi_segment *segment) {
+                              const mpsi_segment *segment, mpsi_cut *b) {
   if (held == MPSI_IMPULSE && work->cells->first_fit >= 0 && !work->grid->by_weight &&
-      !work->grid->standard && find_full(work, dim, spline, segment))
+      !work->grid->standard && find_full(work, dim, spline, segment, b))
     return false;
   for (int k = segment->begin; k < segment->end; k += 4) {
-    mpsi_cut b;
-    mpsi_place_cut(dim, spline, segment, k, held, &b);
-    scatter_cut(work, dim, spline, false, &b);
+    mpsi_place_cut(work->worker, dim, spline, segment, k, held, b);
+    scatter_cut(work, dim, spline, false, b);
   }
   return true;
 }
+
+#define DEFINE(body, dim, spline)                                                                  \
+  MPSI_APART bool body##_##dim##_##spline(const mpsi_transfer *work, uint32_t held,                \
+                                          const mpsi_segment *segment) {                           \
+    mpsi_cut b;                                                                                    \
+    return body(work, dim, spline, held, segment, &b);                                             \
+  }
+MPSI_INSTANCES(DEFINE, scatter_thin)
+MPSI_INSTANCES(DEFINE, scatter_body)
 
 bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(const mpsi_transfer *work, const mpsi_segment *segment) {
   const int32_t first = segment->places->first[segment->begin];
   const uint32_t held =
       mpsi_support_state(work->worker, work->grid->dim, work->grid->spline, first) & MPSI_HELD;
-  return work->cells->thin ? MPSI_CHOOSE(scatter_thin, held, segment)
-                           : MPSI_CHOOSE(scatter_body, held, segment);
+  return work->cells->thin ? MPSI_CHOOSE_INSTANCE(scatter_thin, held, segment)
+                           : MPSI_CHOOSE_INSTANCE(scatter_body, held, segment);
 }

@@ -177,6 +177,15 @@ MPSI_INLINE void gather_body(const mpsi_transfer *work, int dim, int spline, boo
   }
 }
 
+/* Arrays of a chunk, in the worker's room; the last two of a segment at a wall. */
+typedef struct g2p_room {
+  mpsi_places places;
+  mpsi_gathered from, old; /* after and before the forces */
+  mpsi_wall wall;
+  mpsi_gathered along;
+} g2p_room;
+_Static_assert(sizeof(g2p_room) <= MPSI_WORKER_ROOM, "room of a worker");
+
 /* Velocities, slopes and derivatives of a segment of at most MPSI_LANES particles at the wall
  * across `axis`, where the derivative across the wall is the slope of the fit. */
 MPSI_INLINE void gather_wall_body(const mpsi_transfer *work, int dim, int spline,
@@ -184,19 +193,20 @@ MPSI_INLINE void gather_wall_body(const mpsi_transfer *work, int dim, int spline
                                   mpsi_gathered *out) {
   const int k = segment->begin;
   const size_t bytes = (size_t)(segment->end - k) * sizeof(double);
-  mpsi_wall wall;
-  mpsi_gathered along;
-  const lanes of = {&wall.places, 0, rows};
+  g2p_room *room = work->worker->room;
+  mpsi_wall *wall = &room->wall;
+  mpsi_gathered *along = &room->along;
+  const lanes of = {&wall->places, 0, rows};
   for (int part = 0; part < 2; part++) {
     mpsi_wall_places(work, dim, spline, segment, axis,
-                     part == 0 ? MPSI_WALL_ALONG : MPSI_WALL_SLOPE, &wall);
-    gather_body(work, dim, spline, true, &of, axis, part == 0 ? &along : out, part == 0 ? 0 : k);
+                     part == 0 ? MPSI_WALL_ALONG : MPSI_WALL_SLOPE, wall);
+    gather_body(work, dim, spline, true, &of, axis, part == 0 ? along : out, part == 0 ? 0 : k);
   }
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++) {
       if (d == axis) continue;
-      memcpy(out->slope[dim * c + d] + k, along.slope[dim * c + d], bytes);
-      memcpy(out->derivative[dim * c + d] + k, along.derivative[dim * c + d], bytes);
+      memcpy(out->slope[dim * c + d] + k, along->slope[dim * c + d], bytes);
+      memcpy(out->derivative[dim * c + d] + k, along->derivative[dim * c + d], bytes);
     }
 }
 
@@ -373,21 +383,24 @@ MPSI_INLINE bool find_largest(int n, double *square, double *out) {
 #define FASTEST 1e100 /* m/s: limit that keeps kinetic energies finite */
 
 /* Largest c + |v| of particles [begin, begin + n), at most a chunk, to cells->speed; from the
- * square c^2 + v^2 + 2 c |v|, which takes one root less. A particle with a negative volume, or a
- * speed that is not finite or beyond FASTEST, becomes cells->bad. */
+ * square c^2 + v^2 + 2 c |v|, which takes one root less. Adds sum m v^2 to cells->vis_viva. A
+ * particle with a negative volume, or a speed that is not finite or beyond FASTEST, becomes
+ * cells->bad. */
 MPSI_INLINE void find_speed(const mpsi_columns *p, const mps_mpm_def *def, mpsi_cell_block *cells,
                             int dim, int64_t begin, int n, const double *moduli) {
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
   const double moving = def->step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
-  double square[MPSI_COLUMN] MPSI_LINE, largest;
-  MPSI_SIMD for (int k = 0; k < n; k++) {
+  double square[MPSI_COLUMN] MPSI_LINE, largest, sum = 0.0;
+  MPSI_SIMD_SUM(sum) for (int k = 0; k < n; k++) {
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
+    sum += m[k] * v;
     const double c = (moduli ? moduli[k] : p->laws.law[0].modulus) * V[k] / m[k];
     square[k] =
         ((c < 0.0) | !(v <= FASTEST * FASTEST)) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
+  cells->vis_viva += sum;
   const bool good = find_largest(n, square, &largest);
   if (largest > cells->speed * cells->speed) cells->speed = sqrt(largest);
   for (int k = 0; k < n && !good && (cells->bad < 0 || cells->lost); k++)
@@ -431,20 +444,50 @@ MPSI_INLINE void gather_segment(const mpsi_transfer *work, int dim, int spline,
   }
 }
 
+/* Borders of cells on which particle k of a chunk lies, two bits an axis: 0 that below, 1 none, 2
+ * that above. */
+MPSI_INLINE int32_t borders_of(const mpsi_places *places, int dim, int spline, int k) {
+  const double least = spline == 3 ? 1.0 : 0.5;
+  int32_t border = 0;
+  for (int c = 0; c < dim; c++) {
+    const double t = places->t[c][k] - least;
+    border |= (int32_t)(1 - (t < MPSI_ON_BORDER) + (t > 1.0 - MPSI_ON_BORDER)) << 2 * c;
+  }
+  return border;
+}
+
+/* Place of a particle in an undrained step of pore water (water.h). */
+MPSI_INLINE uint16_t pore_place(const mpsi_places *places, int dim, int spline, int k) {
+  int32_t border = borders_of(places, dim, spline, k), code = 0;
+  for (int c = 0, by = 1; c < dim; c++, border >>= 2, by *= 3)
+    code += by * ((border & 3) == 0 ? 2 : (border & 3) - 1);
+  return (uint16_t)(places->first[k] + MPSI_PORE_PLACES * code);
+}
+
+/* Stencils of the particles of a chunk, with the borders of cells on which they lie. */
+MPSI_INLINE void keep_stencils(const mpsi_places *places, int dim, int spline,
+                               const mpsi_columns *p) {
+  int32_t *stencil = p->stencil + places->chunk;
+  for (int k = 0; k < places->count; k++)
+    stencil[k] = places->first[k] | borders_of(places, dim, spline, k) << MPSI_STENCIL_BITS;
+  for (int c = 0; c < dim; c++)
+    memcpy(p->t[c] + places->chunk, places->t[c], (size_t)places->count * sizeof *p->t[c]);
+}
+
 /* Velocities and gradients of particles [begin, begin + n), one segment after the other. */
 MPSI_INLINE void gather_chunk(const mpsi_transfer *work, int dim, int spline, int64_t begin, int n,
                               mpsi_gathered *out) {
-  int32_t *stencil = work->p->stencil;
-  mpsi_places places;
+  g2p_room *room = work->worker->room;
+  mpsi_places *places = &room->places;
   /* weights of x and z; the sums along y are polynomials */
-  mpsi_find_places(work, dim, spline, 5, 5, begin, n, &places);
-  mpsi_pad_places(dim, spline, 5, n, &places);
+  mpsi_find_places(work, dim, spline, 5, 5, begin, n, places);
+  mpsi_pad_places(dim, spline, 5, n, places);
   for (int k = 0; work->water && k < n; k++)
-    work->water->place[begin + k] = (uint16_t)places.first[k];
-  if (stencil) memcpy(stencil + begin, places.first, (size_t)n * sizeof *stencil);
+    work->water->place[begin + k] = pore_place(places, dim, spline, k);
+  if (work->p->stencil) keep_stencils(places, dim, spline, work->p);
   for (int k = 0, end; k < n; k = end) {
-    for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
-    const mpsi_segment segment = {&places, k, end};
+    for (end = k + 1; end < n && places->first[end] == places->first[k];) end++;
+    const mpsi_segment segment = {places, k, end};
     gather_segment(work, dim, spline, &segment, out);
   }
   if (work->grid->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
@@ -468,33 +511,33 @@ static mpsi_transfer before_forces(const mpsi_transfer *work, mpsi_worker *worke
 MPSI_INLINE void find_flip_part(const mpsi_transfer *work, int dim, int spline, int64_t begin,
                                 int n, mpsi_gathered *out) {
   mpsi_worker worker;
-  mpsi_gathered old;
+  mpsi_gathered *old = &((g2p_room *)work->worker->room)->old;
   const mpsi_transfer before = before_forces(work, &worker);
-  gather_chunk(&before, dim, spline, begin, n, &old);
+  gather_chunk(&before, dim, spline, begin, n, old);
   for (int c = 0; c < dim; c++)
     for (int k = 0; k < n; k++)
-      out->own[c][k] = work->keep * (work->p->v[c][begin + k] - old.v[c][k]);
+      out->own[c][k] = work->keep * (work->p->v[c][begin + k] - old->v[c][k]);
 }
 
 MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
                            int n, const mpsi_law_block *laws) {
   const int dim = mpsi_dim_of(geometry);
-  mpsi_gathered from;
+  mpsi_gathered *from = &((g2p_room *)work->worker->room)->from;
   double *D[9];
-  gather_chunk(work, dim, spline, begin, n, &from);
-  if (work->keep > 0.0) find_flip_part(work, dim, spline, begin, n, &from);
+  gather_chunk(work, dim, spline, begin, n, from);
+  if (work->keep > 0.0) find_flip_part(work, dim, spline, begin, n, from);
   for (int a = 0; a < dim * dim; a++) {
-    D[a] = from.derivative[a];
+    D[a] = from->derivative[a];
     if (work->p->D[a]) memcpy(work->p->D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
   }
   if (work->energy->counts)
     mpsi_mpm_energy_before(work->grid, work->p, work->energy, work->cells, begin, begin + n);
-  const moved m = move(work, geometry, spline, begin, n, &from);
+  const moved m = move(work, geometry, spline, begin, n, from);
   if (work->energy->counts)
     mpsi_mpm_energy_moved(work->grid, work->p, work->energy, work->def, work->run->dt, work->cells,
                           begin, begin + n);
   if (work->grid->flip > 0.0 || work->keep > 0.0)
-    add_flip_part(work->grid, work->p, begin, n, &from);
+    add_flip_part(work->grid, work->p, begin, n, from);
   if (m.left) work->cells->left = true;
   if (m.outside) {
     const int64_t bad =
@@ -542,7 +585,7 @@ MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
   cells->left = cells->gone = cells->lost = false;
   cells->light = is_light(work->grid, cells);
   cells->bad = -1;
-  cells->speed = cells->flow = 0.0;
+  cells->speed = cells->flow = cells->vis_viva = 0.0;
   gather_tile(work->grid, cells, false, false, worker->tile);
   if (cells->thin) gather_tile(work->grid, cells, true, false, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(work);
@@ -569,7 +612,7 @@ const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)
 void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work) {
   mpsi_cell_block *cells = work->cells;
   if (!cells->lost) cells->bad = -1;
-  cells->speed = cells->flow = 0.0;
+  cells->speed = cells->flow = cells->vis_viva = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     speed_chunk(work, work->grid->dim, k, n);

@@ -25,6 +25,7 @@ const mpsi_kernels MPSI_LEVELLED(mpsi_mpm_kernels) = {
     .next_near = MPSI_LEVELLED(mpsi_mpm_next_near),
     .next_in = MPSI_LEVELLED(mpsi_mpm_next_in),
     .warm = MPSI_LEVELLED(mpsi_mpm_warm),
+    .release = MPSI_LEVELLED(mpsi_mpm_release),
     .sweep = MPSI_LEVELLED(mpsi_mpm_sweep),
     .foot_velocity = MPSI_LEVELLED(mpsi_mpm_foot_velocity),
 };

@@ -212,7 +212,7 @@ MPSI_INLINE void mpsi_place_one(const mpsi_transfer *work, int dim, int spline, 
   mpsi_places one;
   const mpsi_segment segment = {&one, 0, 1};
   mpsi_find_places(work, dim, spline, 0, 0, p, 1, &one);
-  mpsi_place_cut(dim, spline, &segment, 0, 0, out);
+  mpsi_place_cut(work->worker, dim, spline, &segment, 0, 0, out);
 }
 
 /* A particle of a batch, for work that is done particle by particle. */
@@ -241,5 +241,15 @@ MPSI_INLINE void mpsi_take_single(const mpsi_grid *grid, int dim, int spline, co
        ? work->grid->spline == 2 ? body(work, 2, 2, __VA_ARGS__) : body(work, 2, 3, __VA_ARGS__)   \
    : work->grid->spline == 2 ? body(work, 3, 2, __VA_ARGS__)                                       \
                              : body(work, 3, 3, __VA_ARGS__))
+
+/* The instances of a body, each a function of its own, which MPSI_CHOOSE_INSTANCE calls: where the
+ * processor's registers are shorter than the vectors, gcc keeps every vector of a function at a
+ * place of its own on the stack. */
+#define MPSI_INSTANCES(X, body) X(body, 2, 2) X(body, 2, 3) X(body, 3, 2) X(body, 3, 3)
+#define MPSI_CHOOSE_INSTANCE(body, ...)                                                            \
+  (work->grid->dim == 2                                                                            \
+       ? work->grid->spline == 2 ? body##_2_2(work, __VA_ARGS__) : body##_2_3(work, __VA_ARGS__)   \
+   : work->grid->spline == 2 ? body##_3_2(work, __VA_ARGS__)                                       \
+                             : body##_3_3(work, __VA_ARGS__))
 
 #endif

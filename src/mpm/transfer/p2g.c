@@ -48,7 +48,7 @@ MPSI_INLINE mpsi_quad water_pressure(const sources *s, int geometry, int64_t at)
   mpsi_quad rate = mpsi_get(p->L[0] + at);
   MPSI_UNROLL for (int c = 1; c < dim; c++) rate += mpsi_get(p->L[(dim + 1) * c] + at);
   if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) rate += mpsi_get(p->L[4] + at);
-  return mpsi_get(p->u + at) - s->viscosity * rate;
+  return mpsi_get(p->slow + at) - s->viscosity * rate;
 }
 
 /* Contributions of the four particles from index `at` on. `split`: momentum in `sum`, force in
@@ -61,7 +61,7 @@ MPSI_INLINE void find_quad_parts(const sources *s, int geometry, bool split, int
   const double dt = s->dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
   const mpsi_quad mh = m * s->h, Vs = V * s->stiff;
-  const mpsi_quad u = p->u ? water_pressure(s, geometry, at) : zero;
+  const mpsi_quad u = p->slow ? water_pressure(s, geometry, at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
@@ -429,6 +429,25 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, con
     add_in_space(spline, places, rows, begin, end, &part->node, tile);
 }
 
+/* Contributions and weights of a chunk of particles with full supports. */
+typedef struct chunk {
+  mpsi_rows rows;
+  row_weights weights; /* in 3D */
+  arranged_parts sum, force;
+} chunk;
+
+/* Arrays of a chunk, in the worker's room; `part` also for a segment at a wall, behind it those of
+ * such a segment alone. */
+typedef struct p2g_room {
+  mpsi_places places;
+  chunk all;
+  parts part;
+  columns along; /* forces that act along the wall */
+  mpsi_wall wall;
+  arranged_parts added;
+} p2g_room;
+_Static_assert(sizeof(p2g_room) <= MPSI_WORKER_ROOM, "room of a worker");
+
 /* Adds a segment at the wall across `axis`: mass and momentum to the tile, force and
  * excess mass (see mpsi_node) to the tile of forces. Derivatives across the wall and along it have
  * different weights: hence three passes. */
@@ -436,30 +455,42 @@ MPSI_INLINE void add_at_wall(const mpsi_transfer *work, int geometry, int spline
                              const mpsi_segment *segment, int axis) {
   const int dim = mpsi_dim_of(geometry), n = segment->end - segment->begin;
   const size_t bytes = sizeof(double[4][MPSI_CHUNK]);
-  mpsi_wall wall;
-  parts part;
-  columns other = {{{0.0}}};
-  arranged_parts added;
-  find_parts(work, geometry, spline, true, segment->places->chunk + segment->begin, n, &part);
-  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_VALUE, &wall);
-  arrange_parts(dim, spline, &wall.places, n, part.sum, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->tile);
+  p2g_room *room = work->worker->room;
+  mpsi_wall *wall = &room->wall;
+  parts *part = &room->part;
+  arranged_parts *added = &room->added;
+  memset(room->along, 0, sizeof room->along);
+  find_parts(work, geometry, spline, true, segment->places->chunk + segment->begin, n, part);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_VALUE, wall);
+  arrange_parts(dim, spline, &wall->places, n, part->sum, added);
+  add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->tile);
   for (int k = 0; k < n; k++) {
-    other[0][MPSI_EXCESS][k] = part.sum[0][MPSI_MASS][k] * wall.mass[k];
-    part.force[0][MPSI_EXCESS][k] = -part.sum[0][MPSI_MASS][k];
+    room->along[0][MPSI_EXCESS][k] = part->sum[0][MPSI_MASS][k] * wall->mass[k];
+    part->force[0][MPSI_EXCESS][k] = -part->sum[0][MPSI_MASS][k];
   }
   for (int d = 0; d < dim; d++) {
     if (d == axis) continue;
-    memcpy(other[1 + d], part.force[1 + d], bytes);
-    memset(part.force[1 + d], 0, bytes);
+    memcpy(room->along[1 + d], part->force[1 + d], bytes);
+    memset(part->force[1 + d], 0, bytes);
   }
-  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_SLOPE, &wall);
-  arrange_parts(dim, spline, &wall.places, n, part.force, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->force);
-  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_ALONG, &wall);
-  arrange_parts(dim, spline, &wall.places, n, other, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->force);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_SLOPE, wall);
+  arrange_parts(dim, spline, &wall->places, n, part->force, added);
+  add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->force);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_ALONG, wall);
+  arrange_parts(dim, spline, &wall->places, n, room->along, added);
+  add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->force);
 }
+
+/* Functions of their own, as for MPSI_INSTANCES. */
+#define DEFINE_AT_WALL(g, s, geometry, spline)                                                     \
+  MPSI_APART void at_wall_##g##_##s(const mpsi_transfer *work, const mpsi_segment *segment,        \
+                                    int axis) {                                                    \
+    add_at_wall(work, geometry, spline, segment, axis);                                            \
+  }
+MPSI_VARIANTS(DEFINE_AT_WALL)
+#define AT_WALL_ENTRY(g, s, geometry, spline) [geometry][spline - 2] = at_wall_##g##_##s,
+static void (*const at_wall[3][2])(const mpsi_transfer *, const mpsi_segment *,
+                                   int) = {MPSI_VARIANTS(AT_WALL_ENTRY)};
 
 MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
   for (int k = cells->low[2]; k < cells->high[2]; k++)
@@ -502,15 +533,10 @@ MPSI_INLINE void flush(const mpsi_grid *grid, double dt, const mpsi_cell_block *
     }
 }
 
-/* Contributions and weights of a chunk of particles with full supports. */
-typedef struct chunk {
-  mpsi_rows rows;
-  row_weights weights; /* in 3D */
-  arranged_parts sum, force;
-} chunk;
-
 MPSI_INLINE void find_chunk(const mpsi_transfer *work, int geometry, int spline, bool split,
-                            mpsi_places *places, chunk *out) {
+                            p2g_room *room) {
+  mpsi_places *places = &room->places;
+  chunk *out = &room->all;
   const int dim = mpsi_dim_of(geometry), n = places->count;
   find_rows(spline, dim == 2 && MPSI_WIDE == 1, places, n, &out->rows);
   if (dim == 3) {
@@ -521,10 +547,9 @@ MPSI_INLINE void find_chunk(const mpsi_transfer *work, int geometry, int spline,
 #if MPSI_WIDE == 2
   find_pair_parts(work, geometry, spline, split, places, &out->sum.pair, &out->force.pair);
 #else
-  parts part;
-  find_parts(work, geometry, spline, split, places->chunk, n, &part);
-  arrange_parts(dim, spline, places, n, part.sum, &out->sum);
-  if (split) arrange_parts(dim, spline, places, n, part.force, &out->force);
+  find_parts(work, geometry, spline, split, places->chunk, n, &room->part);
+  arrange_parts(dim, spline, places, n, room->part.sum, &out->sum);
+  if (split) arrange_parts(dim, spline, places, n, room->part.force, &out->force);
 #endif
 }
 
@@ -545,27 +570,28 @@ MPSI_INLINE void p2g_chunk(const mpsi_transfer *work, int geometry, int spline, 
   const int dim = mpsi_dim_of(geometry);
   const mpsi_cell_block *cells = work->cells;
   const mpsi_worker *worker = work->worker;
-  mpsi_places places;
-  chunk all;
+  p2g_room *room = worker->room;
+  const mpsi_places *places = &room->places;
+  const chunk *all = &room->all;
   mpsi_find_places(work, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0, begin,
-                   n, &places);
+                   n, &room->places);
   if (cells->split)
-    find_chunk(work, geometry, spline, true, &places, &all);
+    find_chunk(work, geometry, spline, true, room);
   else
-    find_chunk(work, geometry, spline, false, &places, &all);
+    find_chunk(work, geometry, spline, false, room);
   for (int k = 0, end; k < n; k = end) {
-    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
+    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places->first[end] == places->first[k];)
       end++;
     const uint32_t state =
-        cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
+        cells->cut ? mpsi_support_state(worker, dim, spline, places->first[k]) : 0;
     if (state != 0) {
-      const mpsi_segment segment = {&places, k, end};
-      const int axis = mpsi_wall_axis(work->grid, cells, dim, spline, state, places.first[k]);
-      if (axis >= 0) add_at_wall(work, geometry, spline, &segment, axis);
+      const mpsi_segment segment = {places, k, end};
+      const int axis = mpsi_wall_axis(work->grid, cells, dim, spline, state, places->first[k]);
+      if (axis >= 0) at_wall[geometry][spline - 2](work, &segment, axis);
       if (axis >= 0 || MPSI_LEVELLED(mpsi_mpm_scatter_cut)(work, &segment)) continue;
     }
-    add_chunk(dim, spline, &places, &all, &all.sum, k, end, worker->tile);
-    if (cells->split) add_chunk(dim, spline, &places, &all, &all.force, k, end, worker->force);
+    add_chunk(dim, spline, places, all, &all->sum, k, end, worker->tile);
+    if (cells->split) add_chunk(dim, spline, places, all, &all->force, k, end, worker->force);
   }
 }
 

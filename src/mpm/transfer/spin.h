@@ -23,13 +23,12 @@
 /* Fraction of a full support's inertia below which the rotation would be too fast. */
 #define MPSI_LEAST_INERTIA 0.1
 
-/* Lanes with conserved angular momentum: particles whose stencil has nodes in bodies with contact
- * by impulses, or inactive ones behind thin bodies. Not in axisymmetry, where a particle is a ring;
- * penalty contact stays as published. */
+/* Lanes with conserved angular momentum: particles that see nodes in bodies with contact by
+ * impulses, or whose stencil has inactive ones behind thin bodies. Not in axisymmetry, where a
+ * particle is a ring; penalty contact stays as published. */
 MPSI_INLINE mpsi_mask mpsi_conserves_spin(const mpsi_grid *grid, const mpsi_cut *b) {
-  const mpsi_mask all = {-1, -1, -1, -1};
-  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || grid->by_weight) return ~all;
-  return b->held & MPSI_IMPULSE ? all : b->parted != 0;
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || grid->by_weight) return (mpsi_mask){0};
+  return b->held & MPSI_IMPULSE ? b->beside : b->parted != 0;
 }
 
 MPSI_INLINE bool mpsi_any_lane(mpsi_mask lanes) {

@@ -11,6 +11,7 @@
 #define MPSI_MPM_SUPPORT_H
 
 #include "mpm/base/loops.h"
+#include "mpm/boundary/mirror.h"
 
 #define MPSI_HELD (MPSI_IMPULSE | MPSI_PENALTY)
 
@@ -21,6 +22,7 @@ typedef struct mpsi_cut {
   int lanes;                /* lanes with a particle, 1 to 4 */
   int64_t first;            /* index of the particle in lane 0 */
   uint32_t held;            /* MPSI_HELD bits of the bodies that contain any node of the stencil */
+  mpsi_mask beside;         /* lanes that see such a node */
   mpsi_mask across, parted; /* bit n: of node n the values across a thin body are used; node n is
                                inactive (thin_bodies.h) */
   mpsi_quad s[3][4], along[3][4]; /* (x_i - x_p)/h along each axis; B-spline weights */
@@ -109,10 +111,28 @@ MPSI_INLINE const double *mpsi_next_normal(const mpsi_grid *grid, const mpsi_con
 
 /* ---- active nodes ---------------------------------------------------------------------------- */
 
+/* Lanes that see a node of the stencil, by their weights along each axis. */
+MPSI_INLINE mpsi_mask mpsi_sees(int dim, const mpsi_cut *b, int i, int j, int k) {
+  const mpsi_mask plane = (b->along[0][i] > MPSI_SEEN) & (b->along[1][j] > MPSI_SEEN);
+  return dim == 3 ? plane & (b->along[2][k] > MPSI_SEEN) : plane;
+}
+
+/* Lanes that see a node in a body. */
+MPSI_INLINE mpsi_mask mpsi_find_beside(const mpsi_worker *worker, int dim, int spline,
+                                       const mpsi_cut *b) {
+  mpsi_mask beside = {0};
+  MPSI_FOR_NODES(dim, spline) {
+    const int t = mpsi_tile_index(b->at[0] + i, b->at[1] + j, b->at[2] + k);
+    if (worker->state[t] & MPSI_HELD) beside |= mpsi_sees(dim, b, i, j, k);
+    (void)n;
+  }
+  return beside;
+}
+
 /* Batch of up to four particles of a segment, from number k of the chunk on. Sets distances and
  * weights by axis, not yet the active nodes. */
-MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_segment *segment, int k,
-                                uint32_t held, mpsi_cut *out) {
+MPSI_INLINE void mpsi_place_cut(const mpsi_worker *worker, int dim, int spline,
+                                const mpsi_segment *segment, int k, uint32_t held, mpsi_cut *out) {
   const mpsi_places *places = segment->places;
   const int n = segment->end - k < 4 ? segment->end - k : 4;
   out->first = places->chunk + k, out->lanes = n, out->held = held;
@@ -123,22 +143,49 @@ MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_segment *segment
     mpsi_lane_weights(spline, t, out->along[c]);
     for (int i = 0; i <= spline; i++) out->s[c][i] = (double)i - t;
   }
+  out->beside = held ? mpsi_find_beside(worker, dim, spline, out) : (mpsi_mask){0};
 }
 
-/* Lanes for which a node, by axis, is a corner of the particle's own cell; on the upper side of the
- * domain that is the last cell. */
+/* Lanes for which a node, by axis, is a corner of the particle's own cell: at a side of the domain
+ * of the cell inside, on a border of cells of both of them, or of `either`. */
 MPSI_INLINE void mpsi_find_corners(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
-                                   int spline, const mpsi_cut *b, mpsi_mask (*corner)[4]) {
+                                   int spline, bool either, const mpsi_cut *b,
+                                   mpsi_mask (*corner)[4]) {
+  const double reach = either ? 1.0 + MPSI_ON_BORDER : 1.0 - MPSI_ON_BORDER;
   for (int c = 0; c < dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE + b->at[c];
-    const double last = (double)(grid->high[c] - first);
+    const double low = (double)(grid->low[c] - first), high = (double)(grid->high[c] - first);
     mpsi_quad t = -b->s[c][0];
-    for (int l = 0; l < 4 && last <= 2.0; l++) t[l] = t[l] < last ? t[l] : last - 0.5;
+    for (int l = 0; l < 4; l++) {
+      if (t[l] < low + MPSI_ON_BORDER) t[l] = low + 0.5;
+      if (t[l] > high - MPSI_ON_BORDER) t[l] = high - 0.5;
+    }
     for (int i = 0; i <= spline; i++) {
       const mpsi_quad s = (double)i - t;
-      corner[c][i] = (s > -1.0) & (s <= 1.0);
+      corner[c][i] = (s > -reach) & (s < reach);
     }
   }
+}
+
+/* Where particles on a border of cells have no active node beside it: makes the corners of either
+ * cell theirs, and returns true. */
+MPSI_INLINE bool mpsi_widen_corners(int dim, int spline, const mpsi_cut *b,
+                                    mpsi_mask (*corner)[4]) {
+  mpsi_mask widened = {0};
+  for (int c = 0; c < dim; c++) {
+    mpsi_mask alone = {-1, -1, -1, -1}, count = {0};
+    for (int i = 0; i <= spline; i++) count -= corner[c][i];
+    alone &= count == 1;
+    if ((alone[0] | alone[1] | alone[2] | alone[3]) == 0) continue;
+    MPSI_FOR_NODES(dim, spline) {
+      const int at = c == 0 ? i : c == 1 ? j : k;
+      alone &= corner[c][at] | (b->w[n] == 0.0) | (b->along[c][at] < MPSI_SEEN);
+    }
+    for (int i = 0; i <= spline; i++)
+      corner[c][i] |= alone & (b->s[c][i] > -1.5) & (b->s[c][i] < 1.5);
+    widened |= alone;
+  }
+  return (widened[0] | widened[1] | widened[2] | widened[3]) != 0;
 }
 
 /* Lanes whose particles lie on the outer side, n . (x_p - x_i) > 0, of all bodies that contain node
@@ -204,13 +251,9 @@ MPSI_INLINE mpsi_mask mpsi_has_node(mpsi_mask bits, int n) {
   return (bits & (int64_t)(UINT64_C(1) << n)) != 0;
 }
 
-/* Weights of the active nodes, 0 at the others. `thin`: nodes may be inactive because of thin
- * bodies. */
-MPSI_INLINE void mpsi_find_active(const mpsi_transfer *work, int dim, int spline, bool thin,
-                                  bool known, mpsi_cut *b) {
-  mpsi_mask corner[3][4];
-  mpsi_find_corners(work->grid, work->cells, dim, spline, b, corner);
-  if (thin) mpsi_find_parted(work, dim, spline, known, corner, b);
+/* Weights of the nodes that are in the domain and active, thin bodies apart; 0 at the others. */
+MPSI_INLINE void mpsi_weigh_nodes(const mpsi_transfer *work, int dim, int spline,
+                                  mpsi_mask (*corner)[4], mpsi_cut *b) {
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const uint8_t *state =
@@ -228,6 +271,18 @@ MPSI_INLINE void mpsi_find_active(const mpsi_transfer *work, int dim, int spline
                              mpsi_is_active(work, state[i], dim, b, corner, i, j, k));
       }
     }
+}
+
+/* Weights of the active nodes, 0 at the others. `thin`: nodes may be inactive because of thin
+ * bodies. */
+MPSI_INLINE void mpsi_find_active(const mpsi_transfer *work, int dim, int spline, bool thin,
+                                  bool known, mpsi_cut *b) {
+  mpsi_mask corner[3][4];
+  mpsi_find_corners(work->grid, work->cells, dim, spline, true, b, corner);
+  if (thin) mpsi_find_parted(work, dim, spline, known, corner, b);
+  mpsi_find_corners(work->grid, work->cells, dim, spline, false, b, corner);
+  mpsi_weigh_nodes(work, dim, spline, corner, b);
+  if (mpsi_widen_corners(dim, spline, b, corner)) mpsi_weigh_nodes(work, dim, spline, corner, b);
   if (!thin) return;
   MPSI_FOR_NODES(dim, spline) {
     b->w[n] = (mpsi_quad)((mpsi_mask)b->w[n] & ~mpsi_has_node(b->parted, n));
@@ -256,7 +311,7 @@ MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline
  * known to be true. */
 MPSI_INLINE bool mpsi_is_full(const mpsi_transfer *work, int dim, int spline, const mpsi_cut *b) {
   mpsi_mask corner[3][4];
-  mpsi_find_corners(work->grid, work->cells, dim, spline, b, corner);
+  mpsi_find_corners(work->grid, work->cells, dim, spline, false, b, corner);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const uint8_t *state =

@@ -9,7 +9,7 @@
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
-/* The first node of a tile (cells), and the first and last of its cells, or those of the domain. */
+/* The first node of a tile (cells), and the first and last of its cells that are in the domain. */
 typedef struct region {
   double first[3];
   int low[3], last[3];
@@ -19,8 +19,10 @@ static region region_of(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   region out = {{0.0}, {0}, {0}};
   mpsi_pore_region(grid, cells, out.low, out.last);
   for (int c = 0; c < grid->dim; c++) {
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = grid->high[c] - 1 - first;
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+    const int64_t least = grid->low[c] - first, most = grid->high[c] - 1 - first;
     out.first[c] = (double)first;
+    out.low[c] = least > out.low[c] ? (int)least : out.low[c];
     out.last[c] = most < out.last[c] - 1 ? (int)most : out.last[c] - 1;
   }
   return out;
@@ -30,6 +32,7 @@ static region region_of(const mpsi_grid *grid, const mpsi_cell_block *cells) {
 typedef struct places {
   double from[3][MPSI_COLUMN] MPSI_LINE; /* m, x less that of the centre */
   int32_t at[MPSI_COLUMN];
+  double off[MPSI_COLUMN]; /* cells: farthest along an axis from the centre */
 } places;
 
 /* A particle that has left the domain is in the nearest cell. */
@@ -41,7 +44,7 @@ MPSI_INLINE void find_cells(const mpsi_grid *grid, const mpsi_columns *p, const 
     const double first = in->first[c], h = grid->cell;
     const int32_t low = in->low[c], last = in->last[c];
     const int32_t stride = c == 0 ? 1 : c == 1 ? MPSI_TILE_SIDE : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
-    double *from = out->from[c];
+    double *from = out->from[c], *off = out->off;
     MPSI_SIMD for (int k = 0; k < n; k++) {
       const double X = (x[k] - origin) * inverse - first;
       int32_t cell = (int32_t)X; /* of negative ones the next above, which `low` raises */
@@ -49,8 +52,41 @@ MPSI_INLINE void find_cells(const mpsi_grid *grid, const mpsi_columns *p, const 
       cell = cell > low ? cell : low;
       from[k] = x[k] - (origin + h * ((double)cell + (first + 0.5)));
       at[k] = c == 0 ? cell : at[k] + stride * cell;
+      const double away = fabs(X - ((double)cell + 0.5));
+      off[k] = c == 0 || away > off[k] ? away : off[k];
     }
   }
+}
+
+/* Cells that share a particle on a border between them, by equal parts, as in a mirror image: to
+ * which of them it belonged round-off would decide. */
+typedef struct shared {
+  int count;
+  int32_t at[8];
+  double from[8][3]; /* m, x less that of each centre */
+} shared;
+
+static bool is_shared(const places *in, int k) { return in->off[k] > 0.5 - MPSI_ON_BORDER; }
+
+static shared find_shared(const mpsi_grid *grid, const mpsi_columns *p, const region *in, int dim,
+                          const places *of, int64_t begin, int k) {
+  static const int32_t stride[3] = {1, MPSI_TILE_SIDE, MPSI_TILE_SIDE * MPSI_TILE_SIDE};
+  shared out = {1, {of->at[k]}, {{0.0}}};
+  for (int c = 0; c < dim; c++) out.from[0][c] = of->from[c][k];
+  for (int c = 0; c < dim; c++) {
+    const double X = mpsi_grid_at(grid, c, p->x[c][begin + k]) - in->first[c];
+    const int cell = of->at[k] / stride[c] % MPSI_TILE_SIDE;
+    const double away = X - ((double)cell + 0.5);
+    const int other = away < 0.0 ? cell - 1 : cell + 1;
+    if (fabs(away) <= 0.5 - MPSI_ON_BORDER || other < in->low[c] || other > in->last[c]) continue;
+    for (int i = 0, before = out.count; i < before; i++) {
+      const int new = out.count++;
+      memcpy(out.from[new], out.from[i], sizeof out.from[i]);
+      out.at[new] = out.at[i] + (other - cell) * stride[c];
+      out.from[new][c] -= grid->cell * (double)(other - cell);
+    }
+  }
+  return out;
 }
 
 /* ---- to the tile ----------------------------------------------------------------------------- */
@@ -60,22 +96,21 @@ typedef struct sums {
   double part[8][MPSI_COLUMN] MPSI_LINE;
 } sums;
 
-MPSI_INLINE void find_sums(const mpsi_columns *p, const double *expected, const places *in, int dim,
+MPSI_INLINE void find_sums(const mpsi_columns *p, const double *rest, const places *in, int dim,
                            int64_t begin, int n, sums *out) {
   const double *V = p->V + begin, *u = p->u + begin, *porosity = p->n + begin;
   const double *g0 = p->g[0] + begin, *g1 = p->g[1] + begin, *g2 = dim == 3 ? p->g[2] + begin : g1;
-  const double *past = expected + begin;
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double there = u[k] - (g0[k] * in->from[0][k] + g1[k] * in->from[1][k]);
     if (dim == 3) there -= g2[k] * in->from[2][k];
     out->part[MPSI_PORE_VOLUME][k] = V[k];
-    out->part[MPSI_PORE_CHANGE][k] = V[k] - past[k];
     out->part[MPSI_PORE_PRESSURE][k] = V[k] * there;
     out->part[MPSI_PORE_POROSITY][k] = V[k] * porosity[k];
     out->part[4 + MPSI_PORE_SLOPE][k] = V[k] * g0[k];
     out->part[5 + MPSI_PORE_SLOPE][k] = V[k] * g1[k];
     out->part[6 + MPSI_PORE_SLOPE][k] = dim == 3 ? V[k] * g2[k] : 0.0;
   }
+  for (int k = 0; k < n; k++) out->part[MPSI_PORE_CHANGE][k] = rest ? rest[begin + k] : 0.0;
   for (int k = 0; k < n; k++)
     out->part[4 + MPSI_PORE_PERMEABILITY][k] = p->k ? V[k] * p->k[begin + k] : 0.0;
 }
@@ -98,6 +133,35 @@ MPSI_INLINE void add_sums(const places *in, int n, const sums *from, const mpsi_
   }
 }
 
+/* The sums of the particles that several cells share, in place of what `part` has of them. */
+MPSI_APART void share_sums(const mpsi_grid *grid, const mpsi_columns *p, const double *rest,
+                           const region *in, int dim, const places *at, int64_t begin, int n,
+                           const mpsi_worker *worker, sums *part) {
+  for (int k = 0; k < n; k++) {
+    if (!is_shared(at, k)) continue;
+    const shared s = find_shared(grid, p, in, dim, at, begin, k);
+    for (int c = 0; c < 8; c++) part->part[c][k] = 0.0;
+    for (int i = 0; i < s.count; i++) {
+      const int64_t own = begin + k;
+      const double V = p->V[own] / s.count;
+      double *to = worker->tile[s.at[i]], *flow = worker->force[s.at[i]], there = p->u[own];
+      for (int c = 0; c < dim; c++) there -= p->g[c][own] * s.from[i][c];
+      to[MPSI_PORE_VOLUME] += V;
+      to[MPSI_PORE_CHANGE] += rest ? rest[own] / s.count : 0.0;
+      to[MPSI_PORE_PRESSURE] += V * there;
+      to[MPSI_PORE_POROSITY] += V * p->n[own];
+      flow[MPSI_PORE_PERMEABILITY] += p->k ? V * p->k[own] : 0.0;
+      for (int c = 0; c < dim; c++) flow[MPSI_PORE_SLOPE + c] += V * p->g[c][own];
+    }
+  }
+}
+
+MPSI_INLINE bool any_shared(const places *at, int n) {
+  double most = 0.0;
+  for (int k = 0; k < n; k++) most = at->off[k] > most ? at->off[k] : most;
+  return most > 0.5 - MPSI_ON_BORDER;
+}
+
 /* v = 1/(1 - n) follows the volume. */
 MPSI_INLINE void change_porosities(const mpsi_columns *p, const double *former, int64_t begin,
                                    int n) {
@@ -111,16 +175,17 @@ MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
                           const mpsi_cell_block *cells, const mpsi_worker *worker, int dim) {
   const region in = region_of(grid, cells);
   const bool done = mpsi_pore_responds(water); /* pressures and porosities have followed volumes */
-  const double *former = done ? p->V : water->former, *expected = done ? p->V : water->expected;
+  const double *former = done ? p->V : water->former, *rest = done ? NULL : water->rest;
   places at;
   sums part;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     find_cells(grid, p, &in, dim, k, n, &at);
-    find_sums(p, expected, &at, dim, k, n, &part);
+    find_sums(p, rest, &at, dim, k, n, &part);
     for (int i = 0; !done && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
+    if (any_shared(&at, n)) share_sums(grid, p, rest, &in, dim, &at, k, n, worker, &part);
     add_sums(&at, n, &part, worker);
-    if (done) continue;
+    if (done || water->expecting) continue;
     if (water->flows) mpsi_pore_change_permeability(p, water, former + k, k, k + n);
     change_porosities(p, former + k, k, n);
   }
@@ -146,6 +211,33 @@ MPSI_INLINE mpsi_node *strain_tile(const mpsi_transfer *work) {
   return work->keep > 0.0 ? work->worker->strain : work->worker->force;
 }
 
+/* Whether cell `at` (its lowest tile node) along axis c is in the domain and in the part of the
+ * tile in use, as in step/volumetric.c. */
+static bool has_place(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int at) {
+  const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + at + 1;
+  if (at < cells->low[c] || at >= cells->high[c]) return false;
+  return grid->spline != 3 || (node >= grid->low[c] && node < grid->high[c]);
+}
+
+/* Cells of a particle that lies on borders between them, from mpsi_pore_place. */
+static int find_places(const mpsi_grid *grid, const mpsi_cell_block *cells, uint16_t place,
+                       int32_t *out) {
+  int at[3], count = 1;
+  int code = place / MPSI_PORE_PLACES;
+  mpsi_unravel(place % MPSI_PORE_PLACES, MPSI_TILE_SIDE, at);
+  out[0] = place % MPSI_PORE_PLACES;
+  for (int c = 0, stride = 1; c < grid->dim; c++, code /= 3, stride *= MPSI_TILE_SIDE) {
+    const int border = code % 3 == 2 ? -1 : code % 3;
+    if (border == 0 || !has_place(grid, cells, c, at[c] + border)) continue;
+    const bool inside = has_place(grid, cells, c, at[c]);
+    for (int k = 0, before = count; k < before; k++) {
+      const int32_t other = out[k] + border * stride;
+      out[inside ? count++ : k] = other;
+    }
+  }
+  return count;
+}
+
 void MPSI_LEVELLED(mpsi_pore_begin_block)(const mpsi_transfer *work) {
   const mpsi_cell_block *cells = work->cells;
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
@@ -164,8 +256,15 @@ void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *fo
     mpsi_pore_change_permeability(work->p, work->water, former, begin, begin + n);
   change_porosities(work->p, former, begin, n);
   for (int k = 0; k < n; k++) {
-    pair *to = (pair *)tile[place[k]];
-    *to += (pair){former[k], V[k] - former[k]};
+    if (place[k] < MPSI_PORE_PLACES) {
+      pair *to = (pair *)tile[place[k]];
+      *to += (pair){former[k], V[k] - former[k]};
+      continue;
+    }
+    int32_t at[8];
+    const int count = find_places(work->grid, work->cells, place[k], at);
+    for (int i = 0; i < count; i++)
+      *(pair *)tile[at[i]] += (pair){former[k] / count, (V[k] - former[k]) / count};
   }
 }
 
@@ -184,7 +283,16 @@ void MPSI_LEVELLED(mpsi_pore_respond)(const mpsi_transfer *work) {
     const uint16_t *place = work->water->place + begin;
     double *u = work->p->u + begin, growth[MPSI_CHUNK];
     const double *porosity = work->p->n + begin;
-    for (int k = 0; k < n; k++) growth[k] = tile[place[k]][GROWTH];
+    for (int k = 0; k < n; k++) {
+      if (place[k] < MPSI_PORE_PLACES) {
+        growth[k] = tile[place[k]][GROWTH];
+        continue;
+      }
+      int32_t at[8];
+      const int count = find_places(work->grid, work->cells, place[k], at);
+      growth[k] = 0.0;
+      for (int i = 0; i < count; i++) growth[k] += tile[at[i]][GROWTH] / count;
+    }
     MPSI_SIMD for (int k = 0; k < n; k++) u[k] += growth[k] / porosity[k];
   }
 }
@@ -224,6 +332,25 @@ MPSI_INLINE void give_pressures(const mpsi_columns *p, const places *in, const t
   }
 }
 
+/* What the particles that several cells share take: the mean. */
+MPSI_APART void take_shared(const mpsi_transfer *work, const region *in, int dim, const places *at,
+                            int64_t begin, int n, taken *from) {
+  const mpsi_columns *p = work->p;
+  for (int k = 0; k < n; k++) {
+    if (!is_shared(at, k)) continue;
+    const shared s = find_shared(work->grid, p, in, dim, at, begin, k);
+    double u = 0.0, g[3] = {0.0}, gain = 0.0, more = 0.0;
+    for (int i = 0; i < s.count; i++) {
+      const double *tile = work->worker->tile[s.at[i]], *flow = work->worker->force[s.at[i]];
+      u += tile[0], gain += flow[0], more += flow[1];
+      for (int c = 0; c < dim; c++) u += tile[1 + c] * s.from[i][c], g[c] += tile[1 + c];
+    }
+    p->u[begin + k] = u / s.count;
+    for (int c = 0; c < dim; c++) p->g[c][begin + k] = g[c] / s.count;
+    from->gain[k] = gain / s.count, from->more[k] = more / s.count;
+  }
+}
+
 MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
   const mpsi_columns *p = work->p;
   const mpsi_cell_block *cells = work->cells;
@@ -237,8 +364,9 @@ MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
     find_cells(grid, p, &in, dim, k, n, &at);
     take_cells(&at, n, work->worker, flows, expecting, &from);
     give_pressures(p, &at, &from, dim, k, n);
+    if (any_shared(&at, n)) take_shared(work, &in, dim, &at, k, n, &from);
     if (expecting) {
-      double *after = work->water->expected + k;
+      double *after = work->water->rest + k;
       const double *V = p->V + k;
       MPSI_SIMD for (int i = 0; i < n; i++) after[i] = V[i] * (1.0 + from.more[i]);
     }

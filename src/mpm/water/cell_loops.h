@@ -5,7 +5,7 @@
 
 #include "water.h"
 
-/* Values of a cell in the worker's two tiles as sums over its particles: of V, dV, V p at the
+/* Values of a cell in the worker's two tiles as sums over its particles: of V, `rest`, V p at the
  * cell's centre, V n; of V k and V g. */
 enum { MPSI_PORE_VOLUME, MPSI_PORE_CHANGE, MPSI_PORE_PRESSURE, MPSI_PORE_POROSITY };
 enum { MPSI_PORE_PERMEABILITY, MPSI_PORE_SLOPE };

@@ -8,8 +8,11 @@
 #include "cell_loops.h"
 #include "layers.h"
 #include "mpm/base/kernels.h"
+#include "mpm/ranks/messages.h"
 
 #include <string.h>
+
+#define FOLLOWS (1.0 / 32) /* of the rest of the way, in a step: as slopes of explicit ones do */
 
 /* ---- to the tile ----------------------------------------------------------------------------- */
 
@@ -31,6 +34,22 @@ static void sum_block(void *data, int64_t b, int32_t number) {
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
   clear_region(work.grid, work.cells, work.worker);
   mpm->kernels->pore_sum(&work);
+}
+
+/* ---- between ranks --------------------------------------------------------------------------- */
+
+static void copy_region(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                        const mpsi_worker *worker, double *message, bool to) {
+  int low[3], high[3];
+  mpsi_pore_region(grid, cells, low, high);
+  message = mpsi_mpm_copy_nodes(low, high, worker->tile, sizeof(mpsi_node), message, to);
+  mpsi_mpm_copy_nodes(low, high, worker->force, sizeof(mpsi_node), message, to);
+}
+
+static void pack(void *data, int64_t b, int32_t number, double *message) {
+  const mps_mpm *mpm = data;
+  sum_block(data, b, number);
+  copy_region(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number], message, true);
 }
 
 /* ---- to the cells ---------------------------------------------------------------------------- */
@@ -85,10 +104,12 @@ static void add_tile(const mpsi_grid *grid, mpsi_water *water, int64_t b,
 
 static void add_block(void *data, int64_t b, int32_t number) {
   mps_mpm *mpm = data;
-  if (mpm->grid.cells[b].parcel < 0 || !mpm->partition)
+  double *message;
+  if (!mpsi_mpm_find_message(mpm->partition, &mpm->grid.cells[b], &message)) return;
+  if (message)
+    copy_region(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number], message, false);
+  else
     sum_block(mpm, b, number);
-  else if (!mpsi_pore_take_parcel(mpm, b, number))
-    return;
   add_tile(&mpm->grid, mpm->water, b, &mpm->grid.workers[number]);
 }
 
@@ -102,7 +123,7 @@ static void find_mean(mpsi_water *water, mpsi_pore_cell *cell) {
   cell->inside = true;
   cell->free = 0;
   cell->thin = false;
-  if (!water->flows) cell->now = cell->p + mpsi_pore_squeeze(water, cell);
+  if (!water->flows && !water->expecting) cell->now = cell->p + mpsi_pore_squeeze(water, cell);
 }
 
 static void find_means(void *data, int64_t g, int32_t worker) {
@@ -125,8 +146,83 @@ void mpsi_pore_find_cells(mps_mpm *mpm) {
                           .clear = clear,
                           .scatter = add_block,
                           .update = find_means,
-                          .arrive = mpm->partition ? mpsi_pore_receive_parcels : NULL};
-  if (mpm->partition) mpsi_pore_send_parcels(mpm, sum_block);
+                          .ranks = mpm->partition,
+                          .arrive = mpsi_mpm_receive_messages};
+  if (mpm->partition)
+    mpsi_mpm_send_messages(mpm->context, mpm->partition, "mps_mpm_step",
+                           mpsi_pore_sum_doubles(mpm->water->layers), pack, mpm);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &sums);
   mpsi_pore_exchange(mpm, MPSI_PORE_FILLED);
+}
+
+/* ---- what cells do not expect ---------------------------------------------------------------- */
+
+/* What particles have for their cells where pressures are implicit, besides pressure and porosity.
+ * Before the motion that is V (u - slow), by which the cells are above the pressures of which P2G
+ * has the forces. After the motion and the laws it is what the motion has taken of the volumes
+ * besides what the pressures expected (flow.c). Where grains are drawn apart their volume V stays,
+ * and the gap g (a volume strain, "opening") grows: water fills it, so that the motion changes V (1
+ * + g). The filter of mean stresses (step/filter.c) changes V and g without a motion: what was not
+ * expected is noted before it. */
+
+static void find_ahead(void *data, int64_t b, int32_t worker) {
+  const mps_mpm *mpm = data;
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  double *rest = mpm->water->rest;
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) rest[k] = p->V[k] * (p->u[k] - p->slow[k]);
+}
+
+void mpsi_pore_find_ahead(mps_mpm *mpm) {
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_ahead, mpm);
+}
+
+static void follow(void *data, int64_t b, int32_t worker) {
+  const mps_mpm *mpm = data;
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    p->slow[k] += FOLLOWS * (p->u[k] - p->slow[k]);
+}
+
+void mpsi_pore_follow_means(mps_mpm *mpm) {
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, follow, mpm);
+}
+
+void mpsi_pore_begin_means(const mpsi_columns *p) {
+  if (p->slow != p->u && p->count > 0) memcpy(p->slow, p->u, (size_t)p->count * sizeof *p->slow);
+}
+
+/* The gap of particle k, m3 at the volume V. */
+static double gap_of(const mpsi_columns *p, int64_t k, double V) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  return law->gap < 0 ? 0.0 : V * law->history[law->gap][k];
+}
+
+void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_water *water = mpm->water;
+  if (!mpsi_pore_predicts(mpm)) return;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    water->former[k] = mpm->p.V[k];
+    water->rest[k] += gap_of(&mpm->p, k, mpm->p.V[k]);
+  }
+}
+
+/* V (1 + g) less what was expected of it; both gaps by the volume before the motion. */
+static void note_rest(void *data, int64_t b, int32_t worker) {
+  const mps_mpm *mpm = data;
+  const mpsi_water *water = mpm->water;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    water->rest[k] = mpm->p.V[k] + gap_of(&mpm->p, k, water->former[k]) - water->rest[k];
+}
+
+void mpsi_pore_note_rest(mps_mpm *mpm) {
+  if (!mpsi_pore_predicts(mpm) || mpm->water->noted) return;
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, note_rest, mpm);
+  mpm->water->noted = true;
 }

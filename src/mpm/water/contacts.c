@@ -1,7 +1,7 @@
 /* contacts.c - contacts with bodies in the operator of implicit pressures. Where the ground bears
  * on a body its velocity is that of the surface, whatever the pressures. With the rows C of the
- * contacts (psi n at their nodes, contact/constraints.c) a correction w = m^-1 G d of the
- * velocities becomes
+ * contacts (psi n at their nodes, contact/constraints.c; -n at the body, which a free one moves
+ * with its mass) a correction w = m^-1 G d of the velocities of nodes and bodies becomes
  *
  *   w - m^-1 C^T Y C w,   Y nearly (C m^-1 C^T)^-1
  *
@@ -19,6 +19,7 @@
  * over all ranks to which one alone contributes. SPDX-License-Identifier: BSD-3-Clause */
 #include "contacts.h"
 
+#include "core/base/room_array.h"
 #include "mpm/contact/pairs.h"
 
 #include <stddef.h>
@@ -77,14 +78,10 @@ static bool make_room(mps_mpm *mpm, mpsi_pore_contacts *out) {
   const int64_t count = all->constraint_count, most = count * all->stride;
   out->indices = mpm->grid.node_count * mpm->grid.block_nodes +
                  (mpm->partition ? mpm->contact.exchange.nodes : 0);
-  const bool good = mpsi_room_ensure(context, &out->contact_room, count, sizeof *out->contact) &&
-                    mpsi_room_ensure(context, &out->entry_room, most, sizeof *out->entry) &&
-                    mpsi_room_ensure(context, &out->node_room, most, sizeof *out->node) &&
-                    mpsi_room_ensure(context, &out->index_room, out->indices, sizeof *out->index);
-  out->contact = out->contact_room.item;
-  out->entry = out->entry_room.item;
-  out->node = out->node_room.item;
-  out->index = out->index_room.item;
+  const bool good =
+      MPSI_ENSURE(context, out, contact, count) && MPSI_ENSURE(context, out, entry, most) &&
+      MPSI_ENSURE(context, out, node, most) && MPSI_ENSURE(context, out, index, out->indices) &&
+      MPSI_ENSURE(context, out, mover, mpm->contact.bodies);
   return good;
 }
 
@@ -96,8 +93,11 @@ static int32_t take_node(const mps_mpm *mpm, mpsi_pore_contacts *out, int64_t n,
   const int64_t index = index_of(mpm, n, value, at);
   if (index < 0 || out->index[index] >= 0) return index < 0 ? -1 : out->index[index];
   mpsi_pore_contact_node *node = &out->node[out->nodes];
-  *node = (mpsi_pore_contact_node){
-      .at = {at[0], at[1], at[2]}, .number = index, .slot = -1, .mass = value[MPSI_MASS]};
+  *node = (mpsi_pore_contact_node){.at = {at[0], at[1], at[2]},
+                                   .number = index,
+                                   .slot = -1,
+                                   .mass = value[MPSI_MASS] *
+                                           (1.0 + mpm->def.viscous_damping * mpm->run.dt)};
   if (mpm->partition)
     node->number = mpsi_pore_node_at(&mpm->grid, s, at, &node->counted);
   else
@@ -118,9 +118,12 @@ static void add_contact(const mps_mpm *mpm, int64_t n, mpsi_pore_contacts *out) 
   const mpsi_constraint *from = &all->constraint[n];
   const double *weight = all->weight[n * all->stride];
   mpsi_pore_contact *to = &out->contact[out->count++];
-  *to = (mpsi_pore_contact){
-      .constraint = n, .first = out->entries, .sticks = does_stick(&from->impulse)};
+  *to = (mpsi_pore_contact){.constraint = n,
+                            .first = out->entries,
+                            .body = from->body,
+                            .sticks = does_stick(&from->impulse)};
   memcpy(to->normal, from->impulse.normal, sizeof to->normal);
+  memcpy(to->at, from->impulse.at, sizeof to->at);
   for (int32_t i = 0; i < from->nodes; i++) {
     mpsi_pore_contact_entry *entry = &out->entry[out->entries];
     entry->node = take_node(mpm, out, n, all->node[n * all->stride + i]);
@@ -129,6 +132,19 @@ static void add_contact(const mps_mpm *mpm, int64_t n, mpsi_pore_contacts *out) 
       entry->psi[a] = from->even ? weight[2 * i + 1] : weight[4 * i + MPSI_VECTOR + a];
     to->entries++, out->entries++;
   }
+}
+
+/* Mobility of the body of a contact, 1/kg: along its normal or, of one that sticks, at least that
+ * along any axis. */
+static double mobility_of(const mps_mpm *mpm, const mpsi_pore_contacts *all,
+                          const mpsi_pore_contact *c) {
+  static const double axis[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  const mpsi_impulse_body *by = &all->mover[c->body].by;
+  double sum = 0.0;
+  if (!by->free) return 0.0;
+  if (!c->sticks) return mpsi_impulse_mobility(by->body, c->at, c->normal);
+  for (int a = 0; a < mpm->grid.dim; a++) sum += mpsi_impulse_mobility(by->body, c->at, axis[a]);
+  return sum;
 }
 
 /* Prescribed components do not move; then 1/m_c of each contact. */
@@ -145,8 +161,9 @@ static void find_yields(const mps_mpm *mpm, mpsi_pore_contacts *all) {
         across += *psi * *psi * c->normal[a] * c->normal[a] / node->mass;
       }
     }
+    const double bodily = mobility_of(mpm, all, c);
     for (int a = 0; a < 3; a++) {
-      const double yields = c->sticks ? sum[a] : across;
+      const double yields = (c->sticks ? sum[a] : across) + bodily;
       c->yield[a] = yields > 0.0 ? 1.0 / yields : 0.0;
     }
   }
@@ -230,6 +247,18 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
   return MPS_OK;
 }
 
+void mpsi_pore_aim_contacts(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const double damping = mpm->def.viscous_damping * mpm->run.dt;
+  for (int64_t n = 0; n < all->constraint_count && mpsi_pore_predicts(mpm) && damping > 0.0; n++) {
+    mpsi_constraint *c = &all->constraint[n];
+    double surface[3];
+    if (c->pair < 0) continue; /* of another rank, which has done so */
+    mpsi_impulse_surface(&all->body[c->body], c->impulse.at, surface);
+    c->impulse.aim += damping * (c->impulse.aim + mpsi_dot3(surface, c->impulse.normal));
+  }
+}
+
 mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
   mpsi_pore_contacts *out = &mpm->water->system->contacts;
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -250,6 +279,8 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
     if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, out);
   if (mpm->partition) status = find_slots(mpm, function, out);
   out->any = mpm->partition ? out->slots > 0 : out->count > 0;
+  out->movers = mpm->contact.bodies;
+  for (int32_t b = 0; b < out->movers; b++) out->mover[b].by = all->body[b];
   if (status == MPS_OK) find_yields(mpm, out);
   return status;
 }
@@ -282,6 +313,10 @@ static void stop(mpsi_pore_contacts *all, mpsi_pore_contact *c) {
   double v[3] = {0.0}, by[3];
   for (int64_t e = c->first; e < c->first + c->entries; e++)
     for (int a = 0; a < 3; a++) v[a] += all->entry[e].psi[a] * all->node[all->entry[e].node].v[a];
+  mpsi_impulse_body *body = &all->mover[c->body].by;
+  double surface[3];
+  mpsi_impulse_surface(body, c->at, surface);
+  for (int a = 0; a < 3; a++) v[a] -= surface[a];
   const double across = mpsi_dot3(v, c->normal);
   for (int a = 0; a < 3; a++) {
     by[a] = c->yield[a] * (c->sticks ? v[a] : across * c->normal[a]);
@@ -291,6 +326,8 @@ static void stop(mpsi_pore_contacts *all, mpsi_pore_contact *c) {
     mpsi_pore_contact_node *node = &all->node[all->entry[e].node];
     for (int a = 0; a < 3; a++) node->v[a] -= all->entry[e].psi[a] * by[a] / node->mass;
   }
+  const double back[3] = {-by[0], -by[1], -by[2]};
+  if (body->free) mpsi_impulse_kick(body, c->at, back);
 }
 
 /* A vector x' after a sweep, from those before it: omega (by (x' - x_k) + x_k - x_k-1) + x_k-1. */
@@ -303,6 +340,10 @@ static void keep(mpsi_pore_contacts *all) {
     memcpy(all->contact[k].now, all->contact[k].left, sizeof all->contact[k].now);
   for (int64_t k = 0; k < all->nodes; k++)
     memcpy(all->node[k].now, all->node[k].v, sizeof all->node[k].now);
+  for (int32_t b = 0; b < all->movers; b++) {
+    memcpy(all->mover[b].now[0], all->mover[b].by.v, sizeof all->mover[b].now[0]);
+    memcpy(all->mover[b].now[1], all->mover[b].by.spin, sizeof all->mover[b].now[1]);
+  }
 }
 
 /* Each contact in turn, and back. */
@@ -329,6 +370,12 @@ static void run_cycle(mpsi_pore_contacts *all) {
       extrapolate(node->v, node->now, sweep > 0 ? node->past : node->now, by, omega);
       memcpy(node->past, node->now, sizeof node->past);
     }
+    for (int32_t b = 0; b < all->movers; b++) {
+      mpsi_pore_mover *m = &all->mover[b];
+      extrapolate(m->by.v, m->now[0], sweep > 0 ? m->past[0] : m->now[0], by, omega);
+      extrapolate(m->by.spin, m->now[1], sweep > 0 ? m->past[1] : m->now[1], by, omega);
+      memcpy(m->past, m->now, sizeof m->past);
+    }
   }
 }
 
@@ -340,6 +387,10 @@ mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < all->count; k++)
     memset(all->contact[k].left, 0, sizeof all->contact[k].left);
+  for (int32_t b = 0; b < all->movers; b++) {
+    memset(all->mover[b].by.v, 0, sizeof all->mover[b].by.v);
+    memset(all->mover[b].by.spin, 0, sizeof all->mover[b].by.spin);
+  }
   for (int cycle = 0; cycle < CYCLES; cycle++) run_cycle(all);
   for (int64_t k = 0; k < all->nodes; k++)
     if (all->node[k].number >= 0)

@@ -2,9 +2,10 @@
  *
  * A cell at a free surface is filled in part, f = sum V/h^dim, along each of the m axes on which it
  * has nothing beside it by f^(1/m); p is then the pressure at the centre of that part. At a drained
- * surface a cell less than half full would need short steps: it stores nothing and lies on the line
- * between its neighbour inside and the surface. Most cells have others on all their faces, which
- * the marks of a block show for all its cells at once. SPDX-License-Identifier: BSD-3-Clause */
+ * surface a cell less than half full would need short steps with explicit pressures: it stores
+ * nothing and lies on the line between its neighbour inside and the surface. Most cells have others
+ * on all their faces, which the marks of a block show for all its cells at once.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "layers.h"
 #include "water.h"
 
@@ -134,7 +135,8 @@ static void find_filled(const mpsi_grid *grid, mpsi_water *water, double r, mpsi
     edge->shift[c] = 0.5 * h * (1.0 - edge->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
     cell->p += c < grid->dim ? cell->g[c] * edge->shift[c] : 0.0;
   }
-  for (int d = 0; d < 2 * grid->dim && water->flows; d++)
+  const bool stores = !water->flows || !mpsi_pore_responds(water); /* whatever its filled part */
+  for (int d = 0; d < 2 * grid->dim && !stores; d++)
     if (f < 0.5 && (cell->free >> d & 1) && edge->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
 }
 
@@ -172,7 +174,8 @@ static void find_faces(void *data, int64_t g, int32_t worker) {
       cell[k].inside = false;
       find_edge(&mpm->grid, &mpm->contact, water, g, k, place, &cell[k]);
       if (cell[k].free == 0) mpsi_pore_mark(block->full, k);
-      if (!water->flows) cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
+      if (!water->flows && !water->expecting)
+        cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
     }
 }
 

@@ -4,14 +4,17 @@
  *
  * The flux between two cells is that of the harmonic mean of their permeabilities over the distance
  * of the centres of their filled parts; to a drained face it goes over half the filled part, to one
- * behind a thin cell over half a cell and the filled part of that one. The driving slope is that of
- * p - rho_w b.x. A cell's own slope is interpolated to its centre from those on its side of two
- * opposite faces, so that it is exact for a parabola at a surface and for layers of different
+ * behind a thin cell over half a cell and the filled part of that one. Between two cells it goes
+ * through the smaller of their filled parts or, with implicit pressures, which have no thin cells,
+ * the larger: a cell filled by a thousandth has the pressure of that inside. The driving slope is
+ * that of p - rho_w b.x. A cell's own slope is interpolated to its centre from those on its side of
+ * two opposite faces, so that it is exact for a parabola at a surface and for layers of different
  * permeability; at an impervious face it is that of water at rest.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cell_loops.h"
 #include "implicit.h"
 #include "layers.h"
+#include "mpm/boundary/free_field.h"
 #include "mpm/base/kernels.h"
 
 #include <string.h>
@@ -29,12 +32,13 @@ static double weight_of_water(mpsi_water *water) { return water->def.density * M
  * parts of a cell and of the one beside it. */
 static double area_of(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
                       const mpsi_pore_cell *beside, int direction, double radius) {
+  const double *own = mpsi_pore_edge_of(water, cell)->fill;
+  const double *other = beside ? mpsi_pore_edge_of(water, beside)->fill : own;
   double area = radius;
   for (int c = 0; c < grid->dim; c++)
     if (c != direction / 2)
-      area *= grid->cell * (beside ? fmin(mpsi_pore_edge_of(water, cell)->fill[c],
-                                          mpsi_pore_edge_of(water, beside)->fill[c])
-                                   : mpsi_pore_edge_of(water, cell)->fill[c]);
+      area *= grid->cell *
+              (mpsi_pore_responds(water) ? fmin(own[c], other[c]) : fmax(own[c], other[c]));
   return area;
 }
 
@@ -175,16 +179,6 @@ static void let_out(mpsi_water *water, int64_t g, int face, double rate) {
   if (rate < 0.0) water->outflow[g][MPSI_PORE_FACES] -= rate;
 }
 
-/* What a thin cell loses goes through one of its drained faces. */
-static void squeeze(const mpsi_grid *grid, mpsi_water *water, double dt, int64_t g,
-                    mpsi_pore_cell *cell) {
-  int d = 0;
-  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
-    d++;
-  cell->gain = cell->change / (dt * grid->measure);
-  let_out(water, g, mpsi_pore_edge_of(water, cell)->face[d], -cell->gain);
-}
-
 /* By the pressures at the beginning or the end of the step. */
 static double flux_into(mps_mpm *mpm, int64_t g, int k, bool end, const mpsi_pore_cell *cell) {
   const mpsi_pore_cell *behind;
@@ -307,11 +301,12 @@ static void find_slopes(void *data, int64_t g, int32_t worker) {
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
-      if (cell[k].thin) interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
-      if (cell[k].thin && mpsi_pore_responds(water))
-        expel(&mpm->grid, water, g, &cell[k]);
-      else if (!cell[k].thin)
+      if (!cell[k].thin) {
         find_slope(mpm, g, k, &cell[k]);
+        continue;
+      }
+      interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
+      expel(&mpm->grid, water, g, &cell[k]);
     }
 }
 
@@ -353,7 +348,7 @@ void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) 
 
 /* Part of its volume that the cell is expected to gain in the step: what its pressures know. */
 static double expected_of(const mpsi_water *water, const mpsi_pore_cell *cell) {
-  return cell->thin ? 0.0 : water->system->squeeze[cell - water->cell];
+  return water->system->squeeze[cell - water->cell];
 }
 
 static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, const uint64_t *filled,
@@ -398,6 +393,124 @@ static void give_to_particles(void *data, int64_t b, int32_t number) {
   mpm->kernels->pore_give(&work);
 }
 
+/* ---- columns of free-field sides -------------------------------------------------------------
+ * The column of a free-field side (boundary/free_field.h) has pressures of its own, which flow up
+ * and down as the ground's do. For an exchange the cells at the side are lent to it: they hold the
+ * column's pressures and slopes while fluxes, pressures and slopes are found along y by the
+ * functions above, with the permeabilities, porosities and faces of the ground, and have the
+ * ground's again afterwards. */
+
+/* The cell that particle k of the column is in, and how far (m) it is above its centre; NULL: it
+ * has left the column's nodes, which the next step refuses. */
+static mpsi_pore_column_cell *find_column_cell(const mpsi_grid *grid, const mpsi_water *water,
+                                               const mpsi_free_field *f, int64_t k, double *above) {
+  const double Y = mpsi_grid_at(grid, 1, f->y[k]) - (double)f->first;
+  if (!(Y >= 0.0 && Y < (double)f->nodes)) return NULL;
+  const int64_t at = mpsi_own_cell(grid, 1, Y + (double)f->first);
+  *above = f->y[k] - (grid->origin[1] + grid->cell * ((double)at + 0.5));
+  return &water->column[at - f->first];
+}
+
+/* The cells at the side, with the pressures of the column instead of the ground's. */
+static void enter_column(mps_mpm *mpm, int side, mpsi_free_field *f) {
+  const mpsi_grid *grid = &mpm->grid;
+  mpsi_water *water = mpm->water;
+  const int64_t layer = side == MPS_SIDE_X_LOWER ? grid->low[0] : grid->high[0] - 1;
+  double above;
+  memset(water->column, 0, (size_t)f->nodes * sizeof *water->column);
+  for (int64_t k = 0; k < f->count; k++) {
+    mpsi_pore_column_cell *c = find_column_cell(grid, water, f, k, &above);
+    if (!c) continue;
+    c->volume += f->V[k];
+    c->p += f->V[k] * (f->u[k] - f->g[k] * above);
+    c->g += f->V[k] * f->g[k];
+  }
+  for (int64_t n = 0; n < f->nodes; n++) {
+    mpsi_pore_column_cell *c = &water->column[n];
+    const int64_t y = f->first + n;
+    const int32_t at[3] = {(int32_t)mpsi_block_with(layer), (int32_t)mpsi_block_with(y), 0};
+    c->block = mpsi_pore_own_block(grid, at);
+    c->place =
+        (int)(layer - (int64_t)at[0] * MPSI_SIDE + MPSI_SIDE * (y - (int64_t)at[1] * MPSI_SIDE));
+    if (c->block < 0 || !mpsi_pore_marked(water->block[c->block].filled, c->place)) continue;
+    c->cell = water->cell + mpsi_first_node(grid, c->block) + c->place;
+    c->was = *c->cell;
+    if (!(c->volume > 0.0)) continue;
+    c->cell->p = c->p / c->volume;
+    c->cell->g[1] = c->g / c->volume;
+    c->cell->p += c->cell->g[1] * mpsi_pore_edge_of(water, c->cell)->shift[1];
+    c->cell->now = c->cell->p;
+  }
+}
+
+/* The pressure of a cell of the column at the end of the exchange, by the fluxes below and above.
+ */
+static void flow_in_column(mps_mpm *mpm, mpsi_pore_column_cell *c) {
+  mpsi_water *water = mpm->water;
+  const double h = mpm->grid.cell;
+  const mpsi_pore_cell *behind;
+  double x[3], flux = 0.0;
+  if (c->cell->thin) return;
+  const double X = centre_of(&mpm->grid, water, c->block, c->place, c->cell, x);
+  for (int d = 2; d < 4; d++) {
+    const face_flow f = at_face(mpm, c->block, c->place, d, false, c->cell, x, X, &behind);
+    if (f.known) flux += f.flux;
+  }
+  const double space = c->cell->inside ? h * h : space_of(mpsi_pore_edge_of(water, c->cell));
+  c->cell->now = c->cell->p + water->def.bulk / c->cell->n * (water->elapsed * flux / space);
+}
+
+/* Its slope along y, from the pressures at the end. */
+static void slope_in_column(mps_mpm *mpm, mpsi_pore_column_cell *c) {
+  const mpsi_pore_cell *behind;
+  double x[3];
+  if (c->cell->thin) {
+    interpolate(&mpm->grid, mpm->water, &mpm->def, c->block, c->place, c->cell);
+    return;
+  }
+  const double X = centre_of(&mpm->grid, mpm->water, c->block, c->place, c->cell, x);
+  const face_flow below = at_face(mpm, c->block, c->place, 2, true, c->cell, x, X, &behind);
+  const face_flow above = at_face(mpm, c->block, c->place, 3, true, c->cell, x, X, &behind);
+  c->cell->g[1] += mpm->water->share * (between(&below, &above) - c->cell->g[1]);
+}
+
+/* Back to the column's particles; where the ground has no cell they keep theirs. */
+static void leave_column(const mpsi_grid *grid, mpsi_water *water, mpsi_free_field *f) {
+  double above;
+  for (int64_t k = 0; k < f->count; k++) {
+    const mpsi_pore_column_cell *c = find_column_cell(grid, water, f, k, &above);
+    const mpsi_pore_cell *cell = c ? c->cell : NULL;
+    if (!cell) continue;
+    f->g[k] = cell->g[1];
+    f->u[k] = cell->now + cell->g[1] * (above - mpsi_pore_edge_of(water, cell)->shift[1]);
+  }
+  for (int64_t n = 0; n < f->nodes; n++)
+    if (water->column[n].cell) *water->column[n].cell = water->column[n].was;
+}
+
+static void exchange_in_column(mps_mpm *mpm, int side, mpsi_free_field *f) {
+  mpsi_water *water = mpm->water;
+  enter_column(mpm, side, f);
+  for (int64_t n = 0; n < f->nodes && water->flows; n++)
+    if (water->column[n].cell) flow_in_column(mpm, &water->column[n]);
+  for (int64_t n = 0; n < f->nodes; n++)
+    if (water->column[n].cell) slope_in_column(mpm, &water->column[n]);
+  leave_column(&mpm->grid, water, f);
+}
+
+void mpsi_pore_update_columns(mps_mpm *mpm) {
+  if (!mpsi_pore_responds(mpm->water)) return;
+  for (int side = 0; side < 2; side++) {
+    mpsi_free_field *f = mpm->boundaries.hold[side].field;
+    if (!f) continue;
+    if (mpm->water->due) exchange_in_column(mpm, side, f);
+    for (int64_t k = 0; k < f->count; k++) {
+      const int64_t from = mps_particles_index(mpm->p.set, f->id[k]);
+      if (from >= 0) f->seen[k] = mpm->p.u[from];
+    }
+  }
+}
+
 /* ---- implicit pressures ---------------------------------------------------------------------- */
 
 /* Storage and fluxes of a cell, and the right-hand side, for implicit.c. */
@@ -405,16 +518,12 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
   mpsi_water *water = mpm->water;
   mpsi_pore_system *s = water->system;
   const int64_t at = cell - water->cell;
-  const double h = mpm->grid.cell, dt = mpm->run.dt, V = cell->volume / mpm->grid.measure;
+  const double dt = mpm->run.dt, V = cell->volume / mpm->grid.measure;
   const mpsi_pore_cell *behind;
   double x[3], flux = 0.0;
   const double X = centre_of(&mpm->grid, water, g, k, cell, x);
-  const double space = cell->inside ? (mpm->grid.dim == 3 ? h * h * h : h * h)
-                                    : space_of(mpsi_pore_edge_of(water, cell));
-  const double storage = space * cell->n / water->def.bulk;
-  s->scale[at] = sqrt(space / V);
-  s->space[at] = space;
-  s->diagonal[at] = storage;
+  s->space[at] = V;
+  s->diagonal[at] = V * cell->n / water->def.bulk;
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     s->conductance[at][d] = 0.0;
     if (!water->flows) continue;
@@ -438,10 +547,8 @@ static void find_equations(void *data, int64_t g, int32_t worker) {
   memset(water->outflow[g], 0, sizeof water->outflow[g]);
   if (!mpsi_mpm_counts_node_block(&mpm->grid, g)) return; /* another rank has its equations */
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    water->system->scale[first + k] = 0.0; /* no unknown */
     water->system->direction[first + k] = water->system->change[first + k] = 0.0;
-    if (mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin)
-      find_equation(mpm, g, k, &cell[k]);
+    if (mpsi_pore_marked(water->block[g].filled, k)) find_equation(mpm, g, k, &cell[k]);
   }
 }
 
@@ -452,10 +559,7 @@ static void find_gains(void *data, int64_t g, int32_t worker) {
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_marked(water->block[g].filled, k)) continue;
-    if (cell[k].thin)
-      squeeze(&mpm->grid, water, mpm->run.dt, g, &cell[k]);
-    else
+    if (mpsi_pore_marked(water->block[g].filled, k))
       cell[k].gain = flux_into(mpm, g, k, true, &cell[k]);
   }
 }
@@ -477,18 +581,21 @@ static void give(mps_mpm *mpm) {
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &particles);
 }
 
-mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
-  mpsi_water *water = mpm->water;
-  if (!water || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return MPS_OK;
-  const size_t bytes = (size_t)mpm->p.count * sizeof *mpm->p.V;
-  if (bytes > 0) { /* else, on a rank without particles, there is no memory */
-    memcpy(water->former, mpm->p.V, bytes);
-    memcpy(water->expected, mpm->p.V, bytes);
-  }
+mps_status mpsi_pore_press(mps_mpm *mpm, const char *function) {
+  if (!mpsi_pore_predicts(mpm)) return MPS_OK;
+  mpsi_pore_find_ahead(mpm);
+  mpm->water->expecting = true;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
+  mpm->water->expecting = false;
+  return mpsi_pore_press_nodes(mpm, function);
+}
+
+mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
+  mpsi_water *water = mpm->water;
   const mps_status status = find_implicit(mpm, function);
   if (status != MPS_OK) return status;
+  mpsi_pore_follow_means(mpm);
   water->expecting = true;
   water->share = 1.0;
   water->elapsed = mpm->run.dt;
@@ -508,15 +615,12 @@ static void find_rest(void *data, int64_t g, int32_t worker) {
     for (uint64_t left = water->block[g].filled[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
       cell[k].gain = 0.0;
-      if (cell[k].thin)
-        squeeze(&mpm->grid, water, mpm->run.dt, g, &cell[k]);
-      else
-        cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
+      cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
     }
 }
 
 void mpsi_pore_flow(mps_mpm *mpm) {
-  const bool implicit = mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
+  const bool implicit = !mpsi_pore_responds(mpm->water);
   const mpsi_pass pressures = {.data = mpm, .finish = implicit ? find_rest : find_pressures};
   if (mpm->water->flows) {
     mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pressures);

@@ -1,11 +1,14 @@
-/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c, with the masses and
- * velocities of these nodes. A cell's forces are the sums of V grad phi over its particles, added
- * in the order of the blocks of cells. On several ranks the particles of border blocks are sent to
- * the ranks that have these as ghosts, which add them at the ghosts' turn: the cells and nodes that
- * a rank counts have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
+/* forces.c - forces G of the cells on their nodes per pressure, for implicit.c. A cell's forces are
+ * the sums of V grad phi over its particles, added in the order of the blocks of cells. On several
+ * ranks the particles of border blocks are sent to the ranks that have these as ghosts, which add
+ * them at the ghosts' turn: the cells and nodes that a rank counts have the bits of one process.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "forces.h"
 
+#include "core/base/room_array.h"
 #include "mpm/base/kernels.h"
+#include "mpm/boundary/kinds.h"
+#include "mpm/ranks/messages.h"
 #include "rim.h"
 
 #include <string.h>
@@ -75,10 +78,11 @@ static bool find_node(const mpsi_grid *grid, const stencil *at, int n, int *i, i
   return in;
 }
 
-/* The row of a cell: forces at axes [dim][nodes], m3/s that moving sides bring in as mirrors. */
+/* The row of a cell: forces at axes [dim][nodes], m3/s that moving sides bring in as mirrors, and
+ * the force of these per pressure. */
 typedef struct row {
   int64_t cell[3];
-  double *force, *carried;
+  double *force, *carried, *turned;
 } row;
 
 /* Adds V grad phi of a node, which beyond a mirror is its image there (boundary/mirror.c). */
@@ -91,10 +95,9 @@ static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *g
     const mpsi_boundary *side = &mpm->boundaries.hold[2 * c + above];
     node[c] = 2 * (above ? grid->high[c] : grid->low[c]) - node[c];
     for (int a = 0; a < grid->dim; a++) {
-      const bool turns =
-          side->kind == MPS_BOUNDARY_HELD || (a == c && side->kind != MPS_BOUNDARY_FREE_FIELD);
-      if (!turns) continue;
+      if (!mpsi_side_turns(side, c, a)) continue;
       *to->carried += 2.0 * gradient[a] * side->v[a];
+      if (a == c) to->turned[2 * c + above] -= 2.0 * gradient[a];
       gradient[a] = -gradient[a];
     }
   }
@@ -108,7 +111,7 @@ static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *g
 }
 
 /* By full supports, and such as sides cut. */
-static void add_forces(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+static void add_forces(const mps_mpm *mpm, const mpsi_pore_particle *particle, const stencil *at,
                        const row *to) {
   const mpsi_grid *grid = &mpm->grid;
   const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
@@ -127,7 +130,7 @@ static void add_forces(const mps_mpm *mpm, const mpsi_pore_grain *particle, cons
 }
 
 /* By the fit of the step, of a particle whose support a body cuts. */
-static void add_fitted(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+static void add_fitted(const mps_mpm *mpm, const mpsi_pore_particle *particle, const stencil *at,
                        const row *to) {
   const mpsi_grid *grid = &mpm->grid;
   const int dim = grid->dim;
@@ -152,7 +155,7 @@ static void add_fitted(const mps_mpm *mpm, const mpsi_pore_grain *particle, cons
 }
 
 /* Whether the nodes of the particle's fit are all that its stencil has: no body cuts it. */
-static bool uses_all(const mpsi_grid *grid, const mpsi_pore_grain *particle, const stencil *at) {
+static bool uses_all(const mpsi_grid *grid, const mpsi_pore_particle *particle, const stencil *at) {
   uint64_t all = 0;
   for (int n = 0; n < (grid->dim == 3 ? 64 : 16); n++) {
     int i[3];
@@ -163,11 +166,11 @@ static bool uses_all(const mpsi_grid *grid, const mpsi_pore_grain *particle, con
 }
 
 static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_pore_grain *particle) {
+                         const mpsi_pore_particle *particle) {
   const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
   int at[3];
-  row to = {{0}, NULL, NULL};
+  row to = {{0}, NULL, NULL, NULL};
   mpsi_unravel(particle->place, MPSI_TILE_SIDE, at);
   for (int c = 0; c < grid->dim; c++) to.cell[c] = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
   const int32_t g = mpsi_block_under(cells, at[0], at[1], at[2]);
@@ -175,6 +178,7 @@ static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
   const int64_t cell = mpsi_first_node(grid, g) + mpsi_local_under(at[0], at[1], at[2]);
   to.force = mpsi_pore_row(grid, s, cell);
   to.carried = &s->carried[cell];
+  to.turned = s->turned[cell];
   const stencil nodes = find_stencil(grid, particle->x);
   if (particle->fitted && !uses_all(grid, particle, &nodes))
     add_fitted(mpm, particle, &nodes, &to);
@@ -187,49 +191,24 @@ static void add_particles(void *data, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    const mpsi_pore_grain particle = mpsi_pore_grain_of(mpm, cells, k);
+    const mpsi_pore_particle particle = mpsi_pore_particle_of(mpm, cells, k);
     add_particle(mpm, cells, &particle);
   }
   if (!cells->ghost) return;
   int64_t count;
-  const mpsi_pore_grain *particle = mpsi_pore_grains_of(mpm, b, &count);
+  const mpsi_pore_particle *particle = mpsi_pore_particles_of(mpm, b, &count);
   for (int64_t k = 0; k < count; k++) add_particle(mpm, cells, &particle[k]);
 }
 
-/* Masses and velocities of the nodes of a block without a correction, and which components are
- * prescribed. */
-static void find_nodes(void *data, int64_t g, int32_t worker) {
+/* Masses of the nodes of a block: while the velocities that the pressures make are found, no
+ * boundary has acted (foresee.c). */
+static void find_masses(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
-  mpsi_pore_system *s = mpm->water->system;
   const mpsi_grid *grid = &mpm->grid;
   const int64_t first = mpsi_first_node(grid, g);
-  uint8_t *held = s->held + first;
   (void)worker;
-  memset(held, 0, (size_t)grid->block_nodes);
-  for (int k = 0; k < grid->block_nodes; k++) {
-    const double *node = grid->node[first + k];
-    s->mass[first + k] = node[MPSI_MASS];
-    for (int c = 0; c < 3; c++) s->velocity[first + k][c] = node[MPSI_VECTOR + c];
-  }
-  for (int32_t t = 0; t < grid->nodes[g].holds; t++) {
-    const mpsi_held *at = &mpm->boundaries.held[grid->nodes[g].first_held + t];
-    const mpsi_boundary *hold = &mpm->boundaries.hold[at->hold];
-    mpsi_range in;
-    if (hold->kind == MPS_BOUNDARY_OPEN || hold->kind == MPS_BOUNDARY_ABSORBING ||
-        !mpsi_find_range(grid->dim, grid->nodes[g].at, hold, &in))
-      continue;
-    const bool whole = hold->kind == MPS_BOUNDARY_HELD || hold->kind == MPS_BOUNDARY_DRIVEN;
-    const uint32_t dofs = at->hold < MPSI_SIDES && !whole ? 1u << hold->axis : hold->dofs;
-    const bool moves = hold->kind == MPS_BOUNDARY_FREE_FIELD;
-    for (int k = in.low[2]; k <= in.high[2]; k++)
-      for (int j = in.low[1]; j <= in.high[1]; j++)
-        for (int i = in.low[0]; i <= in.high[0]; i++) {
-          const int local = mpsi_local_under(i, j, k);
-          held[local] |= (uint8_t)dofs;
-          for (int c = 0; c < grid->dim && !moves; c++)
-            if (dofs >> c & 1) s->velocity[first + local][c] = hold->v[c];
-        }
-  }
+  for (int64_t k = first; k < first + grid->block_nodes; k++)
+    for (int c = 0; c < 3; c++) mpm->water->system->inertia[k][c] = grid->node[k][MPSI_MASS];
 }
 
 /* Rows of forces for the cells that this rank counts, then for those of the rim. */
@@ -237,17 +216,22 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
   int32_t rows = 0;
-  for (int64_t g = 0; g < grid->node_count; g++)
-    for (int k = 0; k < grid->block_nodes && mpsi_mpm_counts_node_block(grid, g); k++)
-      if (mpsi_pore_marked(mpm->water->block[g].filled, k))
-        s->carried[mpsi_first_node(grid, g) + k] = 0.0,
-                                              s->row[mpsi_first_node(grid, g) + k] = rows++;
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    const bool counts = mpsi_mpm_counts_node_block(grid, g);
+    for (int k = 0; k < grid->block_nodes; k++) {
+      const int64_t cell = mpsi_first_node(grid, g) + k;
+      const bool filled = counts && mpsi_pore_is_unknown(mpm->water, g, k);
+      s->row[cell] = filled ? rows++ : -1;
+      if (!filled) continue;
+      s->carried[cell] = 0.0;
+      memset(s->turned[cell], 0, sizeof s->turned[cell]);
+    }
+  }
   for (int64_t k = 0; s->rim && k < s->rim->cells; k++)
     s->row[grid->node_count * grid->block_nodes + k] = rows++;
   const int64_t numbers = rows * mpsi_pore_row_numbers(grid);
-  if (!mpsi_room_ensure(mpm->context, &s->force_room, numbers, sizeof *s->force))
+  if (!MPSI_ENSURE(mpm->context, s, force, numbers))
     return mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *s->force);
-  s->force = s->force_room.item;
   if (numbers > 0) memset(s->force, 0, (size_t)numbers * sizeof *s->force);
   return MPS_OK;
 }
@@ -255,13 +239,14 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
 mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function) {
   const mpsi_partition *partition = mpm->partition;
   const mpsi_pass pass = {.data = mpm,
-                          .clear = find_nodes,
+                          .clear = find_masses,
                           .scatter = add_particles,
-                          .arrive = partition ? mpsi_pore_receive_grains : NULL};
+                          .ranks = mpm->partition,
+                          .arrive = mpsi_mpm_receive_messages};
   mps_status status = make_rows(mpm, function);
   if (partition) status = mpsi_domain_agree(partition->domain, function, status);
   if (status != MPS_OK) return status;
-  if (partition) mpsi_pore_send_grains(mpm);
+  if (partition) mpsi_pore_send_particles(mpm);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   if (!partition) return MPS_OK;
   return partition->lost == MPS_OK ? mpsi_pore_send_forces(mpm, function) : partition->lost;

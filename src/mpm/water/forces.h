@@ -5,9 +5,12 @@
 
 #include "system.h"
 
-/* Forces of the cells, masses and velocities of their nodes and which components are prescribed,
- * also in the rim.
- * Collective. MPS_ERROR_MEMORY. */
+/* Forces of the cells, also in the rim, and masses of this rank's nodes. Collective.
+ * MPS_ERROR_MEMORY. */
 mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function);
+/* foresee.c: after contacts: velocities of the nodes as boundaries will leave them without a
+ * correction, their inertias against one and which components are prescribed, also in the rim.
+ * Collective. */
+mps_status mpsi_pore_find_nodes(mps_mpm *mpm, const char *function);
 
 #endif

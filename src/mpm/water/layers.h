@@ -11,6 +11,7 @@
 
 #include "core/base/room.h"
 #include "domain/halo.h"
+#include "mpm/ranks/notices.h"
 #include "water.h"
 
 struct mpsi_pore_layers {
@@ -32,17 +33,19 @@ typedef enum mpsi_pore_stage {
   MPSI_PORE_NOW     /* pressures at the end of the step */
 } mpsi_pore_stage;
 
+/* Blocks near those that this rank computes, which another rank counts: the list is to be freed
+ * whatever is returned, the status is that of this rank. Collective. */
+mps_status mpsi_pore_find_notices(const mps_mpm *mpm, const char *function, mpsi_notice **list,
+                                  int64_t *found);
 /* Finds the layers of the present ghosts. Collective. */
 mps_status mpsi_pore_find_layers(mps_mpm *mpm, const char *function);
 /* The number of the block at `at` behind the rank's own ones, or -1. Not collective. */
 int32_t mpsi_pore_guest_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at);
-/* Within a step, as a failure of the transport stays in the partition: parcels with what `sum` puts
- * into a worker's tiles for each border block; a parcel to the tiles, false where it has not come
- * (not collective). */
-void mpsi_pore_send_parcels(mps_mpm *mpm, mpsi_mpm_task sum);
-void mpsi_pore_receive_parcels(void *solver);
-bool mpsi_pore_take_parcel(mps_mpm *mpm, int64_t b, int32_t worker);
-/* Layers of a stage; nothing without ranks. */
+/* Length of the message with the sums of a border block. */
+static inline int64_t mpsi_pore_sum_doubles(const mpsi_pore_layers *layers) {
+  return 2 * layers->most * (int64_t)(sizeof(mpsi_node) / sizeof(double));
+}
+/* Layers of a stage; nothing without ranks. A failure of the transport stays in the partition. */
 void mpsi_pore_exchange(mps_mpm *mpm, mpsi_pore_stage stage);
 /* Not collective; accepts none. */
 void mpsi_pore_free_layers(mps_context *context, mpsi_pore_layers **layers);

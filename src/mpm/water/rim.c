@@ -1,7 +1,9 @@
 /* rim.c - see rim.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "rim.h"
 
-#include "notices.h"
+#include "core/base/room_array.h"
+#include "layers.h"
+#include "mpm/ranks/messages.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +16,10 @@ enum { REACH = MPSI_PORE_SPAN - 1 }; /* cells: so far does the matrix join two o
 typedef struct search {
   mps_mpm *mpm;
   const char *function;
-  mpsi_pore_notices notices;
-  int32_t *rank, *whole_rank; /* of each cell and each whole block */
-  int64_t *index, *whole_index;
+  mpsi_notice *list;
+  int64_t found;               /* in the list */
+  int32_t *rank, *shared_rank; /* of each cell and each shared block */
+  int64_t *index, *shared_index;
 } search;
 
 static bool is_counted(const mpsi_grid *grid, const int32_t *at) {
@@ -64,13 +67,9 @@ static bool is_in_rim(const mpsi_grid *grid, const int32_t *at, uint8_t *cell, u
 }
 
 static int64_t count_blocks(const search *s) {
-  const mpsi_mailbox *box = &s->notices.box;
   int64_t blocks = 0;
-  for (int32_t m = 0; m < box->count; m++) {
-    const mpsi_pore_notice *from = box->mail[m].data;
-    for (int64_t k = 0; k < box->mail[m].bytes / (int64_t)sizeof *from; k++)
-      blocks += is_in_rim(&s->mpm->grid, from[k].at, NULL, NULL);
-  }
+  for (int64_t k = 0; k < s->found; k++)
+    blocks += is_in_rim(&s->mpm->grid, s->list[k].at, NULL, NULL);
   return blocks;
 }
 
@@ -79,22 +78,17 @@ static bool make_lists(search *s, mpsi_pore_rim *rim) {
   const int64_t blocks = count_blocks(s), cells = blocks * s->mpm->grid.block_nodes;
   s->rank = mpsi_alloc(context, cells, sizeof *s->rank);
   s->index = mpsi_alloc(context, cells, sizeof *s->index);
-  s->whole_rank = mpsi_alloc(context, blocks, sizeof *s->whole_rank);
-  s->whole_index = mpsi_alloc(context, blocks, sizeof *s->whole_index);
-  const bool good = s->rank && s->index && s->whole_rank && s->whole_index &&
-                    mpsi_room_ensure(context, &rim->block_room, blocks, sizeof *rim->block) &&
-                    mpsi_room_ensure(context, &rim->cell_room, cells, sizeof *rim->cell) &&
-                    mpsi_room_ensure(context, &rim->reached_room, cells, sizeof *rim->reached) &&
-                    mpsi_room_ensure(context, &rim->whole_room, blocks, sizeof *rim->whole_block);
-  rim->block = rim->block_room.item;
-  rim->cell = rim->cell_room.item;
-  rim->reached = rim->reached_room.item;
-  rim->whole_block = rim->whole_room.item;
+  s->shared_rank = mpsi_alloc(context, blocks, sizeof *s->shared_rank);
+  s->shared_index = mpsi_alloc(context, blocks, sizeof *s->shared_index);
+  const bool good =
+      s->rank && s->index && s->shared_rank && s->shared_index &&
+      MPSI_ENSURE(context, rim, block, blocks) && MPSI_ENSURE(context, rim, cell, cells) &&
+      MPSI_ENSURE(context, rim, reached, cells) && MPSI_ENSURE(context, rim, shared_block, blocks);
   return good;
 }
 
 /* Puts the block of a notice into the lists, where it has cells in the rim. */
-static void take_notice(search *s, mpsi_pore_rim *rim, int32_t rank, const mpsi_pore_notice *from) {
+static void take_notice(search *s, mpsi_pore_rim *rim, const mpsi_notice *from) {
   enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE };
   const mpsi_grid *grid = &s->mpm->grid;
   uint8_t cell[MOST], node[MOST];
@@ -106,15 +100,15 @@ static void take_notice(search *s, mpsi_pore_rim *rim, int32_t rank, const mpsi_
   for (int k = 0; k < grid->block_nodes; k++) {
     rim->cell[rim->blocks * grid->block_nodes + k] = cell[k] ? (int32_t)rim->cells : -1;
     if (!cell[k]) continue;
-    s->rank[rim->cells] = rank;
+    s->rank[rim->cells] = from->rank;
     s->index[rim->cells] = mpsi_first_node(grid, from->number) + k;
     rim->reached[rim->cells++] = node[k];
   }
   rim->blocks++;
   if (same < 0) return;
-  s->whole_rank[rim->wholes] = rank;
-  s->whole_index[rim->wholes] = from->number;
-  rim->whole_block[rim->wholes++] = same;
+  s->shared_rank[rim->shared_blocks] = from->rank;
+  s->shared_index[rim->shared_blocks] = from->number;
+  rim->shared_block[rim->shared_blocks++] = same;
 }
 
 static int compare_blocks(const void *left, const void *right) {
@@ -123,13 +117,8 @@ static int compare_blocks(const void *left, const void *right) {
 }
 
 static mps_status choose(search *s, mpsi_pore_rim *rim) {
-  const mpsi_mailbox *box = &s->notices.box;
   if (!make_lists(s, rim)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
-  for (int32_t m = 0; m < box->count; m++) {
-    const mpsi_pore_notice *from = box->mail[m].data;
-    for (int64_t k = 0; k < box->mail[m].bytes / (int64_t)sizeof *from; k++)
-      take_notice(s, rim, box->mail[m].rank, &from[k]);
-  }
+  for (int64_t k = 0; k < s->found; k++) take_notice(s, rim, &s->list[k]);
   if (rim->blocks > 1) qsort(rim->block, (size_t)rim->blocks, sizeof *rim->block, compare_blocks);
   return MPS_OK;
 }
@@ -149,43 +138,30 @@ int32_t mpsi_pore_rim_block_at(const mpsi_pore_rim *rim, const int32_t *at) {
 
 /* ---- messages: room -------------------------------------------------------------------------- */
 
-/* Of a cell in a message: mass, held components and velocity of its node, its scale, its forces. */
-enum { MASS, HELD, SCALE, VELOCITY, HEAD = VELOCITY + 3 };
+/* Of a shared block: of each cell change of its pressure, volume that it has gained;
+ * correction of its node. */
+enum { CHANGES = 2 + 3, NODE = 3 + 3 };
 
-static int64_t force_bytes(const mpsi_grid *grid) {
-  return (HEAD + mpsi_pore_row_numbers(grid)) * (int64_t)sizeof(double);
-}
+static int64_t greater(int64_t a, int64_t b) { return a > b ? a : b; }
 
-/* Of a cell: change of its pressure, volume that it has gained; correction of its node. */
-enum { CHANGES = 2 + 3 };
-
-static int64_t change_bytes(const mpsi_grid *grid) {
-  return CHANGES * grid->block_nodes * (int64_t)sizeof(double);
-}
-
-/* The first of a parcel has the number of those that follow. */
-static int64_t grain_bytes(const mpsi_pore_rim *rim) {
-  return (1 + rim->particles) * (int64_t)sizeof(mpsi_pore_grain);
-}
-
-static int64_t greatest(int64_t a, int64_t b, int64_t c) {
-  const int64_t most = a > b ? a : b;
-  return most > c ? most : c;
+/* The first of a message has the number of those that follow. */
+static int64_t particle_doubles(const mpsi_pore_rim *rim) {
+  _Static_assert(sizeof(mpsi_pore_particle) % sizeof(double) == 0, "particles of a message");
+  return (1 + rim->particles) * (int64_t)(sizeof(mpsi_pore_particle) / sizeof(double));
 }
 
 static mps_status reserve(const search *s, mpsi_pore_rim *rim) {
   const mpsi_grid *grid = &s->mpm->grid;
-  const mpsi_partition *partition = s->mpm->partition;
+  const int64_t cell = mpsi_pore_row_numbers(grid), block = CHANGES * grid->block_nodes;
   const int64_t *item;
-  const int64_t out = greatest(mpsi_halo_items(rim->halo, &item) * force_bytes(grid),
-                               mpsi_halo_items(rim->whole, &item) * change_bytes(grid),
-                               partition->borders * grain_bytes(rim));
-  const int64_t in = greatest(rim->cells * force_bytes(grid), rim->wholes * change_bytes(grid),
-                              partition->ghosts * grain_bytes(rim));
-  if (mpsi_room_ensure(s->mpm->context, &rim->out_room, out, 1) &&
-      mpsi_room_ensure(s->mpm->context, &rim->in_room, in, 1))
-    return MPS_OK;
-  return mpsi_fail_memory(s->mpm->context, s->function, (size_t)(out + in));
+  const int64_t out = greater(mpsi_halo_items(rim->halo, &item) * greater(cell, NODE),
+                              mpsi_halo_items(rim->shared, &item) * block);
+  const int64_t in = greater(rim->cells * greater(cell, NODE), rim->shared_blocks * block);
+  if (!mpsi_room_ensure(s->mpm->context, &rim->out_room, out, sizeof(double)) ||
+      !mpsi_room_ensure(s->mpm->context, &rim->in_room, in, sizeof(double)))
+    return mpsi_fail_memory(s->mpm->context, s->function, (size_t)(out + in) * sizeof(double));
+  return mpsi_mpm_reserve_messages(s->mpm->context, s->mpm->partition, s->function,
+                                   particle_doubles(rim));
 }
 
 static double most_particles(const mps_mpm *mpm) {
@@ -201,9 +177,9 @@ static mps_status find(search *s, mpsi_pore_rim *rim) {
   const mpsi_grid *grid = &s->mpm->grid;
   mps_domain *domain = s->mpm->partition->domain;
   double most = most_particles(s->mpm);
-  mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->notices);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_max(domain, s->function, choose(s, rim), 1, &most);
+  mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
+  if (status == MPS_OK) status = choose(s, rim);
+  status = mpsi_domain_agree_max(domain, s->function, status, 1, &most);
   if (status != MPS_OK) return status;
   rim->particles = (int64_t)most;
   const mpsi_halo_def cells = {.guests = rim->cells,
@@ -211,10 +187,10 @@ static mps_status find(search *s, mpsi_pore_rim *rim) {
                                .index = s->index,
                                .first = grid->node_count * grid->block_nodes,
                                .columns = 1};
-  const mpsi_halo_def whole = {
-      .guests = rim->wholes, .rank = s->whole_rank, .index = s->whole_index};
+  const mpsi_halo_def shared = {
+      .guests = rim->shared_blocks, .rank = s->shared_rank, .index = s->shared_index};
   status = mpsi_halo_create(domain, s->function, &cells, &rim->halo);
-  if (status == MPS_OK) status = mpsi_halo_create(domain, s->function, &whole, &rim->whole);
+  if (status == MPS_OK) status = mpsi_halo_create(domain, s->function, &shared, &rim->shared);
   return status == MPS_OK ? mpsi_domain_agree(domain, s->function, reserve(s, rim)) : status;
 }
 
@@ -233,13 +209,12 @@ mps_status mpsi_pore_find_rim(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   mpsi_pore_rim *rim = system->rim;
   mpsi_halo_destroy(mpm->context, &rim->halo);
-  mpsi_halo_destroy(mpm->context, &rim->whole);
-  rim->blocks = rim->cells = rim->wholes = 0;
+  mpsi_halo_destroy(mpm->context, &rim->shared);
+  rim->blocks = rim->cells = rim->shared_blocks = 0;
   status = find(&s, rim);
-  if (status != MPS_OK) rim->blocks = rim->cells = rim->wholes = 0;
+  if (status != MPS_OK) rim->blocks = rim->cells = rim->shared_blocks = 0;
   rim->searches = status == MPS_OK ? mpm->partition->searches : -1;
-  mpsi_pore_free_notices(mpm->context, &s.notices);
-  void *parts[] = {s.rank, s.index, s.whole_rank, s.whole_index};
+  void *parts[] = {s.list, s.rank, s.index, s.shared_rank, s.shared_index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
   return status;
 }
@@ -249,89 +224,94 @@ void mpsi_pore_free_rim(mps_context *context, mpsi_pore_rim **pointer) {
   *pointer = NULL;
   if (!rim) return;
   mpsi_halo_destroy(context, &rim->halo);
-  mpsi_halo_destroy(context, &rim->whole);
-  const mpsi_room room[] = {rim->block_room, rim->cell_room, rim->reached_room,
-                            rim->whole_room, rim->out_room,  rim->in_room};
+  mpsi_halo_destroy(context, &rim->shared);
+  const mpsi_room room[] = {rim->block_room,        rim->cell_room, rim->reached_room,
+                            rim->shared_block_room, rim->out_room,  rim->in_room};
   for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
   mpsi_free(context, rim);
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static void pack_grains(void *data, int64_t k, int32_t number) {
-  mps_mpm *mpm = data;
-  const mpsi_pore_rim *rim = mpm->water->system->rim;
-  const mpsi_cell_block *cells = &mpm->grid.cells[mpm->partition->border[k]];
-  mpsi_pore_grain *out = (void *)((char *)rim->out_room.item + k * grain_bytes(rim));
-  (void)number;
-  *out = (mpsi_pore_grain){.place = (int32_t)(cells->end - cells->begin)};
-  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, cells, i);
+static void pack_particles(void *data, int64_t b, int32_t worker, double *message) {
+  const mps_mpm *mpm = data;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_pore_particle *out = (void *)message;
+  (void)worker;
+  *out = (mpsi_pore_particle){.place = (int32_t)(cells->end - cells->begin)};
+  for (int64_t k = cells->begin; k < cells->end; k++) *++out = mpsi_pore_particle_of(mpm, cells, k);
 }
 
-void mpsi_pore_send_grains(mps_mpm *mpm) {
-  mpsi_partition *partition = mpm->partition;
-  const mpsi_pore_rim *rim = mpm->water->system->rim;
-  mpsi_parallel_for(mpm->context, partition->borders, pack_grains, mpm);
-  if (partition->lost == MPS_OK)
-    partition->lost =
-        mpsi_halo_begin_bytes(partition->halo, "mps_mpm_step", (int32_t)grain_bytes(rim),
-                              rim->out_room.item, rim->in_room.item);
+void mpsi_pore_send_particles(mps_mpm *mpm) {
+  mpsi_mpm_send_messages(mpm->context, mpm->partition, "mps_mpm_step",
+                         particle_doubles(mpm->water->system->rim), pack_particles, mpm);
 }
 
-void mpsi_pore_receive_grains(void *solver) {
-  mpsi_partition *partition = ((mps_mpm *)solver)->partition;
-  if (partition->lost == MPS_OK)
-    partition->lost = mpsi_halo_end_bytes(partition->halo, "mps_mpm_step");
-}
-
-const mpsi_pore_grain *mpsi_pore_grains_of(const mps_mpm *mpm, int64_t b, int64_t *count) {
-  const mpsi_pore_rim *rim = mpm->water->system->rim;
-  const mpsi_pore_grain *in = (const void *)((const char *)rim->in_room.item +
-                                             mpm->grid.cells[b].parcel * grain_bytes(rim));
-  *count = mpm->partition->lost == MPS_OK ? in->place : 0; /* else the step has failed */
+const mpsi_pore_particle *mpsi_pore_particles_of(const mps_mpm *mpm, int64_t b, int64_t *count) {
+  double *message;
+  *count = 0;
+  if (!mpsi_mpm_find_message(mpm->partition, &mpm->grid.cells[b], &message)) return NULL;
+  const mpsi_pore_particle *in = (const void *)message;
+  *count = in->place;
   return in + 1;
 }
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-static void pack_cell(const mps_mpm *mpm, int64_t cell, double *out) {
-  const mpsi_grid *grid = &mpm->grid;
-  const mpsi_pore_system *s = mpm->water->system;
-  const size_t bytes = (size_t)mpsi_pore_row_numbers(grid) * sizeof *out;
-  const mpsi_pore_block *block = &mpm->water->block[cell / grid->block_nodes];
-  out[MASS] = s->mass[cell];
-  out[HELD] = s->held[cell];
-  out[SCALE] = s->scale[cell];
-  memcpy(out + VELOCITY, s->velocity[cell], sizeof s->velocity[cell]);
-  if (mpsi_pore_marked(block->filled, (int)(cell % grid->block_nodes)))
-    memcpy(out + HEAD, mpsi_pore_row(grid, s, cell), bytes);
-  else
-    memset(out + HEAD, 0, bytes);
+/* Exchanges what the cells of the rim have, or shared blocks. */
+static mps_status exchange(mps_mpm *mpm, const char *function, bool shared, int64_t doubles,
+                           mpsi_item_fn pack, mpsi_item_fn unpack) {
+  const mpsi_pore_rim *rim = mpm->water->system->rim;
+  double *const room[] = {rim->out_room.item, rim->in_room.item};
+  return mpsi_mpm_exchange_items(shared ? rim->shared : rim->halo, function, doubles,
+                                 shared ? rim->shared_blocks : rim->cells, room, pack, unpack, mpm);
 }
 
-/* Nodes out of reach have no mass, and so no velocity: not all cells around them are here. */
-static void unpack_cell(const mps_mpm *mpm, int64_t number, const double *in) {
-  const mpsi_grid *grid = &mpm->grid;
-  mpsi_pore_system *s = mpm->water->system;
-  const int64_t cell = grid->node_count * grid->block_nodes + number;
-  s->mass[cell] = s->rim->reached[number] ? in[MASS] : 0.0;
-  s->held[cell] = (uint8_t)in[HELD];
-  s->scale[cell] = in[SCALE];
-  memcpy(s->velocity[cell], in + VELOCITY, sizeof s->velocity[cell]);
-  memcpy(mpsi_pore_row(grid, s, cell), in + HEAD, (size_t)mpsi_pore_row_numbers(grid) * sizeof *in);
+/* Place in the vectors of cell k of the rim. */
+static int64_t at_rim(const mpsi_grid *grid, int64_t k) {
+  return grid->node_count * grid->block_nodes + k;
+}
+
+static void pack_forces(void *data, int64_t cell, double *out) {
+  const mps_mpm *mpm = data;
+  const mpsi_pore_system *s = mpm->water->system;
+  const size_t bytes = (size_t)mpsi_pore_row_numbers(&mpm->grid) * sizeof *out;
+  if (s->row[cell] >= 0)
+    memcpy(out, mpsi_pore_row(&mpm->grid, s, cell), bytes);
+  else
+    memset(out, 0, bytes);
+}
+
+static void unpack_forces(void *data, int64_t k, double *in) {
+  const mps_mpm *mpm = data;
+  memcpy(mpsi_pore_row(&mpm->grid, mpm->water->system, at_rim(&mpm->grid, k)), in,
+         (size_t)mpsi_pore_row_numbers(&mpm->grid) * sizeof *in);
 }
 
 mps_status mpsi_pore_send_forces(mps_mpm *mpm, const char *function) {
-  const mpsi_pore_rim *rim = mpm->water->system->rim;
-  const int64_t *item, items = mpsi_halo_items(rim->halo, &item), bytes = force_bytes(&mpm->grid);
-  const int64_t numbers = bytes / (int64_t)sizeof(double);
-  double *out = rim->out_room.item, *in = rim->in_room.item;
-  for (int64_t k = 0; k < items; k++) pack_cell(mpm, item[k], out + k * numbers);
-  mps_status status = mpsi_halo_begin_bytes(rim->halo, function, (int32_t)bytes, out, in);
-  if (status == MPS_OK) status = mpsi_halo_end_bytes(rim->halo, function);
-  for (int64_t k = 0; status == MPS_OK && k < rim->cells; k++)
-    unpack_cell(mpm, k, in + k * numbers);
-  return status;
+  return exchange(mpm, function, false, mpsi_pore_row_numbers(&mpm->grid), pack_forces,
+                  unpack_forces);
+}
+
+static void pack_node(void *data, int64_t node, double *out) {
+  const mpsi_pore_system *s = ((const mps_mpm *)data)->water->system;
+  memcpy(out, s->inertia[node], sizeof s->inertia[node]);
+  memcpy(out + 3, s->velocity[node], sizeof s->velocity[node]);
+}
+
+/* Nodes out of reach have no inertia, and so no velocity: not all cells around them are here. */
+static void unpack_node(void *data, int64_t k, double *in) {
+  const mps_mpm *mpm = data;
+  const mpsi_pore_system *s = mpm->water->system;
+  const int64_t at = at_rim(&mpm->grid, k);
+  for (int c = 0; c < 3; c++) {
+    s->inertia[at][c] = s->rim->reached[k] ? in[c] : 0.0;
+    s->velocity[at][c] = in[3 + c];
+  }
+}
+
+mps_status mpsi_pore_send_nodes(mps_mpm *mpm, const char *function) {
+  return exchange(mpm, function, false, NODE, pack_node, unpack_node);
 }
 
 mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function) {
@@ -341,35 +321,25 @@ mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function) {
   return status == MPS_OK ? mpsi_halo_end(halo, function, column) : status;
 }
 
-/* The parts of a block's message: where they are in the system, and how long. */
-static int64_t list_changes(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g,
-                            double **part, int64_t *numbers) {
-  const int64_t first = mpsi_first_node(grid, g);
-  part[0] = s->change + first, numbers[0] = grid->block_nodes;
-  part[1] = s->squeeze + first, numbers[1] = grid->block_nodes;
-  part[2] = s->velocity[first], numbers[2] = 3 * grid->block_nodes;
-  return 3;
+static void copy_changes(const mps_mpm *mpm, int64_t g, double *message, bool to) {
+  const mpsi_pore_system *s = mpm->water->system;
+  const int64_t first = mpsi_first_node(&mpm->grid, g), nodes = mpm->grid.block_nodes;
+  double *const part[] = {s->change + first, s->squeeze + first, s->velocity[first]};
+  for (int k = 0; k < 3; k++) {
+    const int64_t numbers = k < 2 ? nodes : 3 * nodes;
+    memcpy(to ? message : part[k], to ? part[k] : message, (size_t)numbers * sizeof *message);
+    message += numbers;
+  }
 }
 
-static void copy_changes(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, double *box,
-                         bool back) {
-  double *part[3];
-  int64_t numbers[3];
-  const int64_t parts = list_changes(grid, s, g, part, numbers);
-  for (int64_t k = 0; k < parts; box += numbers[k++])
-    memcpy(back ? part[k] : box, back ? box : part[k], (size_t)numbers[k] * sizeof *box);
+static void pack_changes(void *data, int64_t g, double *out) { copy_changes(data, g, out, true); }
+
+static void unpack_changes(void *data, int64_t k, double *in) {
+  const mps_mpm *mpm = data;
+  copy_changes(mpm, mpm->water->system->rim->shared_block[k], in, false);
 }
 
 mps_status mpsi_pore_send_changes(mps_mpm *mpm, const char *function) {
-  const mpsi_grid *grid = &mpm->grid;
-  mpsi_pore_system *s = mpm->water->system;
-  const int64_t *item, items = mpsi_halo_items(s->rim->whole, &item);
-  const int64_t bytes = change_bytes(grid), numbers = bytes / (int64_t)sizeof(double);
-  double *out = s->rim->out_room.item, *in = s->rim->in_room.item;
-  for (int64_t k = 0; k < items; k++) copy_changes(grid, s, item[k], out + k * numbers, false);
-  mps_status status = mpsi_halo_begin_bytes(s->rim->whole, function, (int32_t)bytes, out, in);
-  if (status == MPS_OK) status = mpsi_halo_end_bytes(s->rim->whole, function);
-  for (int64_t k = 0; status == MPS_OK && k < s->rim->wholes; k++)
-    copy_changes(grid, s, s->rim->whole_block[k], in + k * numbers, true);
-  return status;
+  return exchange(mpm, function, true, CHANGES * mpm->grid.block_nodes, pack_changes,
+                  unpack_changes);
 }

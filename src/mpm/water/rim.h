@@ -4,11 +4,11 @@
  * A rank solves for the cells of the blocks of nodes that it counts (partition.h). One product with
  * the matrix needs pressures three cells beyond them, and velocities of nodes in between: those are
  * computed here too, from the forces that the cells of the rim exert. The ranks that count these
- * cells send their forces, masses of nodes and scales once a step, and the direction of the
- * conjugate gradients in each iteration. Cells of the rim stand behind those of the grid in the
+ * cells send their forces, inertias and velocities of their nodes once a step, and the direction of
+ * the conjugate gradients in each iteration. Cells of the rim stand behind those of the grid in the
  * vectors of the system. The cells of blocks that a rank computes but does not count are in the rim
- * as well; what such blocks need after the solution comes whole. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * as well; what such blocks need after the solution comes whole: they are shared.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WATER_RIM_H
 #define MPSI_MPM_WATER_RIM_H
 
@@ -24,16 +24,16 @@ typedef struct mpsi_pore_rim_block {
 
 struct mpsi_pore_rim {
   mpsi_halo *halo;       /* of cells; NULL: none yet */
-  mpsi_halo *whole;      /* of blocks that this rank computes but does not count */
+  mpsi_halo *shared;     /* of blocks that this rank computes but does not count */
   int64_t searches;      /* of the partition, for which the rim is that of its ghosts */
   int64_t blocks, cells; /* in the rim */
-  int64_t wholes;        /* blocks that come whole */
+  int64_t shared_blocks; /* shared blocks */
   int64_t particles;     /* most of a border block, on all ranks */
   mpsi_pore_rim_block *block;
-  int32_t *cell;        /* [blocks][nodes of a block]: number of the cell in the rim, or -1 */
-  uint8_t *reached;     /* by cells: the node is one of those of a cell that this rank counts */
-  int32_t *whole_block; /* numbers of these blocks in the grid */
-  mpsi_room block_room, cell_room, reached_room, whole_room, out_room, in_room;
+  int32_t *cell;         /* [blocks][nodes of a block]: number of the cell in the rim, or -1 */
+  uint8_t *reached;      /* by cells: the node is one of those of a cell that this rank counts */
+  int32_t *shared_block; /* numbers of these blocks in the grid */
+  mpsi_room block_room, cell_room, reached_room, shared_block_room, out_room, in_room;
 };
 
 /* Finds the rim of the present ghosts, which is the system's own from then on. Collective. */
@@ -43,13 +43,13 @@ int32_t mpsi_pore_rim_block_at(const mpsi_pore_rim *rim, const int32_t *at);
 
 /* Particles of border blocks, to the ranks that have these as ghosts; a failure of the transport
  * stays in the partition. */
-void mpsi_pore_send_grains(mps_mpm *mpm);
-void mpsi_pore_receive_grains(void *solver);
+void mpsi_pore_send_particles(mps_mpm *mpm);
 /* Those of ghost b, `*count` of them, none where they have not come. Not collective. */
-const mpsi_pore_grain *mpsi_pore_grains_of(const mps_mpm *mpm, int64_t b, int64_t *count);
+const mpsi_pore_particle *mpsi_pore_particles_of(const mps_mpm *mpm, int64_t b, int64_t *count);
 
-/* Forces, masses and scales of the cells of the rim. */
+/* Forces of the cells of the rim; inertias and velocities of their nodes. */
 mps_status mpsi_pore_send_forces(mps_mpm *mpm, const char *function);
+mps_status mpsi_pore_send_nodes(mps_mpm *mpm, const char *function);
 /* The direction in the rim. */
 mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function);
 /* Changes of the pressures in blocks that are computed but not counted. */

@@ -42,18 +42,15 @@ void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum) {
 
 void mpsi_pore_free(mps_mpm *mpm) {
   if (!mpm->water) return;
-  mpsi_free(mpm->context, mpm->water->cell_room.item);
-  mpsi_free(mpm->context, mpm->water->edge_room.item);
-  mpsi_free(mpm->context, mpm->water->block_room.item);
-  mpsi_free(mpm->context, mpm->water->linked_room.item);
-  mpsi_free(mpm->context, mpm->water->outflow_room.item);
-  mpsi_free(mpm->context, mpm->water->former_room.item);
-  mpsi_free(mpm->context, mpm->water->expected_room.item);
-  mpsi_free(mpm->context, mpm->water->place_room.item);
+  const mpsi_water *w = mpm->water;
+  const mpsi_room rooms[] = {w->cell_room,   w->column_room, w->edge_room,
+                             w->block_room,  w->linked_room, w->outflow_room,
+                             w->former_room, w->rest_room,   w->place_room};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k].item);
   mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
   if (mpm->water->system) mpsi_pore_free_coarse(mpm->context, &mpm->water->system->coarse);
   mpsi_pore_free_system(mpm->context, &mpm->water->system);
-  mpsi_pore_drop_solver(mpm->context, mpm->water);
+  mpsi_pore_free_outside(mpm->context, mpm->water->outside);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }
@@ -67,9 +64,9 @@ void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
   mpsi_state_agree_integer(state, "scheme", water->def.scheme);
   mpsi_state_i64(state, "steps", &water->steps, 1);
   mpsi_state_f64(state, "elapsed", &water->elapsed, 1);
-  mpsi_state_i64(state, "start", water->start.limb, MPSI_EXACT_LIMBS);
-  mpsi_state_i64(state, "drained", water->drained[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
-  mpsi_state_i64(state, "entered", water->entered.limb, MPSI_EXACT_LIMBS);
-  mpsi_state_i64(state, "rate", water->rate[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
+  mpsi_state_exact(state, "start", &water->start, 1);
+  mpsi_state_exact(state, "drained", water->drained, MPSI_PORE_FACES);
+  mpsi_state_exact(state, "entered", &water->entered, 1);
+  mpsi_state_exact(state, "rate", water->rate, MPSI_PORE_FACES);
   mpsi_state_leave(state);
 }

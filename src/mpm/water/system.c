@@ -1,6 +1,7 @@
 /* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 
+#include "core/base/room_array.h"
 #include "rim.h"
 
 #include <string.h>
@@ -11,10 +12,6 @@ enum { FEWEST_TERMS = 32 * MPSI_SIDE * MPSI_SIDE * MPSI_PORE_SPAN * MPSI_PORE_SP
 typedef struct mpsi_pore_system system_of;
 
 /* ---- room ------------------------------------------------------------------------------------ */
-
-static bool ensure(mps_mpm *mpm, mpsi_room *room, int64_t count, size_t size) {
-  return mpsi_room_ensure(mpm->context, room, count, size);
-}
 
 /* Number of the block at `at` of those that the system has, or -1. */
 static int32_t find_block(const mpsi_grid *grid, const system_of *s, const int32_t *at) {
@@ -45,26 +42,18 @@ static mps_status make_room(mps_mpm *mpm, const char *function) {
   const int64_t blocks = mpm->grid.node_count, all = blocks + (s->rim ? s->rim->blocks : 0);
   const int64_t nodes = blocks * mpm->grid.block_nodes + (s->rim ? s->rim->cells : 0);
   const int places = mpsi_pore_box_places(&mpm->grid);
-  const bool good = ensure(mpm, &s->around_room, all, sizeof *s->around) &&
-                    ensure(mpm, &s->mass_room, nodes, sizeof *s->mass) &&
-                    ensure(mpm, &s->velocity_room, nodes, sizeof *s->velocity) &&
-                    ensure(mpm, &s->held_room, nodes, sizeof *s->held) &&
-                    ensure(mpm, &s->row_room, nodes, sizeof *s->row) &&
-                    ensure(mpm, &s->conductance_room, nodes, sizeof *s->conductance) &&
-                    ensure(mpm, &s->vector_room, VECTORS * nodes, sizeof(double)) &&
-                    ensure(mpm, &s->tile_room, all * places, sizeof *s->tile) &&
-                    ensure(mpm, &s->part_room, blocks, sizeof *s->part);
+  const bool good =
+      MPSI_ENSURE(mpm->context, s, around, all) && MPSI_ENSURE(mpm->context, s, inertia, nodes) &&
+      MPSI_ENSURE(mpm->context, s, turned, nodes) &&
+      MPSI_ENSURE(mpm->context, s, velocity, nodes) && MPSI_ENSURE(mpm->context, s, held, nodes) &&
+      MPSI_ENSURE(mpm->context, s, row, nodes) &&
+      MPSI_ENSURE(mpm->context, s, conductance, nodes) &&
+      mpsi_room_ensure(mpm->context, &s->vector_room, VECTORS * nodes, sizeof(double)) &&
+      MPSI_ENSURE(mpm->context, s, reach, all * places) &&
+      MPSI_ENSURE(mpm->context, s, part, blocks);
   if (!good)
     return mpsi_fail_memory(mpm->context, function, (size_t)(VECTORS * nodes) * sizeof(double));
-  s->around = s->around_room.item;
-  s->mass = s->mass_room.item;
-  s->velocity = s->velocity_room.item;
-  s->held = s->held_room.item;
-  s->row = s->row_room.item;
-  s->conductance = s->conductance_room.item;
-  s->tile = s->tile_room.item;
-  s->part = s->part_room.item;
-  double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change,  &s->residual,
+  double **const vector[VECTORS] = {&s->diagonal,  &s->ahead,   &s->change,  &s->residual,
                                     &s->direction, &s->product, &s->inverse, &s->squeeze,
                                     &s->space,     &s->carried};
   for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
@@ -109,10 +98,11 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   if (!s) return;
   mpsi_pore_free_rim(context, &s->rim);
   const mpsi_pore_contacts *c = &s->contacts;
-  const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
-                            s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
-                            s->tile_room,   s->part_room,  c->contact_room,  c->entry_room,
-                            c->node_room,   c->index_room, c->word_room,     c->known_room};
+  const mpsi_room room[] = {s->around_room, s->inertia_room, s->velocity_room, s->held_room,
+                            s->row_room,    s->force_room,   s->vector_room,   s->conductance_room,
+                            s->reach_room,  s->part_room,    s->turned_room,   c->contact_room,
+                            c->entry_room,  c->node_room,    c->index_room,    c->word_room,
+                            c->known_room,  c->mover_room};
   for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
   mpsi_free(context, s);
 }
@@ -193,18 +183,18 @@ mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_ta
   return status;
 }
 
-static void find_tile(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+static void find_reach(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
-  int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
+  int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
   (void)factor;
   for (int t = 0; t < mpsi_pore_box_places(grid); t++) {
     int offset[3];
     mpsi_unravel(t, MPSI_PORE_BOX, offset);
     for (int c = 0; c < 3; c++) offset[c] -= MPSI_PORE_BEFORE;
-    tile[t] = (int32_t)mpsi_pore_at(grid, s, g, offset);
+    reach[t] = (int32_t)mpsi_pore_at(grid, s, g, offset);
   }
 }
 
-void mpsi_pore_find_tiles(mps_mpm *mpm) {
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_ALL, find_tile, 0.0);
+void mpsi_pore_find_reach(mps_mpm *mpm) {
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_ALL, find_reach, 0.0);
 }

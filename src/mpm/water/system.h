@@ -21,6 +21,8 @@ typedef struct mpsi_pore_contact {
   double yield[3]; /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
   double left[3];  /* N s/kg, what it has taken of a correction, */
   double now[3], past[3]; /* in the last iterates */
+  double at[3];           /* m, where it acts */
+  int32_t body;           /* number of its mover */
   int64_t constraint, first;
   int32_t entries;
   bool sticks; /* all components are held, else the normal one */
@@ -32,7 +34,7 @@ typedef struct mpsi_pore_contact_entry {
 } mpsi_pore_contact_entry;
 
 typedef struct mpsi_pore_contact_node {
-  double mass, v[3];      /* kg; correction, m/s per s, */
+  double mass, v[3];      /* kg, with what damping opposes; correction, m/s per s, */
   double now[3], past[3]; /* in the last iterates */
   int64_t number;         /* in the system, -1: not of this rank */
   int32_t at[3];          /* on several ranks: in the whole grid, in cells */
@@ -41,36 +43,48 @@ typedef struct mpsi_pore_contact_node {
   bool counted;           /* by this rank */
 } mpsi_pore_contact_node;
 
+/* A body, with the correction of its velocities (m/s and rad/s per s). */
+typedef struct mpsi_pore_mover {
+  mpsi_impulse_body by;
+  double now[2][3], past[2][3]; /* of v and spin, in the last iterates */
+} mpsi_pore_mover;
+
 typedef struct mpsi_pore_contacts {
+  mpsi_pore_mover *mover; /* by contacts of the solver */
+  int32_t movers;
   mpsi_pore_contact *contact;
   mpsi_pore_contact_entry *entry;
   mpsi_pore_contact_node *node;
   int32_t *index; /* of the nodes of the grid, or of the replicas: number among `node`, or -1 */
   int64_t count, entries, nodes, indices, slots;
   bool any; /* on some rank */
-  mpsi_room contact_room, entry_room, node_room, index_room, word_room, known_room;
+  mpsi_room contact_room, entry_room, node_room, index_room, word_room, known_room, mover_room;
 } mpsi_pore_contacts;
 
 /* What forces need of a particle. */
-typedef struct mpsi_pore_grain {
+typedef struct mpsi_pore_particle {
   double x[3], V;
   int32_t place;      /* as in mpsi_water */
   bool fitted, light; /* a body or two sides cut its support: by `fit`; see mpsi_cell_block.light */
   mpsi_kept_fit fit;
-} mpsi_pore_grain;
+} mpsi_pore_particle;
 
 /* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
  * of the rim follow (rim.h), and its blocks those of the grid. */
 struct mpsi_pore_system {
   int32_t (*around)[MPSI_PORE_AROUND]; /* by blocks: those around it, itself in the middle, or -1 */
-  int32_t *tile; /* by blocks: numbers of the nodes (and cells) in reach of its own, or -1 */
-  double *mass;  /* kg, by nodes */
-  double (*velocity)[3];    /* by nodes */
-  uint8_t *held;            /* by nodes: bit c, component c is prescribed */
-  int32_t *row;             /* by cells: where its forces are */
-  double *force;            /* of each filled cell [dim][span^dim]: sum V grad phi, m3/m */
-  double (*conductance)[6]; /* m3/(s Pa), by cells: to those beside */
-  double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
+  int32_t *reach; /* by blocks: numbers of the nodes (and cells) in reach of its own, or -1 */
+  double (
+      *inertia)[3]; /* kg, by nodes and components: the mass, with what dashpots and damping oppose;
+                       INFINITY where the component is prescribed; 0 of nodes without mass */
+  double (*velocity)[3];        /* by nodes */
+  uint8_t *held;                /* by nodes: bit c, component c is prescribed */
+  int32_t *row;                 /* by cells: where its forces are, -1: has no unknown */
+  double (*turned)[MPSI_SIDES]; /* m2, by cells: force of mirrors on it, along their axes, per Pa */
+  double *force;                /* of each filled cell [dim][span^dim]: sum V grad phi, m3/m */
+  double (*conductance)[6];     /* m3/(s Pa), by cells: to those beside */
+  double *diagonal;             /* m3/Pa of storage and drained faces */
+  double *ahead;                /* Pa, by cells: pressures above those that P2G has the forces of */
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
   double *space;                                   /* m3, that stores water */
@@ -81,8 +95,8 @@ struct mpsi_pore_system {
   mpsi_pore_contacts contacts;
   mpsi_pore_rim *rim;       /* on several ranks, else NULL */
   mpsi_pore_coarse *coarse; /* NULL: before the first step */
-  mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
-  mpsi_room conductance_room, vector_room, tile_room, part_room;
+  mpsi_room around_room, inertia_room, velocity_room, held_room, row_room, force_room;
+  mpsi_room turned_room, conductance_room, vector_room, reach_room, part_room;
 };
 
 static inline int mpsi_pore_box_places(const mpsi_grid *grid) {
@@ -94,7 +108,7 @@ static inline int mpsi_pore_span_nodes(const mpsi_grid *grid) {
   return grid->dim == 3 ? MPSI_PORE_MOST_SPAN : MPSI_PORE_SPAN * MPSI_PORE_SPAN;
 }
 
-/* How far places q of a span lie from the first in a tile. */
+/* How far places q of a span lie from the first in what is in reach of a block. */
 static inline void mpsi_pore_list_shifts(const mpsi_grid *grid, int *shift) {
   for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
     int i[3];
@@ -103,7 +117,7 @@ static inline void mpsi_pore_list_shifts(const mpsi_grid *grid, int *shift) {
   }
 }
 
-/* The place in a tile of what is `before` places before place k of the block along each axis. */
+/* The place in `reach` of what is `before` places before place k of the block along each axis. */
 static inline int mpsi_pore_place(const mpsi_grid *grid, int k, int before) {
   int at[3];
   mpsi_unravel(k, MPSI_SIDE, at);
@@ -120,19 +134,18 @@ static inline double *mpsi_pore_row(const mpsi_grid *grid, const mpsi_pore_syste
   return s->force + s->row[cell] * mpsi_pore_row_numbers(grid);
 }
 
-/* Whether the cell has an unknown of its own. */
-static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int k,
-                                        const mpsi_pore_cell *cell) {
-  return mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin;
+/* Whether cell k of a block has particles, and so an unknown. */
+static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int k) {
+  return mpsi_pore_marked(water->block[g].filled, k);
 }
 
 /* Particle k of a block of cells, after the scatter. */
-static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                                 int64_t k) {
+static inline mpsi_pore_particle mpsi_pore_particle_of(const mps_mpm *mpm,
+                                                       const mpsi_cell_block *cells, int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  mpsi_pore_grain out = {.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
-                         .V = p->V[k],
-                         .place = mpm->water->place[k]};
+  mpsi_pore_particle out = {.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
+                            .V = p->V[k],
+                            .place = mpm->water->place[k]};
   for (int q = 0; q < 1 << mpm->grid.dim; q++)
     out.light = out.light || mpm->grid.nodes[cells->to[q]].light;
   const int64_t slot = cells->first_fit < 0 ? -1 : cells->first_fit + (k - cells->begin);
@@ -157,7 +170,7 @@ int64_t mpsi_pore_at(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g
 int64_t mpsi_pore_node_at(const mpsi_grid *grid, const mpsi_pore_system *s, const int32_t *at,
                           bool *counted);
 /* What is in reach of each block, once a step: iterations look nothing up. */
-void mpsi_pore_find_tiles(mps_mpm *mpm);
+void mpsi_pore_find_reach(mps_mpm *mpm);
 
 /* Blocks that a loop works on. */
 typedef enum mpsi_pore_blocks {

@@ -1,13 +1,13 @@
-/* water.h - water in the pores (mps/pore_water.h): pressures of cells, the flow between them, and
- * what the particles carry. A cell is the box above its node of the grid, and has the node's
- * number. SPDX-License-Identifier: BSD-3-Clause */
+/* water.h - water in the pores (mps/experimental/pore_water.h): pressures of cells, the flow
+ * between them, and what the particles carry. A cell is the box above its node of the grid, and has
+ * the node's number. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WATER_H
 #define MPSI_MPM_WATER_H
 
 #include "core/base/exact.h"
 #include "mpm/base/mpm_solver.h"
 
-#include <mps/pore_water.h>
+#include <mps/experimental/pore_water.h>
 
 typedef struct mpsi_pore_layers mpsi_pore_layers;   /* layers.h */
 typedef struct mpsi_pore_system mpsi_pore_system;   /* system.h */
@@ -53,17 +53,30 @@ typedef struct mpsi_pore_edge {
   int8_t face[6];           /* number of the definition, -1: none */
 } mpsi_pore_edge;
 
+/* Of a cell at a side while it has what the column of a free-field side has there. */
+typedef struct mpsi_pore_column_cell {
+  double volume, p, g;  /* sums over the column's particles */
+  mpsi_pore_cell *cell; /* NULL: none */
+  mpsi_pore_cell was;
+  int64_t block;
+  int place;
+} mpsi_pore_column_cell;
+
 enum {
   MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1, /* the last: the free surface without one */
   MPSI_PORE_RATES
 };
 
+#define MPSI_PORE_PLACES (MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE)
+
 struct mpsi_water {
   mps_pore_water_def def;
-  bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
-  bool flows, warned; /* warned: of bodies that move through undrained ground (update.c) */
-  double viscosity;   /* Pa s, of the change of volume, in the forces (README.md) */
-  double share;       /* of the slopes between cells, which particles take in this exchange */
+  bool expecting; /* sums of particles, and what they take of their cells, are before the motion of
+                     a step with implicit pressures (flow.c) */
+  bool noted;     /* `rest` is what the motion has made besides (cells.c) */
+  bool flows;
+  double viscosity; /* Pa s, of the change of volume, in the forces (README.md) */
+  double share;     /* of the slopes between cells, which particles take in this exchange */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
@@ -74,21 +87,26 @@ struct mpsi_water {
   mpsi_pore_edge *edge;   /* the same: few are in use */
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
-  double *former;   /* m3, volumes at the beginning of the step; where pressures are implicit */
-  double *expected; /* m3, volumes after it as the pressures have them; the same */
-  uint16_t *place;  /* of each particle, in the tile of its block: the lowest node of its stencil in
-                       the step; then, for implicit.c, its cell */
-  int64_t steps;    /* since the last exchange between cells */
-  double elapsed;   /* s, the same; in an exchange the time that it is for */
-  bool due;         /* this step has one */
-  double *seepage[3];      /* of the set, or NULL */
-  int64_t linked;          /* blocks of nodes for which `beside` was found, */
-  int32_t (*linked_at)[3]; /* and where they were */
-  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, expected_room, place_room,
-      linked_room;
+  double *former; /* m3, volumes at the beginning of the step; where pressures are implicit */
+  double *rest;   /* of particles, what cells have sums of, where pressures are implicit: before the
+                     motion V (u - slow), Pa m3; after it the change of volume, m3, that the pressures
+                     did not expect (cells.c), between them the volume that they did */
+  uint16_t *place; /* of each particle, in the tile of its block: the lowest node of its stencil in
+                      the step, and MPSI_PORE_PLACES times the borders of its cell that it lies on
+                      (digits of base 3 by axis: 0 none, 1 above, 2 below); then, for implicit.c,
+                      its cell */
+  int64_t steps;   /* since the last exchange between cells */
+  double elapsed;  /* s, the same; in an exchange the time that it is for */
+  bool due;        /* this step has one */
+  double *seepage[3];            /* of the set, or NULL */
+  int64_t linked;                /* blocks of nodes for which `beside` was found, */
+  int32_t (*linked_at)[3];       /* and where they were */
+  mpsi_pore_column_cell *column; /* by nodes of a column */
+  mpsi_room column_room, cell_room, edge_room, block_room, outflow_room, former_room, rest_room,
+      place_room, linked_room;
   mpsi_pore_layers *layers;   /* on several ranks, else NULL */
   mpsi_pore_system *system;   /* where pressures are implicit, else NULL */
-  mpsi_pore_outside *outside; /* a solver of the caller for these, or NULL */
+  mpsi_pore_outside *outside; /* memory of their rows for a linear solver of the caller, or NULL */
 };
 
 /* Number of the rank's own block of nodes at `at`, or -1: the list is in order. */
@@ -171,22 +189,46 @@ static inline bool mpsi_pore_responds(const mpsi_water *water) {
 void mpsi_pore_follow(const mpsi_columns *p, const mpsi_water *water, int64_t k, double former);
 /* update.c: at the beginning of a step of run.dt: whether cells exchange after it. */
 void mpsi_pore_plan(mps_mpm *mpm);
-/* update.c: before the G2P of block of cells b, where pressures are implicit: keeps the volumes of
+/* cells.c: before the G2P of block of cells b, where pressures are implicit: keeps the volumes of
  * its particles, which are in the cache then. */
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b);
+/* cells.c: to `rest` before the motion, and after that the pressures `slow` go on. */
+void mpsi_pore_find_ahead(mps_mpm *mpm);
+void mpsi_pore_follow_means(mps_mpm *mpm);
+/* cells.c: after the laws, before the filter of their mean stresses, which changes volumes without
+ * a motion: what the motion has taken of the volumes besides what the implicit pressures expected.
+ */
+void mpsi_pore_note_rest(mps_mpm *mpm);
+/* cells.c: the pressures that P2G has are the present ones from here on: at the beginning, and
+ * where the caller has written pressures. */
+void mpsi_pore_begin_means(const mpsi_columns *p);
 /* cells.c: sums of the particles and their means: which cells are filled, and with what. */
 void mpsi_pore_find_cells(mps_mpm *mpm);
 /* faces.c: what lies beyond the faces of the cells, their filled parts, and without flow their
  * pressures at the end of the step. */
 void mpsi_pore_find_faces(mps_mpm *mpm);
+/* flow.c: after the step, and after mpsi_pore_flow where cells exchange: the columns of free-field
+ * sides do so too. */
+void mpsi_pore_update_columns(mps_mpm *mpm);
 /* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
 void mpsi_pore_flow(mps_mpm *mpm);
 /* Whether pressures are found before the particles move. */
 static inline bool mpsi_pore_predicts(const mps_mpm *mpm) {
   return mpm->water && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
 }
-/* flow.c: before the particles move. */
+/* flow.c: after the scatter, before contacts: what implicit pressures are above those that P2G had,
+ * to the velocities of the nodes. Changes no particle. Collective. */
+mps_status mpsi_pore_press(mps_mpm *mpm, const char *function);
+/* contacts.c: before the sweeps of contacts with implicit pressures: the velocities that contacts
+ * aim at are those before viscous damping, which acts on the nodes after them. Else the ground
+ * below a body that pushes it would be slower than the body, and the matrix would have that in the
+ * pressures. */
+void mpsi_pore_aim_contacts(mps_mpm *mpm);
+/* flow.c: after contacts, before the particles move: implicit pressures, and the velocities that
+ * they correct. Collective. */
 mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function);
+/* implicit.c: after the motion: the forces of mirrors on what these pressures push beyond them. */
+void mpsi_pore_add_reactions(mps_mpm *mpm);
 
 /* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
  * blocks are others than in the last step; `status`: of the step so far on this rank. */
@@ -196,6 +238,11 @@ void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme);
 /* update.c: after a step whose values are numbers. On several ranks a failure of the transport
  * stays in the partition. */
 void mpsi_pore_update(mps_mpm *mpm);
+/* bounds.c: after the laws: marks particles with values that no step can make as bad in their
+ * blocks of cells. */
+void mpsi_pore_check_step(mps_mpm *mpm);
+/* bounds.c: what of particle k is not possible, or false: nothing. */
+bool mpsi_pore_describe(const mps_mpm *mpm, int64_t k, char *out, size_t size);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
 mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
                            const char *function);

@@ -6,6 +6,7 @@
 
 #include "mpm/base/loops.h"
 
+#include <float.h>
 #include <stddef.h>
 
 enum { SIDE = MPSI_SIDE, PLANE = SIDE * SIDE, WIDE = SIDE + 1 };
@@ -67,11 +68,12 @@ typedef struct faces {
   double x[SIDE][WIDE], y[WIDE][SIDE], below[PLANE], above[PLANE];
 } faces;
 
-/* Through one face, of the pressures and permeabilities before and behind it. */
+/* Through one face, of the pressures and permeabilities before and behind it. DBL_MIN: no cell,
+ * whose k is 0, divides by zero, which a host may trap; other cells' bits are the same. */
 MPSI_INLINE double through(double p0, double p1, double k0, double k1, double inverse, double still,
                            bool flows) {
   const double drive = (p1 - p0) * inverse - still;
-  return flows ? 2.0 * k0 * k1 / (k0 + k1) * drive : drive;
+  return flows ? 2.0 * k0 * k1 / (k0 + k1 + DBL_MIN) * drive : drive;
 }
 
 MPSI_INLINE void find_faces_of(const plane *p, const plane *k, double inverse, const double *still,
@@ -173,7 +175,7 @@ void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, cons
 /* Along an axis, from the drives through a cell's faces times k. */
 MPSI_INLINE double slope_of(double before, double behind, double k, double still, bool flows) {
   const double mean = 0.5 * (before + behind);
-  return still + (flows ? mean / k : mean);
+  return still + (flows ? mean / (k + DBL_MIN) : mean);
 }
 
 MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_t *whole, int dim,

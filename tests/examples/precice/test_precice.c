@@ -6,10 +6,6 @@
 #include "precice/participant.h"
 #include "test_common.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const flap_def usual = {.width = 0.1,
                                .height = 1.0,
                                .spacing = 0.025,
@@ -62,8 +58,7 @@ static path coupled(const flap_def *def, const char *force, const char *stress,
 
 /* Windows of 0.02 s in steps of 8, 8 and 4 ms, each repeated three times with forces of which the
  * last are right, have the bits of the same windows without repetition. */
-static void repeated_windows_leave_no_trace(void **state) {
-  (void)state;
+TEST(repeated_windows_leave_no_trace) {
   participant_result once, thrice;
   mock = (mock_def){.window = 0.02, .windows = 20, .repetitions = 1, .rate = 400.0};
   const path plain = coupled(&usual, "Force", NULL, &once);
@@ -86,8 +81,7 @@ static void repeated_windows_leave_no_trace(void **state) {
 
 /* Force f on each of the n facets of the left side, or the stress f/area. The half facets at foot
  * and top have half the area. */
-static void forces_are_stresses_times_areas(void **state) {
-  (void)state;
+TEST(forces_are_stresses_times_areas) {
   participant_result result;
   mock = (mock_def){.window = 0.02, .windows = 10, .repetitions = 2, .rate = 4000.0};
   const path by_stress = coupled(&usual, NULL, "Stress", &result);
@@ -114,12 +108,12 @@ static double static_error(double bending, double spacing) {
   assert_true(flap_make(&a, &def, &body));
   mps_elastic_load_def load = mps_elastic_load_defaults();
   int64_t *facets = malloc((size_t)body.facet_count * sizeof *facets), count = 0;
-  mps_assert_ok(a.context, mps_elastic_select_facets(body.solver, 0, -1, NULL, NULL,
-                                                     body.facet_count, &count, facets));
+  OK(mps_elastic_select_facets(body.solver, MPS_SIDE_X_LOWER, NULL, NULL, body.facet_count, &count,
+                               facets));
   load.kind = MPS_ELASTIC_LOAD_TRACTION;
   load.ids = facets, load.id_count = count, load.force[0] = q;
-  mps_assert_ok(a.context, mps_elastic_add_load(body.solver, &load, NULL));
-  mps_assert_ok(a.context, mps_elastic_solve(body.solver));
+  OK(mps_elastic_add_load(body.solver, &load, NULL));
+  OK(mps_elastic_solve(body.solver));
   assert_true(flap_tip(&a, &body, u));
   const double w = def.width, length = def.height, shear = def.young / (2.0 * (1.0 + def.poisson));
   const double stiff = def.young / (1.0 - def.poisson * def.poisson) * w * w * w / 12.0;
@@ -131,20 +125,10 @@ static double static_error(double bending, double spacing) {
   return u[0] / theory - 1.0;
 }
 
-static void the_flap_bends_as_a_beam(void **state) {
-  (void)state;
+TEST(the_flap_bends_as_a_beam) {
   for (double n = 4.0; n < 20.0; n *= 2.0)
     print_message("%g cells: without bending stiffness %+.2f %%, with it %+.2f %%\n", n,
                   100.0 * static_error(0.0, 0.1 / n), 100.0 * static_error(1.0, 0.1 / n));
   assert_true(fabs(static_error(1.0, 0.0125)) < 0.02);
   assert_true(static_error(0.0, 0.025) > static_error(1.0, 0.025));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(repeated_windows_leave_no_trace),
-      cmocka_unit_test(forces_are_stresses_times_areas),
-      cmocka_unit_test(the_flap_bends_as_a_beam),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

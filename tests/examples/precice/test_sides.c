@@ -10,9 +10,6 @@
 
 #include "fluid_tank.h"
 
-#include <math.h>
-#include <string.h>
-
 /* ---- a wall of water ------------------------------------------------------------------------- */
 
 enum { WINDOWS = 60, VERTICES = 25 };
@@ -65,8 +62,8 @@ static piston run_tank(int by, int bends, int repetitions, double *last) {
   participant_result result;
   assert_true(app_start(&a, "test", 1));
   piston p = {.a = &a};
-  mps_assert_ok(a.context,
-                mps_signal_create_sine(a.context, 2.5, amplitude, 1.5707963267948966, &p.signal));
+  OK(mps_signal_create_sine(a.context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2.5, amplitude,
+                            1.5707963267948966, &p.signal));
   tank t = tank_make(a.context, 0.6, 0.3, spacing, by ? NULL : p.signal, 0.5 * window);
   for (int k = 0; k < VERTICES; k++) x[3 * k + 1] = (k + 0.5) * spacing;
   wall_def def = {.config = PRECICE_CONFIG,
@@ -85,10 +82,9 @@ static piston run_tank(int by, int bends, int repetitions, double *last) {
                   .each = note_reaction,
                   .user = &p};
   if (bends) {
-    mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
-    wall.kind = MPS_BOUNDARY_ROLLER, wall.normal[0] = 1.0;
-    wall.nodes = x, wall.node_count = VERTICES;
-    mps_assert_ok(a.context, mps_fluid_set_boundary(t.fluid, TANK_LEFT, &wall));
+    DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .normal[0] = 1.0, .nodes = x,
+        .node_count = VERTICES);
+    OK(mps_fluid_set_boundary(t.fluid, TANK_LEFT, &wall));
   }
   mock = (mock_def){.window = window,
                     .windows = WINDOWS,
@@ -104,11 +100,11 @@ static piston run_tank(int by, int bends, int repetitions, double *last) {
     assert_int_equal(result.repeats, WINDOWS * (repetitions - 1));
   } else
     for (int k = 0; k < WINDOWS; k++) {
-      mps_assert_ok(a.context, mps_fluid_step(t.fluid, 2));
+      OK(mps_fluid_step(t.fluid, 2));
       assert_true(note_reaction(&p, t.fluid));
     }
   mps_view view;
-  mps_assert_ok(a.context, mps_particles_view(t.water, "position", &view));
+  OK(mps_particles_view(t.water, "position", &view));
   for (int k = 0; k < 450; k++)
     for (int c = 0; c < 2; c++) last[2 * k + c] = *mps_view_f64(&view, k, c);
   mps_fluid_destroy(&t.fluid);
@@ -128,8 +124,7 @@ static void compare(const piston *p, const double *x, const piston *q, const dou
   for (int k = 0; k < 900; k++) *position = fmax(*position, fabs(x[k] - y[k]) / spacing);
 }
 
-static void a_coupled_wall_is_a_piston(void **state) {
-  (void)state;
+TEST(a_coupled_wall_is_a_piston) {
   static double x[3][900], y[900];
   double force, position;
   const piston driven = run_tank(0, 0, 1, x[0]);
@@ -264,7 +259,7 @@ static faller run_fall(int repetitions) {
     assert_int_equal(result.repeats, falls * (repetitions - 1));
   } else
     for (int k = 0; k < falls; k++) {
-      mps_assert_ok(a.context, mps_mpm_step(b.soil, 1));
+      OK(mps_mpm_step(b.soil, 1));
       assert_true(note_body(&f, b.soil));
     }
   block_free(&b);
@@ -274,8 +269,7 @@ static faller run_fall(int repetitions) {
 
 /* The force of a window moves the coupled body in the next one: the error is of first order in it.
  */
-static void a_coupled_body_falls_as_a_free_one(void **state) {
-  (void)state;
+TEST(a_coupled_body_falls_as_a_free_one) {
   static faller alone, coupled;
   double far[2] = {0.0, 0.0}, turned[2] = {0.0, 0.0};
   for (int half = 0; half < 2; half++) {
@@ -306,8 +300,7 @@ static void stretch(void *user, const char *data, double t, int right, int size,
   for (int k = 0; k < 2 * size; k++) values[k] = 0.2 * (x[k] - start[k % 2]);
 }
 
-static void deformed_bodies_are_refused(void **state) {
-  (void)state;
+TEST(deformed_bodies_are_refused) {
   app a;
   mps_particles *set = NULL;
   mps_material *law = NULL;
@@ -321,14 +314,14 @@ static void deformed_bodies_are_refused(void **state) {
   faller unused = {.a = &a};
   assert_true(app_start(&a, "test", 1));
   particles.spacing = 0.025, def.cell = 0.05;
-  mps_assert_ok(a.context, mps_particles_create(a.context, &particles, &set));
-  mps_assert_ok(a.context, mps_particles_append(set, 1, at));
-  mps_assert_ok(a.context, mps_particles_set(set, "density", 0, 1600.0));
-  mps_assert_ok(a.context, mps_material_create_linear_elastic(a.context, 1e6, 0.3, &law));
-  mps_assert_ok(a.context, mps_mpm_create(a.context, set, law, &def, &mpm));
+  OK(mps_particles_create(a.context, &particles, &set));
+  OK(mps_particles_append(set, 1, at));
+  OK(mps_particles_set(set, "density", 0, 1600.0));
+  OK(mps_material_create_linear_elastic(a.context, 1e6, 0.3, &law));
+  OK(mps_mpm_create(a.context, set, law, &def, &mpm));
   for (int c = 0; c < 2; c++) body.position[c] = start[c];
-  mps_assert_ok(a.context, mps_body_create_box(a.context, &body, 0.3, 0.2, &box));
-  mps_assert_ok(a.context, mps_mpm_add_contact(mpm, box, NULL, NULL));
+  OK(mps_body_create_box(a.context, &body, 0.3, 0.2, &box));
+  OK(mps_mpm_add_contact(mpm, box, NULL, NULL));
   rigid_def coupling = {.config = PRECICE_CONFIG,
                         .name = "Solid",
                         .mesh = "Solid-Mesh",
@@ -354,13 +347,4 @@ static void deformed_bodies_are_refused(void **state) {
   mps_material_destroy(&law);
   mps_particles_destroy(&set);
   mps_context_destroy(&a.context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_coupled_wall_is_a_piston),
-      cmocka_unit_test(a_coupled_body_falls_as_a_free_one),
-      cmocka_unit_test(deformed_bodies_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

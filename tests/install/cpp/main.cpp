@@ -83,7 +83,7 @@ static void writing(const mps::context &context) {
   EXPECT(mps::view(sand, "velocity")(99, 0) == double(ids(99)));
   const int64_t gone[1] = {ids(3)};
   EXPECT(!ids.stale());
-  mps::call(sand, mps_particles_remove, 1, gone);
+  mps::call(sand, mps_particles_remove, gone, 1);
   EXPECT(ids.stale());
   try {
     mps::view(sand, "id");
@@ -139,6 +139,12 @@ static void errors(const mps::context &context) {
   EXPECT(!moved);
   moved = falling(context, sand); // the set is free again
   EXPECT(mps_mpm_steps(moved) == 0);
+  try { // an empty handle is named
+    mps::call(mps::mpm(), mps_mpm_step, 1);
+    EXPECT(!"a step of nothing");
+  } catch (const mps::error &e) {
+    EXPECT(std::strcmp(e.what(), "mps_solver_step: solver is NULL") == 0);
+  }
   mps_context_def def = mps_context_defaults();
   def.threads = -1;
   try {
@@ -183,7 +189,8 @@ static void callbacks(const mps::context &context) {
     out[0] = out[1] = out[2] = 0.0;
   });
   const mps::signal signal =
-      mps::create(context, mps_signal_create_user, motion.function(), motion.user());
+      mps::create(context, mps_signal_create_user, MPS_SIGNAL_QUANTITY_DISPLACEMENT,
+                  motion.function(), motion.user(), nullptr);
   try {
     mps_signal *list[1] = {signal.get()};
     EXPECT(mps_signal_displacement(list[0], 0.25) == 0.0);
@@ -195,19 +202,19 @@ static void callbacks(const mps::context &context) {
   }
 
   const mps::callback<mps_context_cancel_fn> cancel(context, []() -> int32_t { throw 7; });
-  mps_context_set_cancel(context, cancel.function(), cancel.user());
+  mps_context_set_cancel(context, cancel.function(), cancel.user(), nullptr);
   try {
     mps::call(solver, mps_mpm_step, 10);
     EXPECT(!"the exception was lost");
   } catch (int number) {
     EXPECT(number == 7);
   }
-  mps_context_set_cancel(context, nullptr, nullptr);
+  mps_context_set_cancel(context, nullptr, nullptr, nullptr);
   mps::call(solver, mps_mpm_step, 1);
 }
 
-// A law that the definition alone keeps: neither its lambda nor the handle of the material is there
-// when the solver runs. The context ends them.
+// A law that the solver alone keeps: neither its lambda nor the handle of the material is there
+// when the solver runs, and the lambda ends with it.
 struct witness {
   explicit witness(int *n) : ended(n) {}
   witness(const witness &) = delete;
@@ -218,13 +225,26 @@ struct witness {
 static mps::mpm with_bound_law(const mps::context &context, const mps::particles &sand, int *ended,
                                double pressure) {
   const auto shared = std::make_shared<witness>(ended);
-  mps_material_user_def law = mps_material_user_defaults();
-  mps::bind(context, law.update, law.user, [shared, pressure](const mps_material_block *block) {
+  mps::bound law(context, mps_material_user_defaults());
+  law.bind(&mps_material_user_def::update, [shared, pressure](const mps_material_block *block) {
     for (int64_t i = 0; i < block->count; i++)
       for (int c = 0; c < 3; c++) block->stress[c][i] = -pressure;
   });
+  try { // what fails leaves the function to the definition
+    law.wave_modulus = -1.0;
+    (void)mps::create(context, mps_material_create_user, law);
+    EXPECT(!"a negative modulus");
+  } catch (const mps::error &e) {
+    EXPECT(e.status() == MPS_ERROR_ARGUMENT && *ended == 0);
+  }
   law.wave_modulus = 1e6;
   const mps::material material = mps::create(context, mps_material_create_user, law);
+  try { // and what succeeds takes it
+    (void)mps::create(context, mps_material_create_user, law);
+    EXPECT(!"one function for two laws");
+  } catch (const mps::error &e) {
+    EXPECT(e.status() == MPS_ERROR_STATE);
+  }
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.2;
   def.dt = 1e-4;
@@ -236,18 +256,27 @@ static void kept_callbacks() {
   {
     const mps::context context = mps::create_context();
     const mps::particles sand = ground(context);
-    const mps::mpm solver = with_bound_law(context, sand, &ended, 125.0);
+    mps::mpm solver = with_bound_law(context, sand, &ended, 125.0);
     mps::call(solver, mps_mpm_step, 2);
     for (double s : mps::view(sand, "stress").column(0)) EXPECT(s == -125.0);
-    const auto &ramp = mps::keep<mps_signal_fn>(context, [](double t, double *out) {
-      out[0] = 3.0 * t * t; // displacement, velocity, acceleration
-      out[1] = 6.0 * t;
-      out[2] = 6.0;
-    });
-    const mps::signal signal =
-        mps::create(context, mps_signal_create_user, ramp.function(), ramp.user());
+    mps::signal signal =
+        mps::create_signal(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, [](double t, double *out) {
+          out[0] = 3.0 * t * t; // displacement, velocity, acceleration
+          out[1] = 6.0 * t;
+          out[2] = 6.0;
+        });
     EXPECT(std::fabs(mps_signal_displacement(signal, 0.5) - 0.75) < 1e-15);
     EXPECT(ended == 0);
+    solver.reset(); // the last that has the law
+    EXPECT(ended == 1);
+    int signals = 0, hooks = 0;
+    (void)mps::create_signal(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT,
+                             [w = std::make_shared<witness>(&signals)](double, double *) {});
+    EXPECT(signals == 1);
+    mps::set_hook(context, mps_context_set_log,
+                  [w = std::make_shared<witness>(&hooks)](int32_t, const char *) {});
+    mps::set_hook(context, mps_context_set_log, [](int32_t, const char *) {});
+    EXPECT(hooks == 1);
   }
   EXPECT(ended == 1);
 }
@@ -256,17 +285,13 @@ static void kept_callbacks() {
 static void progress() {
   const mps::context context = mps::create_context();
   int calls = 0;
-  const auto &hook = mps::keep<mps_context_progress_fn>(context, [&](const mps_context_progress *) {
+  mps::set_hook(context, mps_context_set_progress, [&](const mps_context_progress *) {
     if (++calls == 3) throw std::runtime_error("progress");
   });
-  mps_context_set_progress(context, hook.function(), hook.user());
   const mps::particles sand = ground(context);
   const mps::mpm solver = falling(context, sand);
   for (int with = 0; with < 2; with++) {
-    if (with) {
-      const auto &cancel = mps::keep<mps_context_cancel_fn>(context, []() -> int32_t { return 0; });
-      mps_context_set_cancel(context, cancel.function(), cancel.user());
-    }
+    if (with) mps::set_hook(context, mps_context_set_cancel, []() -> int32_t { return 0; });
     calls = 0;
     const double t = mps_mpm_time(solver);
     try {
@@ -289,10 +314,10 @@ static void forgotten() {
     same = context.get() == address;
     address = context.get();
     (void)ground(context); // throws what is left of the former
-    const auto &signal = mps::keep<mps_signal_fn>(
-        context, [](double, double *) { throw std::runtime_error("of a former context"); });
     const mps::signal s =
-        mps::create(context, mps_signal_create_user, signal.function(), signal.user());
+        mps::create_signal(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, [](double, double *) {
+          throw std::runtime_error("of a former context");
+        });
     (void)mps_signal_displacement(s, 1.0);
   }
   if (!same) std::printf("no context had the address of another\n");

@@ -17,7 +17,7 @@ int main(void) {
     return 1;
   }
   mps_status status = mps_kernel_create(context, MPS_KERNEL_MPS, 1.5, &kernel);
-  if (status == MPS_OK) status = mps_kernel_density(context, kernel, 2, 1.0, &n0);
+  if (status == MPS_OK) n0 = 4.0 * (mps_kernel_weight(kernel, 1.0) + mps_kernel_weight(kernel, sqrt(2.0)));
   if (status != MPS_OK) fprintf(stderr, "%s\n", mps_context_error(context)->message);
   mps_kernel_destroy(&kernel);
   mps_context_destroy(&context);

@@ -1,6 +1,7 @@
 /* coarse.c - see coarse.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "coarse.h"
 
+#include "core/base/room_array.h"
 #include "outside.h"
 #include "mpm/water/rim.h"
 
@@ -99,21 +100,12 @@ static mps_status make_room(mps_mpm *mpm, const char *function, int64_t blocks) 
   mps_context *context = mpm->context;
   const int64_t tiles = blocks * c->tiles;
   const bool good =
-      mpsi_room_ensure(context, &c->at_room, blocks, sizeof *c->at) &&
-      mpsi_room_ensure(context, &c->around_room, blocks, sizeof *c->around) &&
-      mpsi_room_ensure(context, &c->number_room, mpm->grid.node_count, sizeof *c->number) &&
-      mpsi_room_ensure(context, &c->row_room, tiles * c->beside, sizeof *c->row) &&
-      mpsi_room_ensure(context, &c->sum_room, 2 * tiles, sizeof *c->sum) &&
-      mpsi_room_ensure(context, &c->unknown_room, tiles, sizeof *c->unknown) &&
-      mpsi_room_ensure(context, &c->value_room, 2 * tiles, sizeof *c->value) &&
+      MPSI_ENSURE(context, c, at, blocks) && MPSI_ENSURE(context, c, around, blocks) &&
+      MPSI_ENSURE(context, c, number, mpm->grid.node_count) &&
+      MPSI_ENSURE(context, c, row, tiles * c->beside) && MPSI_ENSURE(context, c, sum, 2 * tiles) &&
+      MPSI_ENSURE(context, c, unknown, tiles) && MPSI_ENSURE(context, c, value, 2 * tiles) &&
       mpsi_room_ensure(context, &c->order_room, tiles, sizeof(place_of_tile));
   if (!good) return mpsi_fail_memory(context, function, (size_t)(tiles * c->beside) * 8);
-  c->at = c->at_room.item;
-  c->around = c->around_room.item;
-  c->number = c->number_room.item;
-  c->row = c->row_room.item;
-  c->sum = c->sum_room.item;
-  c->unknown = c->unknown_room.item;
   c->right = c->value_room.item;
   c->value = c->right + tiles;
   return MPS_OK;
@@ -189,7 +181,7 @@ static int corner_of(const int *behind, int q) {
 static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = mpsi_pore_span_nodes(grid), dim = grid->dim, corners = 1 << dim;
-  const int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
+  const int32_t *tile = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(grid, shift);
@@ -198,18 +190,19 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
     if (node < 0) continue;
     double *v = s->coarse->velocity + node * corners * dim;
     memset(v, 0, (size_t)(corners * dim) * sizeof *v);
-    if (!(s->mass[node] > 0.0)) continue;
+    if (!(s->inertia[node][0] > 0.0)) continue;
     int at[3], behind[3];
+    double ease[3]; /* 1/kg */
     mpsi_unravel(k, MPSI_SIDE, at);
+    for (int a = 0; a < dim; a++) ease[a] = 1.0 / s->inertia[node][a];
     for (int a = 0; a < 3; a++) behind[a] = a < dim ? count_behind(at[a]) : 0;
     const int last = mpsi_pore_place(grid, k, MPSI_PORE_SPAN - 2) + shift[nodes - 1];
     for (int q = 0; q < nodes; q++) {
       const int64_t cell = tile[last - shift[q]];
-      if (cell < 0 || !(s->scale[cell] > 0.0)) continue;
-      const double *force = mpsi_pore_row(grid, s, cell), d = s->scale[cell] / s->mass[node];
+      if (cell < 0 || s->row[cell] < 0) continue;
+      const double *force = mpsi_pore_row(grid, s, cell);
       double *to = v + corner_of(behind, q) * dim;
-      for (int c = 0; c < dim; c++)
-        if (!(s->held[node] >> c & 1)) to[c] += force[c * nodes + q] * d;
+      for (int c = 0; c < dim; c++) to[c] += force[c * nodes + q] * ease[c];
     }
   }
 }
@@ -221,13 +214,13 @@ static void add_squeeze(const mps_mpm *mpm, const system_of *s, int64_t g, int k
   const int nodes = mpsi_pore_span_nodes(grid), dim = grid->dim, corners = 1 << dim;
   const int64_t cell = mpsi_first_node(grid, g) + k;
   const double *force = mpsi_pore_row(grid, s, cell), dt = mpm->run.dt;
-  const double factor = dt * dt * s->scale[cell] / grid->measure;
-  const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
+  const double factor = dt * dt / grid->measure;
+  const int32_t *near = s->reach + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
   int at[3];
   mpsi_unravel(k, MPSI_SIDE, at);
   for (int q = 0; q < nodes; q++) {
     const int64_t node = near[shift[q]];
-    if (node < 0 || !(s->mass[node] > 0.0)) continue;
+    if (node < 0 || !(s->inertia[node][0] > 0.0)) continue;
     int i[3], first = 0, behind = 0, stride = 1; /* of the first tile in reach */
     mpsi_unravel(q, MPSI_PORE_SPAN, i);
     for (int a = 0; a < dim; a++, stride *= 3) {
@@ -263,13 +256,12 @@ static void add_flow(const mps_mpm *mpm, const system_of *s, int64_t g, int k, d
 }
 
 static void find_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
-  const mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   const int64_t b = s->coarse->number[g];
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_is_unknown(mpm->water, g, k, cell)) continue;
+    if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
     add_flow(mpm, s, g, k, row_of(s->coarse, b, tile_of(k)));
     add_squeeze(mpm, s, g, k, shift, row_of(s->coarse, b, tile_of(k)));
   }
@@ -297,11 +289,10 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
                         (mpm->water->system->rim ? mpm->water->system->rim->cells : 0);
   const int64_t numbers = (grid->dim << grid->dim) * nodes;
   mps_status status = MPS_OK;
-  if (!mpsi_room_ensure(mpm->context, &c->velocity_room, numbers, sizeof *c->velocity))
+  if (!MPSI_ENSURE(mpm->context, c, velocity, numbers))
     status = mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *c->velocity);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
-  c->velocity = c->velocity_room.item;
   clear_blocks(mpm, c->tiles * c->beside, c->row);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_rows, 0.0);
@@ -413,8 +404,7 @@ static mps_status count_unknowns(mps_mpm *mpm, const char *function) {
   *unknowns = 0;
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; mpsi_mpm_counts_node_block(grid, g) && k < grid->block_nodes; k++)
-      *unknowns +=
-          mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + mpsi_first_node(grid, g));
+      *unknowns += mpsi_pore_is_unknown(mpm->water, g, k);
   return mpm->partition ? mpsi_domain_sum(mpm->partition->domain, function, 1, unknowns) : MPS_OK;
 }
 
@@ -440,7 +430,7 @@ mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   coarse_of *c = mpm->water->system->coarse;
   c->used = false;
-  if (mpsi_pore_solved_outside(mpm->water)) return MPS_OK;
+  if (mpsi_pore_solved_outside(mpm)) return MPS_OK;
   if (mpm->water->system->unknowns <
       LEAST_TILES * (mpm->grid.dim == 3 ? TILE * TILE * TILE : TILE * TILE))
     return MPS_OK;
@@ -466,8 +456,7 @@ void mpsi_pore_coarse_restrict(mps_mpm *mpm, int64_t g) {
   double *sum = s->coarse->sum + s->coarse->number[g] * s->coarse->tiles;
   memset(sum, 0, (size_t)s->coarse->tiles * sizeof *sum);
   for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first))
-      sum[tile_of(k)] += s->residual[first + k];
+    if (mpsi_pore_is_unknown(mpm->water, g, k)) sum[tile_of(k)] += s->residual[first + k];
 }
 
 mps_status mpsi_pore_coarse_solve(mps_mpm *mpm, const char *function, double *product) {

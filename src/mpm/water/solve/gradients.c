@@ -10,23 +10,22 @@
 #include "coarse.h"
 #include "operator.h"
 #include "outside.h"
+#include "solver/linear.h"
 
 #define TOLERANCE 1e-9 /* of the residual, over the right-hand side */
-#define ALLOWED 1.01   /* times that: of a solution from outside */
 enum { MOST_ITERATIONS = 5000 };
 typedef struct mpsi_pore_system system_of;
 
 /* d = 0, the direction 0; r.D^-1 r to the sums. */
 static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
-  const mpsi_pore_cell *cell = mpm->water->cell + first;
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     const int64_t at = first + k;
-    if (!mpsi_pore_is_unknown(mpm->water, g, k, cell)) continue;
+    if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
     s->inverse[at] = 1.0 / mpsi_pore_diagonal_of(mpm, s, g, k, shift);
     s->change[at] = s->direction[at] = 0.0;
     s->part[g] += s->residual[at] * s->residual[at] * s->inverse[at];
@@ -37,10 +36,9 @@ static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 /* Along the direction; the new r.D^-1 r to the sums. */
 static void advance(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
-  const mpsi_pore_cell *cell = mpm->water->cell + first;
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_is_unknown(mpm->water, g, k, cell)) continue;
+    if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
     const int64_t at = first + k;
     s->change[at] += factor * s->direction[at];
     s->residual[at] -= factor * s->product[at];
@@ -52,9 +50,8 @@ static void advance(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 /* The new direction: z, and `factor` of the former one. */
 static void turn(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
-  const mpsi_pore_cell *cell = mpm->water->cell + first;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, cell))
+    if (mpsi_pore_is_unknown(mpm->water, g, k))
       s->direction[first + k] = s->inverse[first + k] * s->residual[first + k] +
                                 mpsi_pore_coarse_at(mpm, g, k) + factor * s->direction[first + k];
 }
@@ -94,17 +91,13 @@ static mps_status iterate(mps_mpm *mpm, const char *function, double before, squ
 }
 
 /* The solution of the caller's solver, and whether it is one. */
-static mps_status ask_outside(mps_mpm *mpm, const char *function, double least, squares *now) {
+static mps_status ask_outside(mps_mpm *mpm, const char *function, double before, squares *now) {
   double along;
   mps_status status = mpsi_pore_solve_outside(mpm, function, TOLERANCE);
   if (status == MPS_OK) status = mpsi_pore_apply(mpm, function, &along);
   if (status == MPS_OK) status = renew(mpm, function, advance, 1.0, now);
-  if (status != MPS_OK || now->rest <= ALLOWED * ALLOWED * least) return status;
-  status = mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
-                     "step %lld: the pressures of the callback solve have a residual of %g, "
-                     "allowed is %g",
-                     (long long)mpm->run.steps, sqrt(now->rest), sqrt(least));
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+  if (status != MPS_OK) return status;
+  return mpsi_linear_check(&mpm->base, function, TOLERANCE, 0.0, now->rest, before);
 }
 
 static mps_status run_iterations(mps_mpm *mpm, const char *function, double least, squares *now) {
@@ -127,8 +120,7 @@ mps_status mpsi_pore_find_changes(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_pore_find_coarse(mpm, function);
   if (status == MPS_OK) status = renew(mpm, function, start, 0.0, &now);
   if (status != MPS_OK) return status;
-  const double least = TOLERANCE * TOLERANCE * now.rest;
-  if (mpsi_pore_solved_outside(mpm->water) && isfinite(now.rest))
-    return ask_outside(mpm, function, least, &now);
-  return run_iterations(mpm, function, least, &now);
+  if (mpsi_pore_solved_outside(mpm) && isfinite(now.rest))
+    return ask_outside(mpm, function, now.rest, &now);
+  return run_iterations(mpm, function, TOLERANCE * TOLERANCE * now.rest, &now);
 }

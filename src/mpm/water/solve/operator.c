@@ -8,10 +8,10 @@ typedef struct mpsi_pore_system system_of;
 
 /* Velocities of nodes under the pressures `direction`, per dt, of a block of the grid or the rim.
  * Node k is number q of the cell that lies q places before the last of those in reach. */
-static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+void mpsi_pore_find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = mpsi_pore_span_nodes(grid);
-  const int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
+  const int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(grid, shift);
@@ -20,15 +20,15 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
     if (node < 0) continue;
     double *v = s->velocity[node];
     v[0] = v[1] = v[2] = 0.0;
-    if (!(s->mass[node] > 0.0)) continue;
+    if (!(s->inertia[node][0] > 0.0)) continue;
     const int last = mpsi_pore_place(grid, k, MPSI_PORE_SPAN - 2) + shift[nodes - 1];
     for (int q = 0; q < nodes; q++) {
-      const int64_t cell = tile[last - shift[q]];
-      if (cell < 0 || !(s->scale[cell] > 0.0)) continue;
-      const double *force = mpsi_pore_row(grid, s, cell), d = s->scale[cell] * s->direction[cell];
+      const int64_t cell = reach[last - shift[q]];
+      if (cell < 0 || s->row[cell] < 0) continue;
+      const double *force = mpsi_pore_row(grid, s, cell), d = s->direction[cell];
       for (int c = 0; c < grid->dim; c++) v[c] += force[c * nodes + q] * d;
     }
-    for (int c = 0; c < grid->dim; c++) v[c] = s->held[node] >> c & 1 ? 0.0 : v[c] / s->mass[node];
+    for (int c = 0; c < grid->dim; c++) v[c] /= s->inertia[node][c];
   }
 }
 
@@ -40,19 +40,16 @@ static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int 
   const int64_t cell = mpsi_first_node(grid, g) + k;
   const double *force = mpsi_pore_row(grid, s, cell);
   double sum = 0.0;
-  const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
+  const int32_t *near = s->reach + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
   for (int q = 0; q < nodes; q++) {
     const int64_t node = near[shift[q]];
-    if (node < 0 || !(s->mass[node] > 0.0)) continue;
+    if (node < 0 || !(s->inertia[node][0] > 0.0)) continue;
     for (int c = 0; c < grid->dim; c++) {
       const double f = force[c * nodes + q];
-      if (!diagonal)
-        sum += f * s->velocity[node][c];
-      else if (!(s->held[node] >> c & 1))
-        sum += f * f * s->scale[cell] / s->mass[node];
+      sum += diagonal ? f * f / s->inertia[node][c] : f * s->velocity[node][c];
     }
   }
-  return s->scale[cell] * sum / grid->measure;
+  return sum / grid->measure;
 }
 
 double mpsi_pore_squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k,
@@ -65,17 +62,15 @@ double mpsi_pore_squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, i
 static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   static const int stride[3] = {1, MPSI_PORE_BOX, MPSI_PORE_BOX * MPSI_PORE_BOX};
   const mpsi_grid *grid = &mpm->grid;
-  mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(grid, g);
-  const mpsi_pore_cell *cell = water->cell + first;
   const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < grid->block_nodes; k++) {
-    if (!mpsi_pore_is_unknown(water, g, k, cell)) continue;
-    const int32_t *here = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 0);
+    if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
+    const int32_t *here = s->reach + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 0);
     const double own = s->direction[first + k];
     double sum = s->diagonal[first + k] * own;
     for (int d = 0; d < 2 * grid->dim; d++) {
@@ -101,7 +96,7 @@ double mpsi_pore_diagonal_of(const mps_mpm *mpm, const system_of *s, int64_t g, 
 mps_status mpsi_pore_find_motion(mps_mpm *mpm, const char *function) {
   const mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, mpsi_pore_find_velocities, 0.0);
   return mpsi_pore_hold_contacts(mpm, function);
 }
 

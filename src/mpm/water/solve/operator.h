@@ -8,6 +8,8 @@
 /* The matrix's diagonal at cell k of block g, an unknown that this rank counts, m3/Pa. */
 double mpsi_pore_diagonal_of(const mps_mpm *mpm, const mpsi_pore_system *s, int64_t g, int k,
                              const int *shift);
+/* Velocities of the nodes of block g, per dt, under the pressures `direction` alone. */
+void mpsi_pore_find_velocities(mps_mpm *mpm, mpsi_pore_system *s, int64_t g, double factor);
 /* Velocities of nodes, per dt, under the pressures `direction`, as contacts let them (contacts.h).
  * Collective. */
 mps_status mpsi_pore_find_motion(mps_mpm *mpm, const char *function);

@@ -5,7 +5,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "outside.h"
 
+#include "core/base/room_array.h"
 #include "mpm/water/rim.h"
+#include "solver/linear.h"
 
 #include <string.h>
 
@@ -14,22 +16,12 @@ enum { REACH = MPSI_PORE_SPAN - 1, SIDE = 2 * REACH + 1, MOST = SIDE * SIDE * SI
 typedef struct mpsi_pore_system system_of;
 typedef struct mpsi_pore_outside outside_of;
 
-bool mpsi_pore_solved_outside(const mpsi_water *water) {
-  return water->outside && !water->system->contacts.any &&
-         water->system->unknowns >= water->outside->def.least;
+bool mpsi_pore_solved_outside(const mps_mpm *mpm) {
+  const system_of *s = mpm->water->system;
+  return !s->contacts.any && mpsi_linear_serves(&mpm->base, s->unknowns);
 }
 
-mps_status mpsi_pore_forget(mps_mpm *mpm, const char *function) {
-  const outside_of *o = mpm->water ? mpm->water->outside : NULL;
-  if (!o || !o->def.forget) return MPS_OK;
-  mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback forget of mps_mpm_set_pore_solver");
-  const mps_status status = o->def.forget(o->def.user);
-  return mpsi_guard_leave(&mpm->run.guard, mpm->context, function, status);
-}
-
-void mpsi_pore_drop_solver(mps_context *context, mpsi_water *water) {
-  outside_of *o = water->outside;
-  water->outside = NULL;
+void mpsi_pore_free_outside(mps_context *context, mpsi_pore_outside *o) {
   if (!o) return;
   mpsi_free(context, o->start_room.item);
   mpsi_free(context, o->column_room.item);
@@ -49,8 +41,7 @@ static int64_t for_unknowns(mps_mpm *mpm, unknown_task *task) {
   for (int64_t g = 0; g < grid->node_count; g++) {
     const int64_t first = mpsi_first_node(grid, g);
     for (int k = 0; mpsi_mpm_counts_node_block(grid, g) && k < grid->block_nodes; k++)
-      if (mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first))
-        task(mpm, first + k, number++);
+      if (mpsi_pore_is_unknown(mpm->water, g, k)) task(mpm, first + k, number++);
   }
   return number;
 }
@@ -73,14 +64,14 @@ static void set_number(mps_mpm *mpm, int64_t cell, int64_t number) {
 static void set_right(mps_mpm *mpm, int64_t cell, int64_t number) {
   const system_of *s = mpm->water->system;
   outside_of *o = mpm->water->outside;
-  o->right[o->first + number] = s->residual[cell] * s->product[cell];
-  o->solution[o->first + number] = 0.0;
+  o->right[number] = s->residual[cell] * s->product[cell];
+  o->solution[number] = 0.0;
 }
 
 static void take_solution(mps_mpm *mpm, int64_t cell, int64_t number) {
   system_of *s = mpm->water->system;
   const outside_of *o = mpm->water->outside;
-  s->direction[cell] = o->solution[o->first + number] * s->product[cell];
+  s->direction[cell] = o->solution[number] * s->product[cell];
 }
 
 /* This rank's rows among those of all. */
@@ -146,7 +137,7 @@ static int find_box(const mpsi_grid *grid, const system_of *s, int64_t g, int k,
   return unknowns;
 }
 
-/* dt^2 G^T m^-1 G, without the scale of the row's own cell. */
+/* dt^2 G^T m^-1 G. */
 static void add_node(const mpsi_grid *grid, const system_of *s, int64_t node, int q,
                      const double *own, const int64_t *cell, double *value) {
   static const int stride[3] = {1, SIDE, SIDE * SIDE};
@@ -161,8 +152,8 @@ static void add_node(const mpsi_grid *grid, const system_of *s, int64_t node, in
     if (cell[e] < 0) continue;
     const double *force = mpsi_pore_row(grid, s, cell[e]);
     for (int c = 0; c < grid->dim; c++)
-      if (!(s->held[node] >> c & 1)) sum += own[c * nodes + q] * force[c * nodes + p];
-    value[e] += sum * s->scale[cell[e]] / s->mass[node];
+      sum += own[c * nodes + q] * force[c * nodes + p] / s->inertia[node][c];
+    value[e] += sum;
   }
 }
 
@@ -174,12 +165,12 @@ static void find_row(const mps_mpm *mpm, int64_t g, int k, const int *shift, con
   const system_of *s = mpm->water->system;
   const int middle = box_middle(grid);
   const int64_t here = mpsi_first_node(grid, g) + k;
-  const double dt = mpm->run.dt, factor = dt * dt * s->scale[here] / grid->measure;
-  const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
+  const double dt = mpm->run.dt, factor = dt * dt / grid->measure;
+  const int32_t *near = s->reach + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
   memset(value, 0, (size_t)box_cells(grid) * sizeof *value);
   for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
     const int64_t node = near[shift[q]];
-    if (node >= 0 && s->mass[node] > 0.0)
+    if (node >= 0 && s->inertia[node][0] > 0.0)
       add_node(grid, s, node, q, mpsi_pore_row(grid, s, here), cell, value);
   }
   for (int e = 0; e < box_cells(grid); e++) value[e] *= factor;
@@ -199,7 +190,7 @@ static void count_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   int64_t cell[MOST];
   (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first))
+    if (mpsi_pore_is_unknown(mpm->water, g, k))
       o->start[(int64_t)s->direction[first + k] - o->first + 1] =
           find_box(&mpm->grid, s, g, k, cell);
 }
@@ -214,7 +205,7 @@ static void fill_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
-    if (!mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first)) continue;
+    if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
     const int64_t from = o->start[(int64_t)s->direction[first + k] - o->first];
     int64_t count = 0;
     (void)find_box(grid, s, g, k, cell);
@@ -232,23 +223,20 @@ static void fill_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 
 static mps_status make_vectors(mps_mpm *mpm, const char *function) {
   outside_of *o = mpm->water->outside;
-  if (!mpsi_room_ensure(mpm->context, &o->start_room, o->rows + 1, sizeof *o->start) ||
-      !mpsi_room_ensure(mpm->context, &o->vector_room, 2 * o->all, sizeof *o->right))
-    return mpsi_fail_memory(mpm->context, function, (size_t)o->all * 2 * sizeof *o->right);
-  o->start = o->start_room.item;
+  if (!MPSI_ENSURE(mpm->context, o, start, o->rows + 1) ||
+      !mpsi_room_ensure(mpm->context, &o->vector_room, 2 * o->rows, sizeof *o->right))
+    return mpsi_fail_memory(mpm->context, function, (size_t)o->rows * 2 * sizeof *o->right);
   o->right = o->vector_room.item;
-  o->solution = o->right + o->all;
+  o->solution = o->right + o->rows;
   return MPS_OK;
 }
 
 static mps_status make_entries(mps_mpm *mpm, const char *function) {
   outside_of *o = mpm->water->outside;
   const int64_t entries = o->start[o->rows];
-  if (!mpsi_room_ensure(mpm->context, &o->column_room, entries, sizeof *o->column) ||
-      !mpsi_room_ensure(mpm->context, &o->value_room, entries, sizeof *o->value))
+  if (!MPSI_ENSURE(mpm->context, o, column, entries) ||
+      !MPSI_ENSURE(mpm->context, o, value, entries))
     return mpsi_fail_memory(mpm->context, function, (size_t)entries * 12);
-  o->column = o->column_room.item;
-  o->value = o->value_room.item;
   return MPS_OK;
 }
 
@@ -273,21 +261,30 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
+static mps_status make_memory(mps_mpm *mpm, const char *function) {
+  outside_of **o = &mpm->water->outside;
+  if (!*o) *o = mpsi_alloc(mpm->context, 1, sizeof **o);
+  return agree(mpm, function, *o ? MPS_OK : mpsi_fail_memory(mpm->context, function, sizeof **o));
+}
+
 mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance) {
-  outside_of *o = mpm->water->outside;
-  int64_t *iterations = &mpm->water->system->iterations;
-  mpsi_guard *guard = &mpm->run.guard;
-  mps_status status = make_rows(mpm, function);
+  mps_status status = make_memory(mpm, function);
+  if (status == MPS_OK) status = make_rows(mpm, function);
   if (status != MPS_OK) return status;
-  mpsi_guard_enter(guard, mpm->context, "the callback rows of mps_mpm_set_pore_solver");
-  status = o->def.rows(o->def.user, o->all, o->first, o->rows, o->start, o->column, o->value);
-  status = agree(mpm, function, mpsi_guard_leave(guard, mpm->context, function, status));
+  const outside_of *o = mpm->water->outside;
+  mps_linear_matrix matrix = {.all = o->all,
+                              .first = o->first,
+                              .rows = o->rows,
+                              .block = 1,
+                              .start = o->start,
+                              .column = o->column,
+                              .value = o->value};
+  status = mpsi_linear_hand(&mpm->base, function, &matrix);
   if (status != MPS_OK) return status;
   (void)for_unknowns(mpm, set_right);
-  *iterations = 0;
-  mpsi_guard_enter(guard, mpm->context, "the callback solve of mps_mpm_set_pore_solver");
-  status = o->def.solve(o->def.user, o->right, tolerance, o->solution, iterations);
-  status = agree(mpm, function, mpsi_guard_leave(guard, mpm->context, function, status));
-  if (status == MPS_OK) (void)for_unknowns(mpm, take_solution);
-  return status;
+  status = mpsi_linear_solve(&mpm->base, function, tolerance, o->right, o->solution);
+  if (status != MPS_OK) return status;
+  mpm->water->system->iterations = mpm->linear->result.iterations;
+  (void)for_unknowns(mpm, take_solution);
+  return MPS_OK;
 }

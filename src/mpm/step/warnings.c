@@ -1,0 +1,82 @@
+/* warnings.c - see warnings.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "warnings.h"
+
+#include "mpm/water/water.h"
+
+#define CHATTER 6.0        /* k dt^2/m above which a penalty contact oscillates */
+#define LARGEST_VOLUME 1.3 /* V/V0 above which ground is warned of, */
+#define VOLUMES_EVERY 16   /* looked at in so many steps */
+
+static void warn_about_courant(mps_mpm *mpm) {
+  const double dt = mpm->run.dt, limit = mpsi_mpm_limit(mpm), courant = mpm->def.courant;
+  if (mpm->run.warned_about_dt || !(dt > courant * limit * (1.0 + 1e-9))) return;
+  mpm->run.warned_about_dt = true;
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+           "step %lld: dt is %.4g s, %.3g of the Courant limit h/(c + v), above the fraction "
+           "courant = %g: choose a smaller dt, or NaN for a step that follows the limit",
+           (long long)mpm->run.steps, dt, dt / limit, courant);
+}
+
+static void warn_about_chatter(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const mpsi_contacts *contacts, const mps_mpm_def *def, double dt) {
+  double stiffest = 0.0;
+  for (int32_t k = 0; k < p->laws.count; k++) stiffest = fmax(stiffest, p->laws.law[k].modulus);
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    const mps_contact *contact = contacts->handle[b];
+    if (mpsi_by_impulses(contact)) continue;
+    const double k =
+        grid->measure * mpsi_contact_penalty(contact, stiffest, mps_particles_spacing(p->set),
+                                             grid->cell, def->courant);
+    const double ratio = k * dt * dt / contacts->least_mass;
+    if (!(ratio > CHATTER) || contacts->state[b].warned) continue;
+    contacts->state[b].warned = true;
+    mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
+             "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
+             "most %.4g or a dt of at most %.4g s",
+             b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));
+  }
+}
+
+/* V/V0 of a particle; V0 is its mass over its density as written. Water that has come into the
+ * pores or left them since is part of the mass. */
+static double volume_ratio(const mpsi_columns *p, double water, double density, int64_t k) {
+  if (!(density > 1.05 * water)) return 1.0; /* no solid beside the water */
+  return p->V[k] * (density - water) / (p->m[k] - water * p->V[k]);
+}
+
+/* The loosest sand has 1.3 of the volume of the densest. */
+void mpsi_step_warn_about_volume(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  if (mpm->run.warned_about_volume || mpm->run.steps % VOLUMES_EVERY != 0) return;
+  bool some = false;
+  for (int32_t k = 0; k < p->laws.count && !some; k++)
+    some = mpsi_material_keeps_volume(p->laws.law[k].material);
+  if (!some) return;
+  const double *density = mpsi_particles_column(p->set, "density", 0);
+  const double water = mpm->water ? mpm->water->def.density : 0.0;
+  double largest = LARGEST_VOLUME;
+  int64_t at = -1;
+  for (int64_t k = 0; k < p->count; k++) {
+    const double ratio = volume_ratio(p, water, density[k], k);
+    if (!(ratio > largest) || !mpsi_material_keeps_volume(mpsi_law_of(p, k)->material)) continue;
+    largest = ratio, at = k;
+  }
+  if (at < 0) return;
+  mpm->run.warned_about_volume = true;
+  const mps_material *law = mpsi_law_of(p, at)->material;
+  mpsi_log(
+      mpm->context, MPS_CONTEXT_LOG_WARNING,
+      "step %lld: particle %lld at (%.4g, %.4g, %.4g) m has grown to %.3g of its first volume, "
+      "above %g: %s",
+      (long long)mpm->run.steps, (long long)p->laws.ids[at], p->x[0][at], p->x[1][at],
+      mpm->grid.dim == 3 ? p->x[2][at] : 0.0, largest, LARGEST_VOLUME,
+      mpsi_material_dilates_without_end(law)
+          ? "the dilation of its law has no end; give void_ratio and max_void_ratio, or a "
+            "smaller angle of dilation"
+          : "no ground does; look for a wall that lets it through, or take smaller cells");
+}
+
+void mpsi_step_warn_before(mps_mpm *mpm) {
+  warn_about_courant(mpm);
+  warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, mpm->run.dt);
+}

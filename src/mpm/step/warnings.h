@@ -1,0 +1,12 @@
+/* warnings.h - what the log says of a step, once. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WARNINGS_H
+#define MPSI_MPM_WARNINGS_H
+
+#include "mpm/base/mpm_solver.h"
+
+/* Before the step: of a dt that is too long for the Courant limit or for a penalty contact. */
+void mpsi_step_warn_before(mps_mpm *mpm);
+/* After it: of ground that has grown to more than the loosest sand. */
+void mpsi_step_warn_about_volume(mps_mpm *mpm);
+
+#endif

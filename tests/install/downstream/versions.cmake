@@ -1,0 +1,35 @@
+# Versions and ranges of find_package(mps): what this libmps must serve, and what it must refuse.
+cmake_minimum_required(VERSION 3.22)
+project(versions LANGUAGES C)
+
+function(try version expected)
+  unset(mps_DIR CACHE)
+  find_package(mps ${version} QUIET CONFIG COMPONENTS shared)
+  if(NOT expected STREQUAL "${mps_FOUND}")
+    message(SEND_ERROR "find_package(mps ${version}): found is ${mps_FOUND}, must be ${expected}; considered "
+                       "${mps_CONSIDERED_VERSIONS}")
+  endif()
+endfunction()
+
+find_package(mps REQUIRED)
+set(this ${mps_VERSION})
+math(EXPR next_major "${mps_VERSION_MAJOR} + 1")
+math(EXPR next_minor "${mps_VERSION_MINOR} + 1")
+math(EXPR next_patch "${mps_VERSION_PATCH} + 1")
+set(series ${mps_VERSION_MAJOR}.${mps_VERSION_MINOR})
+try("" 1)
+try(${series} 1)
+try(${this} 1)
+try(${series}.${next_patch} 0)
+try(${mps_VERSION_MAJOR}.${next_minor} 0)
+try(${next_major} 0)
+try(0.1...<${next_major} 1) # older and newer bounds of a range that holds this one
+try(${series}...<${next_major} 1)
+try(${series}...${next_major} 1)
+try(${this}...${this} 1)
+try(0.1...<${this} 0)
+try(0.0.1...0.0.9 0)
+try(${mps_VERSION_MAJOR}.${next_minor}...<${next_major} 0)
+try(${mps_VERSION_MAJOR} 1)
+try(0.3 0) # another major version
+find_package(mps ${this} EXACT REQUIRED)

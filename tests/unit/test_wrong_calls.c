@@ -1,0 +1,95 @@
+/* test_wrong_calls.c - one fault, one sentence: what was given, what is allowed, what to do.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+static void said(mps_status status, const char *message) {
+  assert_int_not_equal(status, MPS_OK);
+  assert_string_equal(mps_last_error()->message, message);
+  assert_null(strstr(mps_last_error()->function, "_sized"));
+}
+
+static mps_particles *square(void) {
+  const double lower[2] = {0.0, 0.0}, upper[2] = {1.0, 1.0};
+  DEF(particles, def, .spacing = 0.25);
+  mps_particles *set = NULL;
+  OK(mps_particles_create(context, &def, &set));
+  OK(mps_particles_fill_box(set, lower, upper, NULL));
+  return set;
+}
+
+TEST(bodies_name_the_member_that_is_wrong) {
+  scoped_body *body = NULL;
+  DEF(body, def, .mass = 5.0);
+  mps_reaction reaction;
+  const double point[2] = {0.0, 0.0};
+  double force[3] = {0.0, NAN, 0.0};
+  said(mps_body_create_disc(context, &def, 1.0, &body),
+       "mass is 5 kg, must be 0, or NaN where motion is MPS_BODY_MOTION_DRIVEN (0): make it "
+       "MPS_BODY_MOTION_FREE, or leave this out and move the body by mps_body_drive");
+  def.motion = MPS_BODY_MOTION_FREE;
+  said(mps_body_create_disc(context, &def, 1.0, &body),
+       "inertia[2] is nan kg m2, must be in 1e-30 to 1e+30 where motion is MPS_BODY_MOTION_FREE "
+       "(1)");
+  def.inertia[2] = -2.0;
+  said(mps_body_create_disc(context, &def, 1.0, &body),
+       "inertia[2] is -2 kg m2, must be in 1e-30 to 1e+30, or 0, or NaN");
+  def.motion = 7;
+  said(mps_body_create_disc(context, &def, 1.0, &body),
+       "motion is 7, allowed are MPS_BODY_MOTION_DRIVEN (0) and MPS_BODY_MOTION_FREE (1)");
+  def.motion = MPS_BODY_MOTION_FREE, def.inertia[2] = 2.0;
+  OK(mps_body_create_disc(context, &def, 1.0, &body));
+  said(mps_body_set_load(body, force, NULL), "force[1] is nan, must be finite");
+  said(mps_body_name_part(body, "tip", 5, 1, NULL),
+       "first is 5 and count 1, but the surface is a single piece: 0 and 1");
+  said(mps_body_get_reaction(body, 3, &reaction),
+       "part is 3, and the body has no named parts: allowed are 0 and -1, the whole");
+  said(mps_body_distance(body, -1, point, NULL, NULL, NULL, NULL),
+       "count is -1 points, allowed are 0 to 1099511627776");
+  said(mps_body_distance(body, 1, NULL, NULL, NULL, NULL, NULL), "x is NULL");
+}
+
+TEST(solvers_name_constants_and_one_argument) {
+  scoped_particles *set = square();
+  scoped_material *law = NULL;
+  mps_mpm *mpm = NULL;
+  DEF(mpm, def, .cell = 0.5, .lower[0] = 0.0, .lower[1] = 0.0);
+  double value;
+  OK(mps_particles_set(set, "density", 0, 1800.0));
+  said(mps_particles_set(set, "density", 1, 5.0),
+       "component of field 'density' is 1, and the field has one alone: 0");
+  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &law));
+  OK(mps_mpm_create(context, set, law, &def, &mpm));
+  said(mps_mpm_set_side(mpm, MPS_SIDE_X_LOWER, MPS_BOUNDARY_ROLLER, 0.4),
+       "friction is 0.4, must be 0 where kind is MPS_BOUNDARY_ROLLER (2): make it FRICTIONAL");
+  const mps_grid *grid = mps_mpm_grid(mpm);
+  said(mps_grid_evaluate(grid, NULL, 0, 1, &value, &value, NULL), "field is NULL");
+  said(mps_grid_evaluate(grid, "velocity", 0, 1, NULL, &value, NULL), "points is NULL");
+  mps_mpm_destroy(&mpm);
+  mps_geostatic_def ground = mps_geostatic_defaults();
+  said(mps_particles_set_geostatic(set, &ground),
+       "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
+  scoped_fluid *fluid = NULL;
+  OK(mps_fluid_create(context, set, NULL, &fluid));
+  said(mps_fluid_set_boundary_motion(fluid, 3, NULL, &value),
+       "number is 3, and the fluid has no boundary of that number: mps_fluid_add_boundary writes "
+       "it");
+}
+
+TEST(a_set_without_moduli_is_told_how_to_get_them) {
+  if (!mps_library_has(MPS_FEATURE_CHOLMOD)) skip();
+  scoped_particles *set = square();
+  scoped_elastic *elastic = NULL;
+  said(mps_elastic_create(context, set, NULL, &elastic),
+       "the particle set has no field 'young': set it with mps_particles_set or "
+       "mps_particles_set_material, or give the `material` of the definition");
+  OK(mps_particles_set(set, "young", 0, 1e7));
+  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  OK(mps_elastic_create(context, set, NULL, &elastic));
+  DEF(elastic_load, load, .kind = 44);
+  said(mps_elastic_add_load(elastic, &load, NULL),
+       "kind is 44, allowed are MPS_ELASTIC_LOAD_BODY (0), MPS_ELASTIC_LOAD_VOLUME (1), "
+       "MPS_ELASTIC_LOAD_FORCE (2), MPS_ELASTIC_LOAD_TRACTION (3), MPS_ELASTIC_LOAD_PRESSURE (4) and "
+       "MPS_ELASTIC_LOAD_FUNCTION (5)");
+  said(mps_elastic_cut(elastic, mps_side_of(4, 1), NULL, 0), "side is 9, allowed are 0 to 3");
+  said(mps_elastic_cut(elastic, MPS_SIDE_ANY, NULL, 0), "side is -1, allowed are 0 to 3");
+}
