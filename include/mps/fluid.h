@@ -379,7 +379,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_segments(const mps_fluid *fluid, 
 typedef struct mps_fluid_contact_def {
   uint32_t struct_size;
   int32_t kind;  /* mps_boundary_kind of the body's surface: HELD (no slip, default) or ROLLER */
-  int32_t mover; /* mps_contact_mover of a free body, default SOLVER: the fluid moves it */
+  int32_t mover; /* mps_contact_mover, default SOLVER: the fluid moves the body */
   int32_t reserved;
 } mps_fluid_contact_def;
 
@@ -393,17 +393,18 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
 /** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
  *  together may have 50 000 edges. Bodies side by side make a face of several parts, with concave
- * corners between them too. `def` NULL: the defaults. At the end of each step it receives
- *  the water's forces (mps_body_get_reaction), in addition to those of
- * other solvers that it is in contact with. It is kept alive.
+ *  corners between them too. `def` NULL: the defaults. At the end of each step it receives the
+ *  water's forces (mps_body_get_reaction), in addition to those of other solvers that it is in
+ *  contact with. It is kept alive.
  *
  *  A free body with the mover SOLVER floats: in each step the water's pressure, the body's mass,
  *  gravity and load (mps_body_set_load), and the impulses of other solvers since its last step are
- *  in balance, however light it is. No boundary acts on it: keep it off the ground. With OTHER, and
- *  a body that is not free, the caller (mps_body_advance, mps_body_set_motion) or another solver
- *  moves it: its pose and velocity when a step is made, or solved for in parts, are those of the
- * end of that step. By the forces of the last step that is unstable where a free body is lighter
- * than the water that it accelerates.
+ *  in balance, however light it is. No boundary acts on it: keep it off the ground. A driven body
+ *  with the mover SOLVER follows its signals, or the velocity of mps_body_set_motion. With OTHER
+ * the caller (mps_body_advance, mps_body_set_motion) or another solver moves the body: its pose and
+ *  velocity when a step is made, or solved for in parts, are those of the end of that step. By the
+ *  forces of the last step that is unstable where a free body is lighter than the water that it
+ *  accelerates.
  *
  *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
  *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the

@@ -390,7 +390,8 @@ TEST(bodies_come_and_go) {
   REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is 1");
   assert_null(contact);
   OK(mps_body_name_part(box, "bottom", 0, 1, NULL));
-  OK(mps_fluid_add_contact(t.fluid, box, NULL, &contact));
+  DEF(fluid_contact, carried, .mover = MPS_CONTACT_MOVER_OTHER);
+  OK(mps_fluid_add_contact(t.fluid, box, &carried, &contact));
   assert_true(contact->body == box);
   REFUSES(mps_contact_get_reaction(contact, 2, &r[0]), "part");
   FAILS(mps_contact_get_particles(contact, 0, &count, NULL, NULL, NULL, NULL, NULL),
@@ -422,6 +423,47 @@ TEST(bodies_come_and_go) {
   mps_body_destroy(&disc);
   mps_body_destroy(&small);
   mps_body_destroy(&corner);
+}
+
+/* A box that dips into water along a signal: the fluid moves it as a caller does who advances it
+ * before each step, also after a rollback; a step that is not made leaves it where it was. */
+TEST(driven_bodies_follow_their_signals) {
+  const double dt = 2e-3;
+  mps_body_state end[2];
+  mps_reaction r[2];
+  for (int run = 0; run < 2; run++) {
+    scoped_tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, dt);
+    DEF(body, at, .position[0] = 0.3, .position[1] = 0.42);
+    scoped_body *box = NULL;
+    scoped_signal *sine = NULL;
+    scoped_snapshot *snapshot = NULL;
+    OK(mps_body_create_box(context, &at, 0.2, 0.2, &box));
+    OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.05, 1.0, 0.0, &sine));
+    OK(mps_body_drive(box, 1, sine, -1.0));
+    OK(mps_body_drive(box, 5, sine, 2.0));
+    scoped_contact *contact =
+        tank_body(t.fluid, box, run ? MPS_CONTACT_MOVER_SOLVER : MPS_CONTACT_MOVER_OTHER);
+    OK(mps_fluid_snapshot(t.fluid, &snapshot));
+    if (run) {
+      FAILS(mps_body_advance(box, dt), MPS_ERROR_STATE, "MPS_CONTACT_MOVER_OTHER");
+      OK(mps_fluid_step(t.fluid, 7));
+      OK(mps_fluid_rollback(t.fluid, snapshot));
+      OK(mps_fluid_begin_step(t.fluid, 10.0 * dt));
+      OK(mps_fluid_solve_pressure(t.fluid));
+      OK(mps_fluid_abandon_step(t.fluid));
+      OK(mps_body_get_state(box, &end[1]));
+      assert_true(end[1].time == 0.0 && end[1].position[1] == 0.42);
+    }
+    for (int k = 0; k < 75; k++) {
+      if (!run) OK(mps_body_advance(box, dt));
+      OK(mps_fluid_step(t.fluid, 1));
+    }
+    OK(mps_contact_get_reaction(contact, -1, &r[run]));
+    OK(mps_body_get_state(box, &end[run]));
+  }
+  assert_true(r[0].force[1] > 100.0);
+  assert_memory_equal(&r[0], &r[1], sizeof r[0]);
+  assert_memory_equal(&end[0], &end[1], sizeof end[0]);
 }
 
 /* Water pushed sideways by a in every particle leans on the right wall and off the left one, alike;
@@ -699,7 +741,8 @@ TEST(water_leaves_by_an_open_side) {
   /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
   REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number 2");
   def.nodes = x, def.node_count = 1;
-  REFUSES(mps_fluid_set_boundary(t.fluid, number, &def), "must be 0 where kind is MPS_BOUNDARY_OPEN");
+  REFUSES(mps_fluid_set_boundary(t.fluid, number, &def),
+          "must be 0 where kind is MPS_BOUNDARY_OPEN");
   /* To the last particle but one. */
   def.nodes = NULL, def.node_count = 0, def.point[0] = -1.0;
   OK(mps_fluid_remove_boundary(t.fluid, number));

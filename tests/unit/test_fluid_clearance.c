@@ -52,7 +52,7 @@ static mps_status add_basin(double left, double bottom) {
 
 static mps_status add_box(double x, double y) {
   mps_body_def def = mps_body_defaults();
-  DEF(fluid_contact, with, .kind = MPS_BOUNDARY_ROLLER);
+  DEF(fluid_contact, with, .kind = MPS_BOUNDARY_ROLLER, .mover = MPS_CONTACT_MOVER_OTHER);
   const double xy[8] = {-0.2, -0.15, 0.2, -0.15, 0.2, 0.15, -0.2, 0.15};
   def.position[0] = x, def.position[1] = y;
   mps_body_destroy(&box);

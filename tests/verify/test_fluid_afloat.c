@@ -346,8 +346,7 @@ TEST(bad_bodies_are_refused) {
   floating.mover = 2;
   REFUSES(mps_fluid_add_contact(s.t.fluid, held, &floating, &contact), "mover is 2");
   assert_null(contact);
-  /* The mover is that of a free body: the caller moves any other. */
-  contact = tank_body(s.t.fluid, held, MPS_CONTACT_MOVER_SOLVER);
+  contact = tank_body(s.t.fluid, held, MPS_CONTACT_MOVER_OTHER);
   OK(mps_body_advance(held, 1e-3));
   mps_contact_destroy(&contact);
 }

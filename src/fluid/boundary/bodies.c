@@ -115,12 +115,25 @@ static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
     p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
 }
 
+/* Whether the fluid moves the body along its signals. */
+static bool is_driven(const mpsi_fluid_body *own) { return own->source->moves && !own->floats; }
+
+mps_status mpsi_fluid_look_ahead_of_bodies(mps_fluid *f, const char *function, double dt) {
+  mps_status status = MPS_OK;
+  for (int b = 0; b < f->bodies && status == MPS_OK; b++)
+    if (f->body[b].body && is_driven(&f->body[b]))
+      status = mpsi_body_look_ahead(f->body[b].body, function, b, dt);
+  return status;
+}
+
 /* Motion of the faces in the step being made. */
 void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
   for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
-    body->next = pose_of(body->body);
+    mps_body end = *body->body;
+    if (is_driven(body)) mpsi_body_advance(&end, dt);
+    body->next = pose_of(&end);
     if (body->floats) drift(f, body, dt);
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
@@ -177,10 +190,8 @@ static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
   mpsi_body_react(own->body, own->source, f->dt);
   mpsi_body_strike(own->body, own->source);
   add_struck(f, own, own->next.x);
-  if (own->floats)
-    mpsi_body_advance(own->body, f->dt);
-  else
-    mpsi_body_strike(own->body, own->source);
+  if (!own->floats) mpsi_body_strike(own->body, own->source);
+  if (own->source->moves) mpsi_body_advance(own->body, f->dt);
   own->pose = own->floats ? pose_of(own->body) : own->next;
 }
 
@@ -374,14 +385,12 @@ int32_t mpsi_fluid_body_number(const mps_fluid *f, const mps_contact *contact) {
   return -1;
 }
 
-static bool is_to_float(const mps_body *body, const mps_fluid_contact_def *def) {
-  return def->mover == MPS_CONTACT_MOVER_SOLVER && body->def.motion == MPS_BODY_MOTION_FREE;
-}
-
-static void let_float(mps_fluid *f, int32_t number) {
+/* From now on the fluid moves the body: a free one floats, a driven one follows its signals. */
+static void take_over(mps_fluid *f, int32_t number) {
   mpsi_fluid_body *own = &f->body[number];
-  memset(&own->body->pending, 0, sizeof own->body->pending);
-  own->floats = own->source->moves = true;
+  own->source->moves = true;
+  own->floats = own->body->def.motion == MPS_BODY_MOTION_FREE;
+  if (own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
 }
 
 static mps_status check_owner(void *owner, const char *function) {
@@ -429,8 +438,7 @@ static void get_def(const void *owner, const mps_contact *contact, void *out) {
   const mpsi_fluid_body *body = &f->body[mpsi_fluid_body_number(f, contact)];
   mps_fluid_contact_def *def = out;
   def->kind = f->wall[body->first].kind;
-  const bool moves = body->floats || body->body->def.motion != MPS_BODY_MOTION_FREE;
-  def->mover = moves ? MPS_CONTACT_MOVER_SOLVER : MPS_CONTACT_MOVER_OTHER;
+  def->mover = body->source->moves ? MPS_CONTACT_MOVER_SOLVER : MPS_CONTACT_MOVER_OTHER;
 }
 
 static const mpsi_contact_owner owner_of_contacts = {.check = check_owner,
@@ -464,7 +472,8 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
   status = MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
   if (status == MPS_OK) status = check_body(f, __func__, body);
   if (status == MPS_OK) status = find_room(f, __func__, body, &b);
-  if (status == MPS_OK && is_to_float(body, &def)) status = mpsi_body_check_mover(body, __func__);
+  if (status == MPS_OK && def.mover == MPS_CONTACT_MOVER_SOLVER)
+    status = mpsi_body_check_mover(body, __func__);
   if (status == MPS_OK)
     status = mpsi_contact_make(f->context, __func__, body, &owner_of_contacts, f, &contact);
   if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b);
@@ -479,7 +488,7 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
     return status;
   }
   mpsi_contact_join(contact);
-  if (is_to_float(body, &def)) let_float(f, b);
+  if (def.mover == MPS_CONTACT_MOVER_SOLVER) take_over(f, b);
   f->stale = true, f->unknown = 1;
   if (out)
     *out = contact;

@@ -35,6 +35,8 @@ typedef struct mpsi_fluid_body {
 #define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */
 
 void mpsi_fluid_place_bodies(mps_fluid *fluid);            /* faces as of the pose */
+/* Evaluates the signals of bodies that the fluid moves for the end of a step of dt. */
+mps_status mpsi_fluid_look_ahead_of_bodies(mps_fluid *fluid, const char *function, double dt);
 void mpsi_fluid_drive_bodies(mps_fluid *fluid, double dt); /* next of the faces */
 void mpsi_fluid_load_body(const mps_fluid *fluid, mpsi_fluid_body *body, const double *about);
 void mpsi_fluid_end_bodies(mps_fluid *fluid);

@@ -34,6 +34,7 @@ mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) 
     w->ahead[0] = w->factor * (m.u - w->origin);
     w->ahead[1] = w->factor * m.v;
   }
+  if (status == MPS_OK) status = mpsi_fluid_look_ahead_of_bodies(f, function, dt);
   f->guard = outer;
   return status;
 }

@@ -99,17 +99,17 @@ static void list_state(mpsi_state *s, void *solver) {
       mpsi_state_f64(s, "moment", owed->moment, 3);
       mpsi_state_leave(s);
     }
-    if (!f->body[b].floats) {
-      mpsi_state_enter(s, "felt");
-      mpsi_body_list_account(s, f->body[b].body);
-      mpsi_state_leave(s);
-    } else {
+    mpsi_state_agree_integer(s, "moved", f->body[b].source->moves);
+    if (f->body[b].floats) {
       mpsi_state_f64(s, "rate", f->body[b].rate, 3);
       mpsi_state_f64(s, "mass", f->body[b].mass, 9);
-      mpsi_state_enter(s, "afloat"); /* it has a position and a velocity too */
-      mpsi_body_list_state(s, f->body[b].body);
-      mpsi_state_leave(s);
     }
+    mpsi_state_enter(s, "felt");
+    if (f->body[b].source->moves)
+      mpsi_body_list_state(s, f->body[b].body);
+    else
+      mpsi_body_list_account(s, f->body[b].body);
+    mpsi_state_leave(s);
     mpsi_state_leave(s);
   }
 }
