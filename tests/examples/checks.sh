@@ -44,3 +44,11 @@ is() {
       exit !(found && value ~ /^[-+0-9.eE]+$/ && (value - want) ^ 2 <= off ^ 2) }' "$1" ||
     fail "$2 of row $3 of $1, expected $4 +- $5"
 }
+
+# Of $pid, in s/100; nothing once it has ended.
+processor_time() { awk '$3 != "Z" { print $14 + $15 }' "/proc/$pid/stat" 2>/dev/null || :; }
+# used SECONDS: waits until $pid has had so much more of the processor, or has ended.
+used() {
+  until=$(awk "BEGIN { print int(100 * $1) + $(processor_time || echo 0) + 0 }")
+  while now=$(processor_time) && [ -n "$now" ] && [ "$now" -lt "$until" ]; do sleep 0.02; done
+}

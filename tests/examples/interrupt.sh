@@ -5,14 +5,6 @@
 ulimit -t 60 # s of processor time: what does not stop is stopped
 programs=$1
 
-# Of $pid, in s/100; nothing once it has ended.
-processor_time() { awk '$3 != "Z" { print $14 + $15 }' "/proc/$pid/stat" 2>/dev/null || :; }
-# used SECONDS: waits until $pid has had so much more of the processor, or has ended.
-used() {
-  until=$(awk "BEGIN { print int(100 * $1) + $(processor_time || echo 0) + 0 }")
-  while now=$(processor_time) && [ -n "$now" ] && [ "$now" -lt "$until" ]; do sleep 0.02; done
-}
-
 # stop: presses Ctrl-C and waits for $pid, which may use 3 s of the processor until it has ended. The
 # same press may come twice, from the terminal and from a program between.
 stop() {
@@ -159,7 +151,7 @@ early 0.5 "mps-stability --radius 0.1" dt_linear dt_stepping steps
 "$programs/mps-stability" --study --method stepping --threads 1 --out "$work/study" >"$work/out" \
   2>"$work/log" &
 pid=$!
-sleep 2
+used 2
 kill -INT "$pid"
 status=0
 wait "$pid" || status=$?

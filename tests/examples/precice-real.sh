@@ -11,9 +11,9 @@ sed 's/max-time value="[^"]*"/max-time value="1"/' "$config" >config.xml
 # flap FOUNDATION DT: both participants
 flap() {
   rm -rf precice-run flap
-  timeout 100 "$partner" config.xml 10 "$1" >partner.log 2>&1 &
+  timeout 1200 "$partner" config.xml 10 "$1" >partner.log 2>&1 &
   other=$!
-  timeout 100 "$program" --config config.xml --dt "$2" --threads 1 --out flap >solid.log 2>&1 || fail "$(tail -5 solid.log)"
+  timeout 1200 "$program" --config config.xml --dt "$2" --threads 1 --out flap >solid.log 2>&1 || fail "$(tail -5 solid.log)"
   wait $other || fail "partner: $(tail -5 partner.log)"
   in_range flap/summary.json windows 100 100
 }
@@ -28,7 +28,7 @@ in_range flap/summary.json tip_largest_time_s .55 .59
 # names that the configuration lacks are refused before the other participant is waited for
 for wrong in "--data Nothing" "--displacement Nothing" "--mesh Other" "--participant Nobody"; do
   status=0
-  timeout 20 "$program" --config config.xml $wrong --out none >wrong.log 2>&1 || status=$?
+  timeout 1200 "$program" --config config.xml $wrong --out none >wrong.log 2>&1 || status=$?
   [ $status -ne 0 ] && [ $status -ne 124 ] || fail "$wrong: exit code $status"
   grep -q "${wrong#* }" wrong.log || fail "$wrong: $(cat wrong.log)"
 done

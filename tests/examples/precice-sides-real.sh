@@ -10,9 +10,9 @@
 bin=$(realpath "$1") precice=$(realpath "$2")
 cd "$work"
 
-timeout 200 "$bin/precice-water" --config "$precice/water-config.xml" --threads 1 --out water >water.log 2>&1 &
+timeout 1200 "$bin/precice-water" --config "$precice/water-config.xml" --threads 1 --out water >water.log 2>&1 &
 other=$!
-timeout 200 "$bin/mps-precice" --config "$precice/water-config.xml" --young 1GPa --dt 2ms --velocity Velocity --threads 1 --out flap \
+timeout 1200 "$bin/mps-precice" --config "$precice/water-config.xml" --young 1GPa --dt 2ms --velocity Velocity --threads 1 --out flap \
   >solid.log 2>&1 || fail "$(tail -n 5 solid.log)"
 wait $other || fail "water: $(tail -n 5 water.log)"
 in_range flap/summary.json windows 200 200
@@ -28,9 +28,9 @@ awk -F, -v rest=2.4386e-3 '
     exit !(n == 3 && omega > 49 && omega < 51.5 && top < 4.86e-3 && top > 4.5e-3) }' flap/tip.csv || fail "the flap's period"
 
 "$bin/precice-soil" --free --threads 1 --out free
-timeout 100 "$bin/precice-box" "$precice/soil-config.xml" >box.log 2>&1 &
+timeout 1200 "$bin/precice-box" "$precice/soil-config.xml" >box.log 2>&1 &
 other=$!
-timeout 100 "$bin/precice-soil" --config "$precice/soil-config.xml" --threads 1 --out soil >soil.log 2>&1 || fail "$(tail -n 5 soil.log)"
+timeout 1200 "$bin/precice-soil" --config "$precice/soil-config.xml" --threads 1 --out soil >soil.log 2>&1 || fail "$(tail -n 5 soil.log)"
 wait $other || fail "box: $(tail -n 5 box.log)"
 for run in free soil; do # fallen and tilted, with the mass there or here: 1 micrometre of 26 mm
   is $run/box.csv t_s -1 .15 1e-9
@@ -39,6 +39,6 @@ for run in free soil; do # fallen and tilted, with the mass there or here: 1 mic
   is $run/box.csv angle_rad -1 -.12321 1e-5
 done
 status=0
-timeout 20 "$bin/precice-soil" --config "$precice/soil-config.xml" --force Nothing --out none >wrong.log 2>&1 || status=$?
+timeout 1200 "$bin/precice-soil" --config "$precice/soil-config.xml" --force Nothing --out none >wrong.log 2>&1 || status=$?
 [ $status -ne 0 ] && [ $status -ne 124 ] || fail "a name that the configuration lacks: exit code $status"
 has wrong.log Nothing

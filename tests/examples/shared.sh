@@ -16,7 +16,7 @@ begin() {
   "$@" "$tank" --duration 100 --threads 1 --frames 0 --out "$work/$name" >"$work/out" 2>"$work/log" &
   pid=$!
   until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
-  sleep 0.5
+  used 0.5
 }
 ends() { # SIGNAL: the run ends with its results
   kill "-$1" "$pid"

@@ -14,7 +14,7 @@ wrong() {
   what=$1 code=0
   shift
   # shellcheck disable=SC2086
-  timeout 60 $mpirun "$@" >/dev/null 2>"$work/log" || code=$?
+  timeout 1200 $mpirun "$@" >/dev/null 2>"$work/log" || code=$?
   [ $code -ne 0 ] && [ $code -ne 124 ] || fail "$what: exit status $code"
 }
 # ends NAME TABLE OPTION VALUE OTHER OPTION...: a run of the program that is short.

@@ -13,7 +13,7 @@ on() {
   ranks=$1
   shift
   # shellcheck disable=SC2086
-  timeout 280 $mpirun -n "$ranks" "$@"
+  timeout 1200 $mpirun -n "$ranks" "$@"
 }
 # The same files from 3 ranks as without mpirun; of the frames tests/vtk/same-frames sees that VTK reads them.
 model="--radius 0.5 --width 40 --height 30 --slope 15,25,15 --sides freefield --courant 0.5"
@@ -72,7 +72,7 @@ goes_on() {
 }
 # Open MPI waits so long (s) before it asks the ranks to stop, when the run must still be under way, and
 # again before it ends them: too soon on a machine that has other things to do, so it gets more then.
-for patience in 3 12 25; do
+for patience in 3 12 25 100; do
   export OMPI_MCA_odls_base_sigkill_timeout=$patience
   rm -rf "$work/cut"
   begin_wave "$work/cut"

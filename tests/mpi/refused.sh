@@ -10,7 +10,7 @@ export PETSC_OPTIONS="-mps_patience 1"
 for number in 1 40 700; do
   code=0
   # shellcheck disable=SC2086
-  timeout 60 $mpirun -n 2 "$program" $number >"$work/out" 2>"$work/log" || code=$?
+  timeout 1200 $mpirun -n 2 "$program" $number >"$work/out" 2>"$work/log" || code=$?
   case $code in
   3) fail "allocation $number was not made: take smaller ones" ;;
   4) fail "allocation $number: what holds after an error does not: $(cat "$work/out")" ;;

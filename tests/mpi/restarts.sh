@@ -21,7 +21,7 @@ cut() {
   end
   for ranks in 2; do
     # shellcheck disable=SC2086
-    timeout 280 $mpirun -n $ranks "$program" "$@" --restart "$work/$name.h5" --out "$work/$name-on" \
+    timeout 1200 $mpirun -n $ranks "$program" "$@" --restart "$work/$name.h5" --out "$work/$name-on" \
       >/dev/null
     for file in "$work/$name"/*; do
       file=$(basename "$file")

@@ -17,7 +17,7 @@ begin() {
   until [ -e "$checkpoint" ]; do
     sleep 0.05
     tries=$((tries + 1))
-    [ $tries -lt 1200 ] && kill -0 $pid 2>/dev/null || [ -e "$checkpoint" ] ||
+    [ $tries -lt 24000 ] && kill -0 $pid 2>/dev/null || [ -e "$checkpoint" ] ||
       fail "no checkpoint: $(cat "$work/log")"
   done
 }
@@ -25,9 +25,9 @@ begin() {
 last_rank() {
   pgrep -f -- "$checkpoint" | tail -n 1
 }
-# end: waits for the run, a minute at most, and sets code.
+# end: waits for the run, twenty minutes at most, and sets code.
 end() {
-  (sleep 60 && ps -ef >"$work/late" && kill -KILL $pid) >/dev/null 2>&1 & # ctest waits for who has stdout
+  (sleep 1200 && ps -ef >"$work/late" && kill -KILL $pid) >/dev/null 2>&1 & # ctest waits for who has stdout
   watchdog=$!
   code=0
   wait $pid || code=$?

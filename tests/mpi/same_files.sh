@@ -12,7 +12,7 @@ same() {
   shift 2
   "$program" "$@" --out "$work/$name-1" >"$work/$name.1"
   # shellcheck disable=SC2086
-  timeout 280 $mpirun -n 3 "$program" "$@" --out "$work/$name-3" >"$work/$name.3"
+  timeout 1200 $mpirun -n 3 "$program" "$@" --out "$work/$name-3" >"$work/$name.3"
   sed "s:$name-1:$name-3:" "$work/$name.1" | cmp - "$work/$name.3" || fail "what $name prints"
   [ "$(ls "$work/$name-1")" = "$(ls "$work/$name-3")" ] || fail "files of $name: $(ls "$work/$name-3")"
   for file in "$work/$name-1"/*; do
@@ -47,7 +47,7 @@ pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --f
 # shellcheck disable=SC2086
 same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.06
 # The last checkpoint of the 3 ranks goes on with 2, and without mpirun, to the same results.
-for start in "timeout 280 $mpirun -n 2" ""; do
+for start in "timeout 1200 $mpirun -n 2" ""; do
   # shellcheck disable=SC2086
   $start "$programs/mps-pile" $pile --restart "$work/pile.h5" --out "$work/on" >/dev/null
   for file in load.csv summary.json fields-1.csv fields-2.csv; do
@@ -60,7 +60,7 @@ same limit mps-stability --radius 1.6
 tank="--spacing 0.01 --duration 0.06 --sample 0.01 --frames 3 --gauge 0.4"
 # shellcheck disable=SC2086
 same tank mps-tank $tank --checkpoint "$work/tank.h5" --every-checkpoint 0.04
-for start in "timeout 280 $mpirun -n 2" ""; do
+for start in "timeout 1200 $mpirun -n 2" ""; do
   # shellcheck disable=SC2086
   $start "$programs/mps-tank" $tank --restart "$work/tank.h5" --out "$work/on" >/dev/null
   for file in force.csv gauges.csv particles.csv summary.json; do
@@ -90,7 +90,7 @@ near() {
   "$program" "$@" --solver own --out "$work/$name-own" >/dev/null
   for solver in multigrid direct; do
     # shellcheck disable=SC2086
-    timeout 280 $mpirun -n 2 "$program" "$@" --solver $solver --out "$work/$name-$solver" >/dev/null
+    timeout 1200 $mpirun -n 2 "$program" "$@" --solver $solver --out "$work/$name-$solver" >/dev/null
     paste -d, "$work/$name-own/$table" "$work/$name-$solver/$table" | awk -F, -v c="$column" '
       NR > 1 { n = NF / 2; d = $c - $(c + n); d = d < 0 ? -d : d; v = $c < 0 ? -$c : $c
                if (d > most) most = d; if (v > largest) largest = v }
@@ -108,7 +108,7 @@ has "$work/log" "--solver is for --method mps only"
 if [ -x "$programs/mps-cantilever" ]; then
   "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-1" >/dev/null
   # shellcheck disable=SC2086
-  timeout 280 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
+  timeout 1200 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
   has "$work/beam" "iterations of 2 ranks"
   [ "$(ls "$work/beam-1")" = "$(ls "$work/beam-2")" ] || fail "files of the beam"
   paste -d, "$work/beam-1/deflection.csv" "$work/beam-2/deflection.csv" | awk -F, '
