@@ -40,9 +40,8 @@ void mpsi_body_release(mps_body *body) {
 mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *user_def,
                          int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out) {
   mps_body_def def;
-  const mps_status status = MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, mps_body_def, user_def,
-                                                         mpsi_scene_of(dim), &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, mps_body_def, user_def,
+                                        mpsi_scene_of(dim), &def));
   drop_unset(&def, dim);
   mps_body *body = mpsi_alloc(context, 1, sizeof *body);
   if (!body) return mpsi_fail_memory(context, function, sizeof *body);

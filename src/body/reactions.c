@@ -110,8 +110,7 @@ mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_r
                                        size_t size) {
   static const char function[] = "mps_body_get_reaction";
   if (!body) return mpsi_null(__func__, "body");
-  const mps_status status = mpsi_body_check_part(body, function, part);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_body_check_part(body, function, part));
   mps_reaction sum = {0};
   for (int32_t p = 0; p < body->parts; p++)
     if (part < 0 || p == part) mpsi_body_add_reaction(&sum, &body->reaction[p]);
@@ -178,8 +177,7 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
     if (body->parts == MOST_PARTS)
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                        "the body has %d named parts, the most there can be", MOST_PARTS - 1);
-    const mps_status status = ensure_part(body, __func__);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(ensure_part(body, __func__));
     number = body->parts++;
     strcpy(body->names[number], name);
   }

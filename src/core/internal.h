@@ -54,6 +54,13 @@ mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *arg
 int64_t mpsi_failures(const mps_context *context); /* number of records so far */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 
+/* Returns from the function around it with the status of `call` where that is an error. */
+#define MPSI_TRY(call)                                                                             \
+  do {                                                                                             \
+    const mps_status mpsi_tried = (call);                                                          \
+    if (mpsi_tried != MPS_OK) return mpsi_tried;                                                   \
+  } while (0)
+
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
  * `room` characters or more. The rest is not checked. */
 size_t mpsi_identifier(const char *name, size_t room);

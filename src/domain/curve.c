@@ -145,8 +145,7 @@ static mps_status narrow(curve_cut *c, bool *open) {
       const int64_t at = probe_at(c, k, p);
       c->probe[k * c->probes + p] = weight_below(c, at) + weight_below(c, at + 1);
     }
-  const mps_status status = mpsi_domain_sum(c->domain, c->function, cuts * c->probes, c->probe);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(c->domain, c->function, cuts * c->probes, c->probe));
   *open = false;
   for (int32_t k = 0; k < cuts; k++) {
     const int64_t part = k + 1, rest = c->all % c->ranks;

@@ -145,8 +145,7 @@ int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index) {
 mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
                                  const void *own, void *guests) {
   const mps_domain_def *def = &halo->domain->def;
-  const mps_status status = mpsi_domain_alive(halo->domain, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_alive(halo->domain, function));
   halo->domain->calls++;
   return mpsi_domain_note(halo->domain, function, "star_begin",
                           def->star_begin(def->user, halo->star, item_bytes, own, guests));
@@ -167,8 +166,7 @@ mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t column
 }
 
 mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column) {
-  const mps_status status = mpsi_halo_end_bytes(halo, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_halo_end_bytes(halo, function));
   for (int32_t c = 0; c < halo->columns; c++)
     for (int64_t k = 0; k < halo->guests; k++)
       column[c][halo->first + k] = halo->in[k * halo->columns + c];

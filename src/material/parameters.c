@@ -5,8 +5,7 @@
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *values,
                                mpsi_law *law) {
   const mpsi_elastic_def *def = values;
-  const mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_check_elastic(context, function, def->young, def->poisson));
   *law = mpsi_law_elastic(def->young, def->poisson);
   return MPS_OK;
 }

@@ -63,8 +63,7 @@ static void *copy_def(mps_context *context, const mpsi_condition_kind *kind, con
     if (signal[c]) (void)mpsi_signal_retain(signal[c]);
   for (LISTS(k, kind)) {
     const size_t bytes = bytes_of(kind, def, k);
-    void *list = *list_of(kind, copy, k) =
-        bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
+    void *list = *list_of(kind, copy, k) = bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
     if (list) memcpy(list, *list_of(kind, def, k), bytes);
     good = good && (list || bytes == 0);
   }
@@ -131,8 +130,7 @@ static mps_status check_selection(mps_solver *s, const char *function,
                                   const mpsi_condition_kind *kind, const void *def,
                                   mpsi_selected *by, mpsi_selection_box *box) {
   const mpsi_selection selection = selection_of(s, kind, def);
-  const mps_status status = mpsi_selection_read(s->context, function, &selection, by, box);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_selection_read(s->context, function, &selection, by, box));
   if (*by != MPSI_SELECTED_IDS) return check_by_box(s, function, kind, def);
   return kind->check_ids ? kind->check_ids(s, function, def, selection.id_count, selection.ids)
                          : MPS_OK;
@@ -188,8 +186,7 @@ static mps_status check_choice(mps_solver *s, const char *function, const mpsi_c
   if (c->kept || c->by == MPSI_SELECTED_NONE) return MPS_OK;
   if (!kind->counts)
     return mpsi_selection_check_count(s->context, function, as_given, items, c->here);
-  const mps_status status = mpsi_domain_sum(s->domain, function, 2, found);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(s->domain, function, 2, found));
   if (mpsi_domain_many(s->domain) && c->by == MPSI_SELECTED_IDS && c->given > found[1])
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld, allowed are 1 to %lld particles", (long long)c->given,
@@ -335,11 +332,10 @@ mps_status mps_solver_add(mps_solver *s, int32_t kind, const void *def, int32_t 
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->add;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   int32_t at = 0;
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = find_number(s, function, list, &at);
+  mps_status status = find_number(s, function, list, &at);
   status = put(s, function, list, status, at, def);
   mpsi_guard_end(&s->guard);
   if (status == MPS_OK && number) *number = at;
@@ -351,10 +347,9 @@ mps_status mps_solver_set(mps_solver *s, int32_t kind, int32_t number, const voi
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->set;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = check_number(s, function, list, number);
+  mps_status status = check_number(s, function, list, number);
   if (status == MPS_OK) status = reserve(s, function, list, number);
   status = put(s, function, list, status, number, def);
   mpsi_guard_end(&s->guard);
@@ -366,11 +361,10 @@ mps_status mps_solver_remove(mps_solver *s, int32_t kind, int32_t number) {
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->remove;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = mpsi_domain_agree_same(s->domain, function, check_number(s, function, list, number),
-                                  "number", number);
+  mps_status status = mpsi_domain_agree_same(
+      s->domain, function, check_number(s, function, list, number), "number", number);
   void *const former = number >= 0 && number < list->room ? list->own[number] : NULL;
   if (status == MPS_OK && list->kind->apply)
     status = list->kind->apply(s, function, number, NULL, NULL, former);
@@ -389,8 +383,7 @@ mps_status mps_solver_get(const mps_solver *s, int32_t kind, int32_t number, voi
   const mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->get;
-  const mps_status status = check_number(s, function, list, number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_number(s, function, list, number));
   union {
     double align;
     char bytes[MPSI_STRUCT_MOST];
@@ -430,8 +423,7 @@ mps_status mps_solver_get_reaction_sized(const mps_solver *s, int32_t number, mp
   const char *function = s->kind->name.get_reaction;
   mps_reaction reaction = {.count = 0};
   mps_status status = check_number(s, function, &s->conditions[MPSI_BOUNDARIES], number);
-  status = s->kind->get_reaction((void *)s, function, status, number, &reaction);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->get_reaction((void *)s, function, status, number, &reaction));
   return mpsi_out_write(s->context, function, out, size, &reaction, sizeof reaction);
 }
 

@@ -122,9 +122,8 @@ mps_status mps_history_create(mps_solver *s, const char *name, const char *const
   if (!s || !out) return mpsi_null(__func__, s ? "out" : "solver");
   *out = NULL;
   mps_history *made = NULL;
-  mps_status status = mpsi_guard_check_between(&s->guard, s->context, __func__);
-  if (status != MPS_OK) return status;
-  status = make(s, __func__, name, count, columns, units, &made);
+  MPSI_TRY(mpsi_guard_check_between(&s->guard, s->context, __func__));
+  mps_status status = make(s, __func__, name, count, columns, units, &made);
   status = mpsi_domain_agree_same(s->domain, __func__, status, "count", count);
   if (status != MPS_OK) {
     if (made) end(made);
@@ -180,9 +179,8 @@ mps_status mps_history_set_source(mps_history *h, const char *column, mps_histor
                                   mps_release_fn release) {
   if (!h) return mpsi_null(__func__, "history");
   int64_t k = -1;
-  mps_status status = check_free(h, __func__);
-  if (status == MPS_OK) status = check_column(h, __func__, column, 1, &k);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_free(h, __func__));
+  MPSI_TRY(check_column(h, __func__, column, 1, &k));
   const mpsi_history_column former = h->column[k];
   h->column[k].source = fn, h->column[k].user = user, h->column[k].release = release;
   mpsi_release(former.release, former.user);
@@ -285,8 +283,7 @@ int64_t mps_history_count(const mps_history *h) { return h ? h->rows : 0; }
 mps_status mps_history_view(const mps_history *h, const char *column, mps_view *out) {
   if (!h || !out) return mpsi_null(__func__, h ? "out" : "history");
   int64_t k = -1;
-  const mps_status status = check_column(h, __func__, column, 0, &k);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_column(h, __func__, column, 0, &k));
   *out = (mps_view){.data = h->row ? h->row + k : NULL,
                     .shape = {h->rows, 1, 1},
                     .stride = {h->width, 1, 1},

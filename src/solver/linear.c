@@ -54,9 +54,8 @@ mps_status mps_solver_set_linear_solver(mps_solver *s, int32_t equation,
   if (!s) return mpsi_null(__func__, "solver");
   mps_linear_solver_def def = mps_linear_solver_defaults();
   mpsi_linear *linear = NULL;
-  mps_status status = mpsi_solver_enter(s, __func__);
-  if (status != MPS_OK) return status;
-  status = check(s, __func__, equation, user, &def);
+  MPSI_TRY(mpsi_solver_enter(s, __func__));
+  mps_status status = check(s, __func__, equation, user, &def);
   if (status == MPS_OK && user && !(linear = mpsi_alloc(s->context, 1, sizeof *linear)))
     status = mpsi_fail_memory(s->context, __func__, sizeof *linear);
   status = agree(s, __func__, status, user != NULL, &def);
@@ -120,14 +119,12 @@ mps_status mpsi_linear_hand(mps_solver *s, const char *function, mps_linear_matr
   const bool room = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
   l->valid = l->known = false;
   mps_status status = room ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
-  status = mpsi_domain_agree_max(s->domain, function, status, 1, &changed);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(s->domain, function, status, 1, &changed));
   a->struct_size = sizeof *a;
   a->change = changed != 0.0 ? MPS_LINEAR_CHANGE_PATTERN : MPS_LINEAR_CHANGE_VALUES;
   const mpsi_guard former = mpsi_guard_close(&s->guard, s->context, CALLBACK("matrix"));
   status = leave(s, function, former, l->def.matrix(l->def.user, a));
-  status = s->kind->agree(s, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->agree(s, function, status));
   l->valid = l->known = true;
   l->pattern = pattern, l->first = a->first, l->rows = a->rows;
   return MPS_OK;

@@ -101,10 +101,9 @@ static mps_status march(mps_solver *s, const char *function, mpsi_march *m) {
 
 static mps_status go(mps_solver *s, const char *function, mpsi_march *m) {
   m->before = s->kind->steps(s);
-  mps_status status = s->kind->begin(s, function, m);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->begin(s, function, m));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = march(s, function, m);
+  mps_status status = march(s, function, m);
   mpsi_guard_end(&s->guard);
   return s->kind->end ? s->kind->end(s, function, m, status) : status;
 }
@@ -150,9 +149,8 @@ mps_status mps_solver_run(mps_solver *s, double t_end, int64_t every, mps_solver
                           void *user) {
   if (!s) return mpsi_null(__func__, "solver");
   const char *function = s->kind->name.run;
-  mps_status status = mpsi_solver_enter(s, function);
-  if (status != MPS_OK) return status;
-  status = check_run(s, function, t_end, every);
+  MPSI_TRY(mpsi_solver_enter(s, function));
+  mps_status status = check_run(s, function, t_end, every);
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "t_end", t_end);

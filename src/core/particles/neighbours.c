@@ -314,8 +314,7 @@ mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def 
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_neighbours_def known;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known));
   mps_neighbours *nb = mpsi_alloc(context, 1, sizeof *nb);
   void *offsets = mpsi_alloc(context, 1, sizeof(int64_t));
   if (!nb || !offsets) {

@@ -34,15 +34,14 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_particles_def known;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known));
   mps_particles *p = mpsi_alloc(context, 1, sizeof *p);
   if (!p) return mpsi_fail_memory(context, __func__, sizeof *p);
   p->context = mpsi_context_retain(context);
   p->def = known;
   p->epoch = 1;
   p->owned = true;
-  status = mpsi_as(context, __func__, mps_particles_add_field(p, "id", 0));
+  mps_status status = mpsi_as(context, __func__, mps_particles_add_field(p, "id", 0));
   if (status == MPS_OK)
     status = mpsi_as(context, __func__, mps_particles_add_field(p, "position", 0));
   if (status != MPS_OK) {
@@ -183,8 +182,7 @@ int64_t mpsi_particles_made(const mps_particles *p) { return p->next_id; }
 static mps_status check_select(const mps_particles *p, const char *function, const double *lo,
                                const double *hi, int64_t capacity, const int64_t *ids,
                                const int64_t *count) {
-  const mps_status status = mpsi_particles_committed(p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_committed(p, function));
   if (!lo || !hi || !count)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
                      !lo   ? "lo"
@@ -238,8 +236,7 @@ mps_status mps_particles_select_box(const mps_particles *particles, const double
                                     const double *hi, int64_t capacity, int64_t *count,
                                     int64_t *ids) {
   if (!particles) return mpsi_null(__func__, "particles");
-  const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_select(particles, __func__, lo, hi, capacity, ids, count));
   if (particles->ids.sparse) return select_few(particles, __func__, lo, hi, capacity, ids, count);
   int64_t found = 0;
   for (int64_t id = 0; id < particles->next_id; id++) {

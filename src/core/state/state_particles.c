@@ -262,11 +262,10 @@ mps_status mpsi_particles_prepare_state(mps_particles *p, const char *function,
   *scratch = NULL;
   if (!id || id->type != MPSI_STATE_I64 || id->columns != 1)
     return mpsi_fail(p->context, function, MPS_ERROR_FORMAT, "the state has no ids of particles");
-  mps_status status = mpsi_particles_ready(p, function);
-  if (status == MPS_OK) status = check_particles(p, function, from, id->data);
-  if (status == MPS_OK) status = check_fields(p, function, from);
-  if (status == MPS_OK) status = add_missing(p, function, from);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_ready(p, function));
+  MPSI_TRY(check_particles(p, function, from, id->data));
+  MPSI_TRY(check_fields(p, function, from));
+  MPSI_TRY(add_missing(p, function, from));
   const bool same = same_order(p, from, id->data);
   if (!same) *scratch = new_move(p, from, id->data);
   if (same ? reserve_ids_to_come(p, from) : *scratch != NULL) return MPS_OK;

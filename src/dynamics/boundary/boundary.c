@@ -174,9 +174,8 @@ mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *funct
  */
 static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32_t changed,
                              lists *out) {
-  const mps_status status = mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
-                                                        dynamics->column_dashpots, out);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
+                                       dynamics->column_dashpots, out));
   find_owners(dynamics, out->owner);
   list_bounds(dynamics, out->owner, changed, out);
   list_dashpots(dynamics, out->owner, out);
@@ -230,8 +229,7 @@ static mps_status evaluate(mps_dynamics *dynamics, const char *function, int32_t
   for (int c = 0; c < 2; c++) {
     mpsi_signal_motion at;
     const mpsi_signal_use use = {dynamics->context, function, "boundary", number, c};
-    const mps_status status = mpsi_signal_evaluate(b->part.signal[c], use, t, &at);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_signal_evaluate(b->part.signal[c], use, t, &at));
     b->reach[c] = b->part.factor[c] * at.u;
     b->speed[c] = b->part.factor[c] * at.v;
   }
@@ -248,9 +246,7 @@ mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *fun
 mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function) {
   const double now = mpsi_dynamics_time(dynamics);
   for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
-    const mps_status status =
-        evaluate(dynamics, function, k, mpsi_dynamics_boundary_of(dynamics, k), now);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(evaluate(dynamics, function, k, mpsi_dynamics_boundary_of(dynamics, k), now));
   }
   const mpsi_dynamics_state *s = &dynamics->state;
   const double *const displacement[3] = {s->dx, s->dy, s->th};
@@ -325,8 +321,7 @@ const mpsi_condition_kind mpsi_dynamics_boundaries = {
 mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_status status,
                                       int32_t number, mps_reaction *out) {
   mps_dynamics *dynamics = solver;
-  status = mpsi_domain_agree_same(dynamics->domain, function, status, "number", number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_same(dynamics->domain, function, status, "number", number));
   const mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, number);
   const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;
   mpsi_exact sum[7];
@@ -335,9 +330,8 @@ mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_st
   memcpy(sum, b->pushed, sizeof b->pushed);
   memcpy(sum + 3, b->impulse, sizeof b->impulse);
   sum[6] = b->work;
-  status = mpsi_domain_sum_exact(dynamics->domain, function, 7, sum);
-  if (status == MPS_OK) status = mpsi_domain_sum(dynamics->domain, function, 1, &count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum_exact(dynamics->domain, function, 7, sum));
+  MPSI_TRY(mpsi_domain_sum(dynamics->domain, function, 1, &count));
   for (int k = 0; k < 7; k++) value[k] = mpsi_exact_value(&sum[k]);
   *out = (mps_reaction){
       .force = {value[0] * rate, value[1] * rate, 0.0},

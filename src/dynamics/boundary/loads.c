@@ -31,8 +31,7 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   }
   load->part.signal = def->signal;
   load->part.factor = def->factor;
-  const mps_status status = mpsi_dynamics_reserve_forces(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_reserve_forces(dynamics, function));
   return mpsi_dynamics_make_part(dynamics, function, (int64_t *)def->ids, &def->id_count,
                                  &load->part);
 }
@@ -94,8 +93,7 @@ mps_status mpsi_dynamics_evaluate_loads(mps_dynamics *dynamics, const char *func
       double factor;
       if (!load->part.signal[c]) continue;
       const mpsi_signal_use use = {dynamics->context, function, "load", k, c};
-      const mps_status status = mpsi_signal_factor(load->part.signal[c], use, now, &factor);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(load->part.signal[c], use, now, &factor));
       const double value = load->part.factor[c] * factor;
       if (value != load->now[c]) dynamics->forces_stale = true;
       load->now[c] = value;

@@ -166,9 +166,8 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   if (status == MPS_OK && (dynamics->def.gravity[0] != 0.0 || dynamics->def.gravity[1] != 0.0))
     status = mpsi_dynamics_reserve_forces(dynamics, function);
   if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
-  status = mpsi_domain_agree(dynamics->domain, function, status);
-  if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
-  return status;
+  MPSI_TRY(mpsi_domain_agree(dynamics->domain, function, status));
+  return mpsi_dynamics_begin(dynamics, function, 0.0);
 }
 static void destroy(void *solver) {
   mps_dynamics *dynamics = solver;
@@ -261,9 +260,9 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_status status = mpsi_particles_check_context(particles, context, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_dynamics_def, user_def, &def);
+  MPSI_TRY(mpsi_particles_check_context(particles, context, __func__));
+  mps_status status =
+      MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_dynamics_def, user_def, &def);
   if (mpsi_domain_check(context, __func__, def.domain) != MPS_OK) return MPS_ERROR_ARGUMENT;
   if (def.kernel) def.radius_ratio = mps_dynamics_defaults().radius_ratio; /* not read */
   const bool bounded = isnan(def.divergence);
@@ -326,4 +325,3 @@ mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
 }
 
 /* ---- questions ------------------------------------------------------------------------------- */
-

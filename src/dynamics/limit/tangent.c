@@ -136,9 +136,8 @@ mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *funct
     column[2][k] = sqrt(2.0 * state->ith[k]) * x[2 * n + k];
   }
   if (dynamics->halo) {
-    mps_status status = mpsi_halo_begin(dynamics->halo, function, 3, column);
-    if (status == MPS_OK) status = mpsi_halo_end(dynamics->halo, function, column);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_halo_begin(dynamics->halo, function, 3, column));
+    MPSI_TRY(mpsi_halo_end(dynamics->halo, function, column));
   }
   tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * m, .weight = weight};
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks + dynamics->mesh.ghosts, shear_block,

@@ -125,8 +125,7 @@ static mps_status bisect(dealing *d, bool ids, int64_t *least, int64_t *below, i
       const int64_t middle = least[c] + (out[c] - least[c]) / 2;
       below[c] = ids ? count_below(d, d->key[c], middle + 1) : count_below(d, middle + 1, 0);
     }
-    const mps_status status = mpsi_domain_sum(d->domain, d->function, cuts, below);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_domain_sum(d->domain, d->function, cuts, below));
     for (int32_t c = 0; c < cuts; c++) {
       const int64_t middle = least[c] + (out[c] - least[c]) / 2;
       if (least[c] == out[c]) continue;

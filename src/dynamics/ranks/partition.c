@@ -451,8 +451,7 @@ mps_status mpsi_dynamics_take_partition(mps_dynamics *dynamics, const char *func
   plan p = {.dynamics = dynamics, .function = function};
   mps_domain *domain = dynamics->domain;
   *out = (mpsi_dynamics_structure){0};
-  status = compare_ranks(dynamics, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(compare_ranks(dynamics, function, status));
   const bool parts = mpsi_particles_deal(dynamics->particles) != NULL;
   status = parts ? plan_parts(&p, backup) : plan_whole(&p);
   if (status == MPS_OK) status = make_structure(&p, out);
@@ -496,7 +495,6 @@ mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *f
                                 .alpha = {-most[4], most[3]},
                                 .beta = {-most[6], most[5]}};
   mpsi_dynamics_choose_damping(dynamics);
-  status = mpsi_halo_begin(dynamics->halo, function, 3, column);
-  if (status == MPS_OK) status = mpsi_halo_end(dynamics->halo, function, column);
-  return status;
+  MPSI_TRY(mpsi_halo_begin(dynamics->halo, function, 3, column));
+  return mpsi_halo_end(dynamics->halo, function, column);
 }

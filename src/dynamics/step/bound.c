@@ -94,8 +94,7 @@ mps_status mpsi_dynamics_save_before(mps_dynamics *dynamics, const char *functio
   if (isinf(dynamics->def.divergence)) return MPS_OK;
   if (b->accepts) {
     double kinetic, strain;
-    const mps_status found = mpsi_dynamics_energies(dynamics, function, &kinetic, &strain);
-    if (found != MPS_OK) return found;
+    MPSI_TRY(mpsi_dynamics_energies(dynamics, function, &kinetic, &strain));
     b->accepted = fmax(kinetic + strain, 0.0);
     b->accepts = false;
   }

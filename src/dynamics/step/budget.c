@@ -98,13 +98,12 @@ static void energy_block(void *data, int64_t b, int32_t worker) {
 mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, double *kinetic,
                                   double *strain) {
   const int64_t blocks = dynamics->mesh.blocks;
-  mps_status status = mpsi_dynamics_bring_motion(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_bring_motion(dynamics, function));
   mpsi_parallel_for(dynamics->context, blocks + dynamics->mesh.ghosts, first_pass, dynamics);
   mpsi_parallel_for(dynamics->context, blocks, energy_block, dynamics);
   mpsi_exact sum[2] = {{{0}}, {{0}}};
   for (int64_t k = 0; k < 2 * blocks; k++) mpsi_exact_add(&sum[k % 2], dynamics->part[k]);
-  status = mpsi_domain_sum_exact(dynamics->domain, function, 2, sum);
+  mps_status status = mpsi_domain_sum_exact(dynamics->domain, function, 2, sum);
   *kinetic = mpsi_exact_value(&sum[0]);
   *strain = mpsi_exact_value(&sum[1]);
   return status;
@@ -222,8 +221,7 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
 mps_status mpsi_dynamics_get_totals(void *solver, const char *function, mps_totals *out) {
   mps_dynamics *dynamics = solver;
   mps_totals t;
-  const mps_status status = find_totals(dynamics, function, &t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_totals(dynamics, function, &t));
   const mpsi_dynamics_works *w = &dynamics->works;
   const double start = dynamics->begun ? w->start : t.kinetic + t.strain;
   const double rest =

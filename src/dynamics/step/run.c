@@ -26,8 +26,7 @@ static mps_status prepare_run(mps_dynamics *dynamics, const char *function) {
  */
 static mps_status take_motion(mps_dynamics *dynamics, const char *function, double length) {
   if (!dynamics->begins) return MPS_OK;
-  const mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_look_ahead(dynamics, function, length));
   return mpsi_dynamics_begin(dynamics, function, mpsi_dynamics_time(dynamics));
 }
 
@@ -39,11 +38,9 @@ mps_status mpsi_dynamics_check_diverged(const mps_dynamics *dynamics, const char
 }
 
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
-  mps_status status = mpsi_guard_check(&dynamics->guard, dynamics->context, function);
-  if (status != MPS_OK) return status;
-  status = mpsi_dynamics_check_diverged(dynamics, function);
-  if (status == MPS_OK) status = prepare_run(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_guard_check(&dynamics->guard, dynamics->context, function));
+  MPSI_TRY(mpsi_dynamics_check_diverged(dynamics, function));
+  MPSI_TRY(prepare_run(dynamics, function));
   return mpsi_dynamics_choose_dt(dynamics, function);
 }
 
@@ -68,8 +65,7 @@ static double divide(const mps_dynamics *dynamics, double start, double t_end, i
 
 /* Equal steps to the end of a run, and about a hundred reports. */
 static mps_status plan_run(const mps_dynamics *dynamics, const char *function, mpsi_march *m) {
-  const mps_status status = mpsi_march_check(m, dynamics->context, function, dynamics->dt);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_march_check(m, dynamics->context, function, dynamics->dt));
   m->length = divide(dynamics, m->start, m->t_end, &m->total);
   const int64_t part = m->total / 100 > 0 ? m->total / 100 : 1;
   if (part < m->prompt) m->prompt = part;

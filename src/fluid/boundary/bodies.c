@@ -459,9 +459,9 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
   mps_fluid_contact_def def = mps_fluid_contact_defaults();
   mps_contact *contact = NULL;
   int32_t b = 0;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  mps_status status =
+      MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
   if (status == MPS_OK) status = check_body(f, __func__, body);
   if (status == MPS_OK) status = find_room(f, __func__, body, &b);
   if (status == MPS_OK && is_to_float(body, &def)) status = mpsi_body_check_mover(body, __func__);

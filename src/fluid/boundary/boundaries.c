@@ -63,8 +63,7 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   }
   for (int b = 0; b < f->boundaries; b++) {
     if (b == number || !f->wall[b].line) continue;
-    const mps_status status = mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line));
   }
   for (int b = 0; b < f->boundaries; b++) {
     const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];

@@ -88,8 +88,7 @@ void mpsi_fluid_add_impulses(mps_fluid *f) {
 mps_status mps_fluid_set_boundary_motion(mps_fluid *f, int32_t number,
                                          const double *displacement_of, const double *velocity) {
   if (!f) return mpsi_null(__func__, "fluid");
-  const mps_status status = mpsi_fluid_free(f, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_free(f, __func__));
   if (MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "number: boundary %d is a polyline, which does not move", number);

@@ -163,8 +163,7 @@ static mps_status use_dt(void *solver, const char *function, double dt) {
 
 static mps_status get_totals(void *solver, const char *function, mps_totals *out) {
   const mps_fluid *f = solver;
-  const mps_status status = mpsi_particles_committed(f->particles, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_committed(f->particles, function));
   const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
@@ -231,11 +230,10 @@ static mps_status start(mps_fluid *f, const char *function) {
   mps_status status = mpsi_fluid_partition_create(f, function);
   if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
+  MPSI_TRY(mpsi_fluid_look(f, function));
+  MPSI_TRY(mpsi_fluid_sort(f, function));
+  MPSI_TRY(mpsi_fluid_look(f, function));
   f->unknown = 1;
   mpsi_fluid_find_speed(f);
   double kinetic;
@@ -261,9 +259,8 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_fluid_def def = mps_fluid_defaults();
-  mps_status status = mpsi_particles_check_context(particles, context, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_fluid_def, user_def, &def);
+  MPSI_TRY(mpsi_particles_check_context(particles, context, __func__));
+  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   const double l0 = mps_particles_spacing(particles);
   if (status == MPS_OK) status = read_kernel(context, &def, l0);

@@ -123,8 +123,7 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
 mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   mps_fluid *f = self;
   (void)ids;
-  const mps_status status = mpsi_fluid_ready(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_ready(f, function));
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "all %lld particles are to be removed, a fluid needs one",

@@ -151,8 +151,7 @@ static mps_status evaluate_signals(mps_fluid *f, const char *function, double t,
       const mps_signal *signal = driven ? g->def->signal[c] : NULL;
       double factor;
       const mpsi_signal_use use = {f->context, function, "load", k, c};
-      const mps_status status = mpsi_signal_factor(signal, use, t, &factor);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(signal, use, t, &factor));
       g->now[c] = g->def->factor[c] * factor;
     }
   }

@@ -104,8 +104,7 @@ static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status s
 static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_rock_def *user,
                             mps_fluid_rock_def *def) {
   if (!user) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  const mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_rock_def, user, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(f->context, function, mps_fluid_rock_def, user, def));
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED, "rock with the classical scheme");
   const mps_status wrong = check(f, def);
@@ -118,9 +117,8 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   mps_fluid_rock_def def = mps_fluid_rock_defaults();
   double *xy = NULL;
   int32_t k = -1;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = read_rock(f, __func__, user, &def);
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  mps_status status = read_rock(f, __func__, user, &def);
   if (status == MPS_OK) {
     const size_t size = 2 * (size_t)def.corner_count * sizeof *xy;
     xy = mpsi_alloc(f->context, 2 * def.corner_count, sizeof *xy);
@@ -150,11 +148,9 @@ static mps_status check_rock(mps_fluid *f, const char *function, int32_t number)
 
 mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->domain, __func__, check_rock(f, __func__, number), "number",
-                                  number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  MPSI_TRY(mpsi_domain_agree_same(f->domain, __func__, check_rock(f, __func__, number), "number",
+                                  number));
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};
   drop_if_none(f);

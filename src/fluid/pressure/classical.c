@@ -24,8 +24,7 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->domain, __func__, status, "gamma", gamma);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_same(f->domain, __func__, status, "gamma", gamma));
   if (!(gamma > 0.0 && gamma <= 1.0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %s, must be in (0, 1]",
                      mpsi_outside(gamma, 0.0, 1.0).text);
@@ -84,10 +83,9 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
   f->stage = MPSI_FLUID_MOVED; /* walls are at their positions of the end of the step */
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_agree_same(f, function, status);
-  if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree_same(f, function, status));
+  MPSI_TRY(mpsi_fluid_find_neighbours(f, function));
+  MPSI_TRY(mpsi_fluid_find_halo(f, function));
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
   mpsi_fluid_send_moments(f);
   mpsi_fluid_count(f);

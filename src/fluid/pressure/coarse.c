@@ -287,8 +287,7 @@ static mps_status make_matrix(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (!mpsi_envelope_make(f->context, e))
     status = mpsi_fail_memory(f->context, function, (size_t)e->entries * sizeof *e->value);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
   mpsi_fluid_units(f, c->block, add_rows, f);
   const int64_t low = c->own[first_block(f)], high = c->own[end_block(f)];
   send_values(f, e->entries, e->value, low < e->rows ? e->start[low] : e->entries,

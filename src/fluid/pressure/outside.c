@@ -92,8 +92,7 @@ static void close_gaps(mps_fluid *f) {
 
 mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   const mpsi_fluid_outside *o = &f->outside;
-  const mps_status status = mpsi_fluid_agree(f, function, make_room(f, function));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, make_room(f, function)));
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   close_gaps(f);
   mps_linear_matrix matrix = {.all = f->count,
@@ -123,19 +122,15 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
   mpsi_fluid_system *s = &f->system;
   const int64_t own = f->own[0];
   double rr = 0.0, bb = 0.0;
-  mps_status status =
-      mpsi_linear_solve(&f->base, function, f->def.tolerance, s->right + own, s->x + own);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_solve(&f->base, function, f->def.tolerance, s->right + own, s->x + own));
   mpsi_fluid_send_halo(f, 1, &s->x);
   for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);
   mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
-  status = mpsi_fluid_lost(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_lost(f, function));
   for (int64_t k = 0; k < (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK; k++)
     rr += s->sums[2 * k], bb += s->sums[2 * k + 1];
-  status = mpsi_linear_check(&f->base, function, f->def.tolerance, 0.0, rr, bb);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_check(&f->base, function, f->def.tolerance, 0.0, rr, bb));
   f->report.iterations = f->linear->result.iterations;
   f->report.all_iterations += f->report.iterations;
   return MPS_OK;

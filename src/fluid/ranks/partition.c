@@ -269,10 +269,9 @@ static void list_requested(const mps_fluid *f, const void *from, guests *g) {
 static mps_status join_back(mps_fluid *f, const char *function) {
   mpsi_mailbox box = {.context = f->context};
   int64_t count = 0;
-  mps_status status = request_items(f, function, &box);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(request_items(f, function, &box));
   for (int32_t m = 0; m < box.count; m++) count += box.mail[m].bytes / 8 - 1;
-  status = make_link(f, function, &f->partition->back, count, list_requested, &box);
+  mps_status status = make_link(f, function, &f->partition->back, count, list_requested, &box);
   mpsi_domain_free_mail(&box);
   return status;
 }
@@ -293,9 +292,8 @@ static mps_status begin_anew(mps_fluid *f, const char *function) {
   mps_status status = s->is_guest && s->mark
                           ? MPS_OK
                           : mpsi_fail_memory(f->context, function, (size_t)f->count * 9);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status == MPS_OK) status = join(f, function, &s->all, is_foreign);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
+  MPSI_TRY(join(f, function, &s->all, is_foreign));
   s->count = f->count;
   s->epoch = mps_particles_epoch(f->particles) + 1; /* another one */
   return MPS_OK;

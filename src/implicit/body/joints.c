@@ -87,8 +87,7 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   int64_t *at = NULL;
   double *scratch = NULL, *bending = NULL;
   bool any = false;
-  const mps_status status = find_any(e, function, count, &any);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_any(e, function, count, &any));
   if (mpsi_elastic_has_bending(e, any)) {
     const int64_t size = mpsi_elastic_bending_size(e);
     if (!(bending = mpsi_alloc(e->context, size, sizeof *bending)))

@@ -231,8 +231,7 @@ static mps_status find_motions(mps_elastic *e, const char *function, double t) {
 }
 
 mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t) {
-  const mps_status status = find_motions(e, function, t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_motions(e, function, t));
   for (int64_t k = 0; k < e->support_count; k++) {
     mpsi_support *s = &e->supports[k];
     for (int derivative = 0; derivative < 3; derivative++)

@@ -101,9 +101,8 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
       if (e->dim == 3) r[q] = 0.5 * (low[q] + high[q]) + 0.5 * at[b] * (high[q] - low[q]);
       for (int c = 0; c < e->dim; c++) x[c] = e->x[f->particle * e->dim + c] + r[c];
       const int64_t failures = mpsi_failures(e->context);
-      const mps_status status = mpsi_callback_status(e->context, function, "the traction callback",
-                                                     failures, traction(user, x, normal, t));
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_callback_status(e->context, function, "the traction callback", failures,
+                                    traction(user, x, normal, t)));
       for (int c = 0; c < e->dim; c++)
         if (!isfinite(t[c]))
           return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -315,8 +314,7 @@ static mps_status check_strength(const mps_elastic *e, const char *function) {
 }
 
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
-  mps_status status = find_scales(e, function, t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_scales(e, function, t));
   memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
   if (has_gravity(e)) {
     mps_elastic_load_def weight = {.kind = MPS_ELASTIC_LOAD_BODY};
@@ -334,7 +332,7 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
       if (i >= 0) add_patch(e, i, &l->patches[p], l->scale);
     }
   }
-  status = add_external(e, function);
+  mps_status status = add_external(e, function);
   if (status == MPS_OK) status = mpsi_elastic_complete(e, function, e->load);
   return status == MPS_OK ? check_strength(e, function) : status;
 }
@@ -388,9 +386,8 @@ mps_status mps_elastic_get_load_resultant(const mps_elastic *handle, const doubl
                                           double *force, double *moment) {
   mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
+  mps_status status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
   double *mass = e->mass;
   if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mpsi_elastic_time(e));

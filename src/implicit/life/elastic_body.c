@@ -96,16 +96,14 @@ static mps_status check_cut(const mps_elastic *e, const char *function, int32_t 
 
 mps_status mps_elastic_cut(mps_elastic *e, int32_t side, const int64_t *ids, int64_t count) {
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "side", side);
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
-  status = check_cut(e, __func__, side, ids, count);
-  status = mpsi_elastic_leave(e, mpsi_elastic_agree_given(e, __func__, status, &given));
-  if (status != MPS_OK) return status;
+  mps_status status = check_cut(e, __func__, side, ids, count);
+  MPSI_TRY(mpsi_elastic_leave(e, mpsi_elastic_agree_given(e, __func__, status, &given)));
   mpsi_elastic_end_motion(e); /* the masses of its cells have changed */
   for (int64_t k = 0; k < count; k++) {
     const int64_t i = mpsi_elastic_find(e, ids[k]);

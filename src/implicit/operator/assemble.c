@@ -495,8 +495,7 @@ mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function) {
 
 /* Counts the entries of each column and allocates the matrix. */
 static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t) {
-  const mps_status status = mpsi_elastic_make_vectors(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_make_vectors(e, function));
   const int64_t n = e->unknowns;
   if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)))
     return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->column);

@@ -31,8 +31,7 @@ mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition 
                                   mps_status status) {
   double found[4] = {run->edited, run->stale, run->lost, run->changed};
   partition->ready = false;
-  status = mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 4, found);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 4, found));
   run->edited = found[0] > 0.0;
   run->stale = found[1] > 0.0;
   run->lost = found[2] > 0.0;

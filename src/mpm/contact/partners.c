@@ -183,8 +183,7 @@ mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, const mpsi_grid *grid
     while (spread(grid)) {
     }
   }
-  const mps_status lost = mpsi_domain_sum(domain, function, HEAD + rows * words, m->words);
-  if (lost != MPS_OK) return lost;
+  MPSI_TRY(mpsi_domain_sum(domain, function, HEAD + rows * words, m->words));
   if (m->words[FAILED] > 0) return mpsi_domain_agree(domain, function, status);
   *constraints = m->words[CONSTRAINTS];
   read_rows(m, domain, row, rows);

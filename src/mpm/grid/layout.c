@@ -275,8 +275,8 @@ mps_status mpsi_mpm_sort_cells(mps_context *context, mpsi_grid *grid, const mpsi
   run->stale = false;
   if (p->count == 0)
     return mpsi_mpm_ensure_cells(context, grid, 0) ? MPS_OK : no_room(context, grid, function, 0);
-  const mps_status status = find_cells(context, grid, p, function);
-  return status == MPS_OK ? put_in_order(context, grid, p, function) : status;
+  MPSI_TRY(find_cells(context, grid, p, function));
+  return put_in_order(context, grid, p, function);
 }
 
 mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
@@ -287,8 +287,7 @@ mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi
         mpsi_mpm_ensure_cells(context, grid, 0) && mpsi_mpm_build_nodes(context, grid, 0);
     return good ? MPS_OK : no_room(context, grid, function, 0);
   }
-  mps_status status = find_cells(context, grid, p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_cells(context, grid, p, function));
   const int64_t cells = grid->cell_count;
   if (!mpsi_mpm_build_nodes(context, grid, cells)) return no_room(context, grid, function, cells);
   run->stale = false;

@@ -82,9 +82,8 @@ static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low
   }
   low[2] = high[2] = 0;
   for (int c = 0; c < dim_of(d); c++) {
-    mps_status status = read_wall(context, d, c, false, &low[c]);
-    if (status == MPS_OK) status = read_wall(context, d, c, true, &high[c]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(read_wall(context, d, c, false, &low[c]));
+    MPSI_TRY(read_wall(context, d, c, true, &high[c]));
     if (low[c] >= high[c])
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                        "the domain in %c is [%g, %g] m, must be at least one cell", "xyz"[c],
@@ -131,11 +130,10 @@ static bool in_parts(const mpsi_columns *p) { return mpsi_particles_deal(p->set)
 static mps_status join_extremes(mpsi_contacts *contacts, mpsi_run *run, const mps_mpm_def *def,
                                 mps_status status) {
   double most[2] = {run->speed, isnan(contacts->least_mass) ? -INFINITY : -contacts->least_mass};
-  status = mpsi_domain_agree_max(def->domain, create, status, 2, most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(def->domain, create, status, 2, most));
   run->speed = most[0];
   contacts->least_mass = most[1] == -INFINITY ? NAN : -most[1];
-  return status;
+  return MPS_OK;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
@@ -253,10 +251,9 @@ static mps_status make_memory(mps_mpm *mpm) {
 /* Initial state of the particles, and their order. */
 static mps_status begin(mps_mpm *mpm) {
   mpsi_mpm_begin_particles(&mpm->grid, &mpm->p, &mpm->contact);
-  mps_status status = find_speed(mpm);
-  if (status == MPS_OK) status = check_step(mpm);
-  if (status == MPS_OK) status = make_memory(mpm);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_speed(mpm));
+  MPSI_TRY(check_step(mpm));
+  MPSI_TRY(make_memory(mpm));
   return is_shared(&mpm->def)
              ? mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create)
              : mpsi_mpm_sort(mpm, create);
@@ -606,7 +603,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
 
 mps_solver *mps_mpm_solver(const mps_mpm *mpm) { return mpm ? (mps_solver *)&mpm->base : NULL; }
 
-
 /* ---- variants for comparison ----------------------------------------------------------------- */
 
 /* Checks that a variant is chosen before the first step, the same on all ranks. */
@@ -623,9 +619,7 @@ static mps_status check_before_steps(mps_context *context, mpsi_run *run, const 
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer));
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
@@ -642,9 +636,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
 
 mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain));
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
@@ -654,9 +646,7 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
 
 mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip));
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
                      mpsi_outside(flip, 0.0, 1.0).text);

@@ -507,8 +507,7 @@ mps_status mpsi_mpm_settle_state(void *solver, const char *function) {
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "step %lld has failed: there is no state to go on from",
                      (long long)mpm->run.steps);
-  const mps_status status = mpsi_mpm_apply_edits(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_apply_edits(mpm, function));
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
   return mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
 }

@@ -42,8 +42,7 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
                         int64_t count, const int64_t *ids) {
   mps_status status = MPS_OK;
   if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  status = check_list(mpm, function, status, material, count, ids);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_list(mpm, function, status, material, count, ids));
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->p.set, "volume_ratio", 0)
                         : NULL;
@@ -80,8 +79,7 @@ static mps_status check_start(mps_mpm *mpm, const char *function, const mps_mate
 /* Adds the column of the laws' numbers, which a set with one law lacks. */
 static mps_status number_particles(mpsi_columns *p) {
   if (p->law) return MPS_OK;
-  const mps_status status = mps_particles_add_field(p->set, "material", 0);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mps_particles_add_field(p->set, "material", 0));
   p->law = mpsi_particles_integers(p->set, "material");
   for (int64_t k = 0; k < p->count; k++) p->law[k] = 0;
   return MPS_OK;
@@ -117,8 +115,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, const int6
   if (status == MPS_OK) status = check_start(mpm, __func__, material, count, ids);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
-  status = mpsi_mpm_agree(mpm->partition, __func__, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_agree(mpm->partition, __func__, status));
   for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
     const int64_t k = place(&mpm->p, ids, i);
     if (k < 0) continue;                    /* particle of another rank */

@@ -64,8 +64,7 @@ mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mps
     loads->external_force[c] = mpsi_particles_column(p->set, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
-    const mps_status status = mpsi_mpm_make_forces(context, grid, p, rooms, function);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_mpm_make_forces(context, grid, p, rooms, function));
   }
   if (!rooms->force.item) return MPS_OK;
   field_forces of = {grid, p, loads};

@@ -149,8 +149,7 @@ mps_status mpsi_mpm_renew_masses(mps_context *context, const mpsi_grid *grid, co
   const double *now = strcmp(field, "density") == 0 ? density : p->V;
   for (int64_t k = 0; k < p->count; k++) {
     if (now[k] == former[k] || (p->m[k] == 0.0 && density[k] == 0.0)) continue;
-    const mps_status status = check_amount(context, grid, p, function, k, density[k]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(check_amount(context, grid, p, function, k, density[k]));
   }
   for (int64_t k = 0; k < p->count; k++)
     if (now[k] != former[k]) set_mass(grid, p, contacts, k, density[k]);

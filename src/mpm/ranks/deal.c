@@ -104,9 +104,7 @@ static mps_status find_blocks(const mpsi_rank_part *part, const char *function) 
   mpsi_mpm_bind(part->grid, part->p, part->water);
   part->p->laws.ids = mpsi_particles_integers(part->p->set, "id"); /* laws are added later */
   part->grid->worker_count = mps_context_threads(part->context);
-  const mps_status status =
-      mpsi_mpm_check_start(part->context, part->grid, part->p, part->def, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_check_start(part->context, part->grid, part->p, part->def, function));
   if (!mpsi_mpm_make_room(part->context, part->grid, part->p, part->rooms, part->p->count))
     return mpsi_fail_memory(part->context, function,
                             (size_t)part->p->count * 2 * sizeof *part->grid->radix);
@@ -127,11 +125,9 @@ static mps_status fit(const mpsi_rank_part *part, const char *function) {
 mps_status mpsi_mpm_share_deal(const mpsi_rank_part *part, const char *function) {
   bool moved;
   int64_t blocks;
-  mps_status status =
-      mpsi_domain_agree(part->partition->domain, function, find_blocks(part, function));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(part->partition->domain, function, find_blocks(part, function)));
   blocks = part->grid->cell_count;
-  status = mpsi_domain_sum(part->partition->domain, function, 1, &blocks);
+  mps_status status = mpsi_domain_sum(part->partition->domain, function, 1, &blocks);
   if (status == MPS_OK)
     status = blocks <= MOST_BLOCKS
                  ? place_by_list(part->context, part->grid, part->partition, function)

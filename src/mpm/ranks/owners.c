@@ -117,8 +117,7 @@ static mps_status list_columns(departure *d) {
 static mps_status list_leaving(departure *d, const char *function) {
   const mpsi_rank_part *part = d->part;
   const int32_t rank = mps_domain_rank(part->partition->domain);
-  mps_status status = list_columns(d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(list_columns(d));
   const int64_t count = part->p->count;
   d->column = mpsi_alloc(part->context, d->columns, sizeof *d->column);
   d->gone = mpsi_alloc(part->context, count, 1);
@@ -155,8 +154,7 @@ static mps_status store_received(departure *d, const char *function, const mpsi_
         mpsi_fail_memory(part->context, function, (size_t)count * 2 * sizeof *part->grid->radix);
   if (status == MPS_OK) status = mpsi_particles_hold_room(part->p->set, function, count);
   mpsi_mpm_bind(part->grid, part->p, part->water); /* columns may have moved */
-  status = mpsi_domain_agree(part->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(part->partition->domain, function, status));
   mpsi_particles_make_way(part->p->set, d->gone);
   (void)list_columns(d);
   mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(part->p->set));

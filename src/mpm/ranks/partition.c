@@ -193,14 +193,12 @@ static mps_status join(search *s, mps_status status, int64_t announced) {
   if (status == MPS_OK && !put_lists(s))
     status = mpsi_fail_memory(part->context, s->function,
                               (size_t)(s->count + s->ghosts) * sizeof *part->grid->cells);
-  status = mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most));
   partition->most = (int32_t)most;
   mark_blocks(part->grid);
   mpsi_halo_destroy(part->context, &partition->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
-  status = mpsi_halo_create(partition->domain, s->function, &def, &partition->halo);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_halo_create(partition->domain, s->function, &def, &partition->halo));
   return mpsi_domain_agree(partition->domain, s->function, find_border(part, s->function));
 }
 

@@ -101,8 +101,8 @@ void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before) {
 }
 
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_guard_check(&mpm->guard, mpm->context, function);
-  return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
+  MPSI_TRY(mpsi_guard_check(&mpm->guard, mpm->context, function));
+  return mpsi_mpm_apply_edits(mpm, function);
 }
 
 mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function) {

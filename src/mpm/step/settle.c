@@ -199,8 +199,7 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
                               mps_mpm_settled *now) {
   mpsi_settling *settling = &mpm->settling;
   while (settling->steps < def->max_steps) {
-    const mps_status status = relax(mpm, function, now);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(relax(mpm, function, now));
     const bool balanced = now->unbalanced <= def->tolerance;
     if (balanced && settling->from_rest) return MPS_OK;
     settling->from_rest = balanced || now->kinetic < settling->before;
@@ -241,8 +240,7 @@ static mps_status relax_with_explicit_pressures(mps_mpm *mpm, const char *functi
 static mps_status read_def(mps_context *context, const char *function,
                            const mps_mpm_settle_def *user, mps_mpm_settle_def *def) {
   *def = mps_mpm_settle_defaults();
-  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_mpm_settle_def, user, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_mpm_settle_def, user, def));
   if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
   return MPS_OK;
 }

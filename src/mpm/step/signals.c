@@ -13,9 +13,7 @@ static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
     mpsi_traction *load = mpsi_load_of(loads, k);
     for (int c = 0; load && c < grid->dim; c++) {
       const mpsi_signal_use use = {context, function, "load", k, c};
-      const mps_status status =
-          mpsi_signal_factor(load->def->signal[c], use, run->time, &load->now[c]);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(load->def->signal[c], use, run->time, &load->now[c]));
     }
   }
   return MPS_OK;
@@ -40,9 +38,7 @@ static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *gri
       mpsi_signal_motion m = {0};
       hold->v[c] = 0.0;
       if (!hold->signal[c] || settling->on) continue;
-      const mps_status status =
-          mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m));
       hold->v[c] = hold->factor[c] * m.v;
     }
   }
@@ -53,8 +49,7 @@ static mps_status evaluate_bodies(const mpsi_contacts *contacts, const mpsi_sett
                                   const char *function, double dt) {
   for (int32_t b = 0; b < contacts->bodies && !settling->on; b++) {
     if (!contacts->handle[b]->source.moves) continue;
-    const mps_status status = mpsi_body_look_ahead(contacts->body[b], function, b, dt);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_body_look_ahead(contacts->body[b], function, b, dt));
   }
   return MPS_OK;
 }

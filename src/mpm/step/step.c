@@ -151,9 +151,8 @@ static mps_status find_forces(step *s) {
 
 static mps_status begin_energy(step *s) {
   mps_mpm *mpm = s->mpm;
-  const mps_status status = mpsi_mpm_energy_begin(mpm->context, &mpm->grid, &mpm->p, &mpm->contact,
-                                                  &mpm->energy, &mpm->def, s->function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_energy_begin(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->energy,
+                                 &mpm->def, s->function));
   return mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
                                 s->function);
 }

@@ -222,8 +222,7 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
       mpsi_room_ensure(mpm->context, &out->word_room, 3 * out->slots, sizeof(int64_t)) &&
       mpsi_room_ensure(mpm->context, &out->known_room, out->slots, sizeof(known_node));
   status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)out->slots * 24);
-  status = mpsi_domain_agree(domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(domain, function, status));
   int64_t *word = out->word_room.item;
   memset(word, 0, (size_t)(WORDS * out->slots) * sizeof *word);
   for (int64_t k = 0; k < out->nodes; k++) {
@@ -232,8 +231,7 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
     word[WORDS * first] = pack(node->at[0], node->at[1]);
     word[WORDS * first++ + 1] = pack(node->at[2], s->held[node->number]);
   }
-  status = share(mpm, function, WORDS * out->slots, word);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(share(mpm, function, WORDS * out->slots, word));
   known_node *known = out->known_room.item;
   list_known(word, out->slots, known);
   for (int64_t k = 0; k < out->nodes; k++) {
@@ -383,8 +381,7 @@ mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function) {
   mpsi_pore_system *s = mpm->water->system;
   mpsi_pore_contacts *all = &s->contacts;
   if (!all->any) return MPS_OK;
-  const mps_status status = take_velocities(mpm, function, all);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(take_velocities(mpm, function, all));
   for (int64_t k = 0; k < all->count; k++)
     memset(all->contact[k].left, 0, sizeof all->contact[k].left);
   for (int32_t b = 0; b < all->movers; b++) {

@@ -593,8 +593,7 @@ mps_status mpsi_pore_press(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
   mpsi_water *water = mpm->water;
-  const mps_status status = find_implicit(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_implicit(mpm, function));
   mpsi_pore_follow_means(mpm);
   water->expecting = true;
   water->share = 1.0;

@@ -93,8 +93,7 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   const int64_t cells = mpm->grid.node_count * mpm->grid.block_nodes; /* a rank may have none */
   if (cells > 0) memcpy(s->direction, s->change, (size_t)cells * sizeof *s->change);
-  const mps_status status = mpsi_pore_find_motion(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_motion(mpm, function));
   mpsi_pore_bear_contacts(mpm);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_squeeze, 0.0);
   return MPS_OK;
@@ -158,14 +157,12 @@ void mpsi_pore_add_reactions(mps_mpm *mpm) {
 }
 
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_pore_find_nodes(mpm, function);
-  if (status == MPS_OK) status = mpsi_pore_find_contacts(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_nodes(mpm, function));
+  MPSI_TRY(mpsi_pore_find_contacts(mpm, function));
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, take_motion, 0.0);
-  status = mpsi_pore_find_changes(mpm, function);
-  if (status == MPS_OK) status = move_nodes(mpm, function);
-  if (status == MPS_OK && mpm->partition) status = mpsi_pore_send_changes(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_changes(mpm, function));
+  MPSI_TRY(move_nodes(mpm, function));
+  if (mpm->partition) MPSI_TRY(mpsi_pore_send_changes(mpm, function));
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, take, 0.0);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, correct, mpm->run.dt);
   mpsi_pore_exchange(mpm, MPSI_PORE_NOW);

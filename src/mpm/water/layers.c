@@ -139,8 +139,7 @@ static mps_status find(search *s, mpsi_pore_layers *layers) {
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
   layers->guests = layers->blocks = 0;
   if (status == MPS_OK) status = choose(s, layers);
-  status = mpsi_domain_agree_max(domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(domain, s->function, status, 1, &most));
   layers->most = (int64_t)most;
   const mpsi_halo_def def = {.guests = layers->guests, .rank = s->rank, .index = s->index};
   status = mpsi_halo_create(domain, s->function, &def, &layers->halo);

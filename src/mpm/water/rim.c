@@ -179,8 +179,7 @@ static mps_status find(search *s, mpsi_pore_rim *rim) {
   double most = most_particles(s->mpm);
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
   if (status == MPS_OK) status = choose(s, rim);
-  status = mpsi_domain_agree_max(domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(domain, s->function, status, 1, &most));
   rim->particles = (int64_t)most;
   const mpsi_halo_def cells = {.guests = rim->cells,
                                .rank = s->rank,
@@ -317,8 +316,8 @@ mps_status mpsi_pore_send_nodes(mps_mpm *mpm, const char *function) {
 mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function) {
   mpsi_halo *halo = mpm->water->system->rim->halo;
   double *const column[] = {mpm->water->system->direction};
-  const mps_status status = mpsi_halo_begin(halo, function, 1, column);
-  return status == MPS_OK ? mpsi_halo_end(halo, function, column) : status;
+  MPSI_TRY(mpsi_halo_begin(halo, function, 1, column));
+  return mpsi_halo_end(halo, function, column);
 }
 
 static void copy_changes(const mps_mpm *mpm, int64_t g, double *message, bool to) {

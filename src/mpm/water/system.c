@@ -72,9 +72,8 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
 /* On several ranks, with another rim than in the last step: all agree on their room. */
 static mps_status renew(mps_mpm *mpm, const char *function, mps_status status) {
   mps_domain *domain = mpm->partition->domain;
-  status = mpsi_domain_agree(domain, function, status);
-  if (status == MPS_OK) status = mpsi_pore_find_rim(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(domain, function, status));
+  MPSI_TRY(mpsi_pore_find_rim(mpm, function));
   status = mpsi_domain_agree(domain, function, make_room(mpm, function));
   if (status != MPS_OK) mpm->water->system->rim->searches = -1;
   return status;

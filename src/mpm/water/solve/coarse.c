@@ -148,9 +148,8 @@ static mps_status find_list(mps_mpm *mpm, const char *function) {
   int64_t first, blocks;
   if (mpm->partition && c->searches == mpm->partition->searches) return MPS_OK;
   c->searches = -1;
-  mps_status status = count_blocks(mpm, function, &first, &blocks);
-  if (status != MPS_OK) return status;
-  status = make_room(mpm, function, blocks);
+  MPSI_TRY(count_blocks(mpm, function, &first, &blocks));
+  mps_status status = make_room(mpm, function, blocks);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status == MPS_OK) status = send_places(mpm, function, first, blocks);
   if (status != MPS_OK) return status;
@@ -425,19 +424,17 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
-  mps_status status = make_first(mpm, function);
-  if (status == MPS_OK) status = count_unknowns(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_first(mpm, function));
+  MPSI_TRY(count_unknowns(mpm, function));
   coarse_of *c = mpm->water->system->coarse;
   c->used = false;
   if (mpsi_pore_solved_outside(mpm)) return MPS_OK;
   if (mpm->water->system->unknowns <
       LEAST_TILES * (mpm->grid.dim == 3 ? TILE * TILE * TILE : TILE * TILE))
     return MPS_OK;
-  status = find_list(mpm, function);
-  if (status == MPS_OK) status = make_rows(mpm, function);
-  if (status != MPS_OK) return status;
-  status = number_tiles(mpm, function);
+  MPSI_TRY(find_list(mpm, function));
+  MPSI_TRY(make_rows(mpm, function));
+  mps_status status = number_tiles(mpm, function);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   for_entries(c, add);
@@ -467,8 +464,7 @@ mps_status mpsi_pore_coarse_solve(mps_mpm *mpm, const char *function, double *pr
   double *sum = c->sum;
   if (mpm->partition) { /* a copy: this rank's places stay those that are to be sent */
     sum = memcpy(c->sum + tiles, c->sum, (size_t)tiles * sizeof *sum);
-    const mps_status status = send_blocks(mpm, function, c->tiles, sum);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(send_blocks(mpm, function, c->tiles, sum));
   }
   memset(c->right, 0, (size_t)c->matrix.rows * sizeof *c->right);
   for (int64_t t = 0; t < tiles; t++)

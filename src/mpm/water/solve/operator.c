@@ -94,13 +94,12 @@ double mpsi_pore_diagonal_of(const mps_mpm *mpm, const system_of *s, int64_t g, 
 }
 
 mps_status mpsi_pore_find_motion(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, mpsi_pore_find_velocities, 0.0);
   return mpsi_pore_hold_contacts(mpm, function);
 }
 
 mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along) {
-  const mps_status status = mpsi_pore_find_motion(mpm, function);
-  return status == MPS_OK ? mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along) : status;
+  MPSI_TRY(mpsi_pore_find_motion(mpm, function));
+  return mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along);
 }

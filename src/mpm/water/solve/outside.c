@@ -246,15 +246,13 @@ static mps_status agree(mps_mpm *mpm, const char *function, mps_status status) {
 
 static mps_status make_rows(mps_mpm *mpm, const char *function) {
   outside_of *o = mpm->water->outside;
-  mps_status status = find_place(mpm, function);
-  if (status != MPS_OK) return status;
-  status = agree(mpm, function, make_vectors(mpm, function));
-  if (status == MPS_OK) status = send_numbers(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_place(mpm, function));
+  MPSI_TRY(agree(mpm, function, make_vectors(mpm, function)));
+  MPSI_TRY(send_numbers(mpm, function));
   o->start[0] = 0;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, count_rows, 0.0);
   for (int64_t k = 0; k < o->rows; k++) o->start[k + 1] += o->start[k];
-  status = agree(mpm, function, make_entries(mpm, function));
+  mps_status status = agree(mpm, function, make_entries(mpm, function));
   if (status == MPS_OK) mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, fill_rows, 0.0);
   return status;
 }
@@ -268,9 +266,8 @@ static mps_status make_memory(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance) {
-  mps_status status = make_memory(mpm, function);
-  if (status == MPS_OK) status = make_rows(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_memory(mpm, function));
+  MPSI_TRY(make_rows(mpm, function));
   const outside_of *o = mpm->water->outside;
   mps_linear_matrix matrix = {.all = o->all,
                               .first = o->first,
@@ -279,11 +276,9 @@ mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double to
                               .start = o->start,
                               .column = o->column,
                               .value = o->value};
-  status = mpsi_linear_hand(&mpm->base, function, &matrix);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_hand(&mpm->base, function, &matrix));
   (void)for_unknowns(mpm, set_right);
-  status = mpsi_linear_solve(&mpm->base, function, tolerance, o->right, o->solution);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_solve(&mpm->base, function, tolerance, o->right, o->solution));
   mpm->water->system->iterations = mpm->linear->result.iterations;
   (void)for_unknowns(mpm, take_solution);
   return MPS_OK;
