@@ -1,8 +1,7 @@
 /* internal.h - the core's interface for all source files of the library: errors, memory, definition
  * structs, reference counts, parallel loops. Internal names begin with mpsi_.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_INTERNAL_H
-#define MPSI_INTERNAL_H
+#pragma once
 
 #ifndef MPSI_LEVEL /* inner loops read no definitions: a new one does not compile them again */
 #include "core/definition/definition.h"
@@ -146,5 +145,3 @@ bool mpsi_executor_is_own(const mps_context *context);
 bool mpsi_wait_a_little(int32_t look, bool may_sleep);
 /* For loops that poll memory written by another thread. */
 void mpsi_pause(void);
-
-#endif

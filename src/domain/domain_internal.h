@@ -4,8 +4,7 @@
  * different functions detect that: vote.c. A failure that ranks have agreed upon has the same
  * record on all of them, and may be agreed upon again without harm.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DOMAIN_INTERNAL_H
-#define MPSI_DOMAIN_INTERNAL_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "core/base/given.h"
@@ -99,5 +98,3 @@ mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int
 typedef mps_status mpsi_take_rows_fn(void *user, mpsi_row_source *source);
 mps_status mpsi_domain_write_rows(mps_domain *domain, const char *function,
                                   mps_particles *particles, mpsi_take_rows_fn *take, void *user);
-
-#endif

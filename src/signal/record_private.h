@@ -1,7 +1,6 @@
 /* record_private.h - parsers of recorded motions. For the files record*.c (and their tests) only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_RECORD_PRIVATE_H
-#define MPSI_RECORD_PRIVATE_H
+#pragma once
 
 #include "core/base/text.h"
 
@@ -97,5 +96,3 @@ mps_status mpsi_cosmos_read(mpsi_text *text, mpsi_samples *samples);
 /* The signal of a text: mps_signal_create_record without the file. `def` is checked; NULL *out
  * before. */
 mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out);
-
-#endif

@@ -6,8 +6,7 @@
  * their ids instead. What a solver does in its own way is in a table of functions; these get the
  * solver as `void *`, as those of mpsi_solver_kind do, and the kept definition, whose lists live as
  * long as the condition. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONDITIONS_H
-#define MPSI_CONDITIONS_H
+#pragma once
 
 #include "core/base/selection.h"
 #include "core/definition/definition.h"
@@ -78,5 +77,3 @@ typedef struct mpsi_conditions {
 
 /* Frees all, which the solver needs no more. */
 void mpsi_conditions_drop(mps_solver *solver);
-
-#endif

@@ -1,7 +1,6 @@
 /* boundary_kind.h - names of mps_boundary_kind, for the error of a solver without a kind.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_BOUNDARY_KIND_H
-#define MPSI_BOUNDARY_KIND_H
+#pragma once
 
 #include <mps/solver.h>
 
@@ -21,5 +20,3 @@ static inline const char *mpsi_boundary_kind_name(int32_t kind) {
 static inline bool mpsi_boundary_kind_in(int32_t kind, uint32_t kinds) {
   return kind >= 0 && kind < 32 && (kinds >> kind & 1);
 }
-
-#endif

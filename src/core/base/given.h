@@ -1,7 +1,6 @@
 /* given.h - arguments of a caller as a list of named numbers: ranks compare theirs, and a message
  * names the number that differs. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_GIVEN_H
-#define MPSI_GIVEN_H
+#pragma once
 
 #include "core/definition/definition.h"
 #include "hash.h"
@@ -78,5 +77,3 @@ static inline uint64_t mpsi_given_hash(const mpsi_given *list) {
   for (int32_t k = 0; k < list->count; k++) hash = mpsi_hash_number(hash, list->value[k]);
   return hash;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* dynamics_solver.h - the explicit MPS solver, put together from its parts: each has a header of
  * its own. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_DYNAMICS_SOLVER_H
-#define MPSI_DYNAMICS_DYNAMICS_SOLVER_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "core/context/guard.h"
@@ -105,5 +104,3 @@ static inline mpsi_dynamics_load *mpsi_dynamics_load_of(const mps_dynamics *dyna
                                                         int32_t number) {
   return dynamics->conditions[MPSI_LOADS].own[number];
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* selection.h - the particles that a boundary or load is on, for its numbered condition
  * (solver/conditions.h). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_SELECTION_H
-#define MPSI_DYNAMICS_SELECTION_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -30,5 +29,3 @@ mps_status mpsi_dynamics_make_part(mps_dynamics *dynamics, const char *function,
 int64_t mpsi_dynamics_counted(const mps_dynamics *dynamics, const mpsi_dynamics_part *part);
 /* Finds its particles in the present set. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
-
-#endif

@@ -2,8 +2,7 @@
  * of its own. Indices below `count` are particles, those from `count` on are ghosts. A step works
  * on copies of positions and velocities and writes the particles' fields only on success.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_FLOW_SOLVER_H
-#define MPSI_FLUID_FLOW_SOLVER_H
+#pragma once
 
 #include "body/body_internal.h"
 #include "core/base/exact.h"
@@ -241,5 +240,3 @@ static inline int32_t mpsi_fluid_load_count(const mps_fluid *f) {
 static inline mpsi_fluid_given *mpsi_fluid_load_of(const mps_fluid *f, int32_t number) {
   return f->conditions[MPSI_LOADS].own[number];
 }
-
-#endif

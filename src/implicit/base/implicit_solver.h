@@ -3,8 +3,7 @@
  * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns hold the
  * local directions that no support fixes. Arrays of the operator have the particles of the window
  * (ranks/partition.h), indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IMPLICIT_SOLVER_H
-#define MPSI_IMPLICIT_SOLVER_H
+#pragma once
 
 #include "core/context/guard.h"
 #include "core/internal.h"
@@ -182,5 +181,3 @@ static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64
 static inline int64_t mpsi_elastic_chunks(const mps_elastic *e) {
   return (e->n + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
 }
-
-#endif

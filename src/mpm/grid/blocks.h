@@ -16,8 +16,7 @@
  *
  * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_BLOCKS_H
-#define MPSI_MPM_BLOCKS_H
+#pragma once
 
 #include "pass.h"
 #include "mpm/base/columns.h"
@@ -340,5 +339,3 @@ void mpsi_mpm_clear_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_finish_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_damp_after_lists(void *solver, int64_t g, int32_t worker);
-
-#endif

@@ -11,8 +11,7 @@
  *
  * In sums over blocks of nodes each is counted on the rank of the first block of cells that covers
  * it. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PARTITION_H
-#define MPSI_MPM_PARTITION_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/particles/particles_internal.h"
@@ -132,5 +131,3 @@ mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bo
 mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition *partition,
                                   mpsi_run *run, const mps_mpm_def *def, const char *function,
                                   mps_status status);
-
-#endif

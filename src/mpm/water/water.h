@@ -1,8 +1,7 @@
 /* water.h - water in the pores (mps/experimental/pore_water.h): pressures of cells, the flow
  * between them, and what the particles carry. A cell is the box above its node of the grid, and has
  * the node's number. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_H
-#define MPSI_MPM_WATER_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "mpm/base/mpm_solver.h"
@@ -251,5 +250,3 @@ void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum);
 /* state.c: the state besides the fields; what is freed with the solver. */
 void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water);
 void mpsi_pore_free(mps_mpm *mpm);
-
-#endif
