@@ -5,7 +5,6 @@
 #include "mesh.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define FIRST_PARTS 4 /* room for so many parts at first */
@@ -28,12 +27,7 @@ void mpsi_body_release(mps_body *body) {
   mps_context *context = body->context;
   for (int c = 0; c < MPSI_MOTIONS; c++) mps_signal_destroy(&body->signal[c]);
   mpsi_mesh_destroy(context, body->mesh);
-  mpsi_free(context, body->xy);
-  mpsi_free(context, body->face_of);
-  mpsi_free(context, body->part_of);
-  mpsi_free(context, body->names);
-  mpsi_free(context, body->reaction);
-  mpsi_free(context, body);
+  MPSI_FREE(context, body->xy, body->face_of, body->part_of, body->names, body->reaction, body);
   mpsi_context_release(context);
 }
 

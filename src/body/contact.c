@@ -4,7 +4,6 @@
 
 #include "rotation.h"
 #include "core/context/retain.h"
-#include "core/definition/digits.h"
 
 #include <string.h>
 

@@ -77,8 +77,7 @@ static mps_status join_points(mps_context *context, const char *function, mpsi_m
   }
   for (int64_t s = 0; s < 3 * mesh->triangles; s++)
     mesh->corner[s] = number[corner ? corner[s] : s];
-  mpsi_free(context, known.item);
-  mpsi_free(context, number);
+  MPSI_FREE(context, known.item, number);
   return MPS_OK;
 }
 
@@ -160,8 +159,7 @@ static mps_status join_near(mps_context *context, const char *function, mpsi_mes
   *joined = *joined && together;
   for (int64_t s = 0; s < 3 * mesh->triangles && *joined; s++)
     mesh->corner[s] = root_of(&g, mesh->corner[s]);
-  mpsi_free(context, g.cells.item);
-  mpsi_free(context, g.parent);
+  MPSI_FREE(context, g.cells.item, g.parent);
   return MPS_OK;
 }
 

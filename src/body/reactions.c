@@ -133,8 +133,7 @@ bool mpsi_body_make_source(mps_body *body, mpsi_body_source *source) {
 }
 
 void mpsi_body_free_source(mps_body *body, mpsi_body_source *source) {
-  mpsi_free(body->context, source->reaction);
-  mpsi_free(body->context, source->part);
+  MPSI_FREE(body->context, source->reaction, source->part);
 }
 
 /* Memory for one more part, here and in all sources. */

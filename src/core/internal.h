@@ -70,6 +70,11 @@ size_t mpsi_identifier(const char *name, size_t room);
  * NULL. */
 void *mpsi_alloc(mps_context *context, int64_t count, size_t size);
 void mpsi_free(mps_context *context, void *memory); /* accepts NULL */
+void mpsi_free_all(mps_context *context, void *const *memory, size_t count);
+/* The same for each of several pointers. */
+#define MPSI_FREE(context, ...)                                                                    \
+  mpsi_free_all(context, (void *const[]){__VA_ARGS__},                                             \
+                sizeof((void *const[]){__VA_ARGS__}) / sizeof(void *))
 /* Grows *array from `old_count` to `new_count` items, keeping and zero filling; false and
  * unchanged when out of memory. */
 bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,

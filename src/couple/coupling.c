@@ -27,11 +27,7 @@ static bool allocate(mps_coupling *c) {
   return true;
 }
 
-static void release(mps_coupling *c) {
-  mpsi_free(c->context, c->block);
-  mpsi_free(c->context, c->column);
-  mpsi_free(c->context, c);
-}
+static void release(mps_coupling *c) { MPSI_FREE(c->context, c->block, c->column, c); }
 
 mps_status mps_coupling_create(mps_context *context, const mps_coupling_def *user_def,
                                mps_coupling **out) {

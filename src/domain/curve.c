@@ -189,10 +189,7 @@ mps_status mpsi_curve_cut(mps_domain *domain, const char *function, int64_t coun
   status = measure(&c, status);
   for (bool open = true; status == MPS_OK && open;) status = narrow(&c, &open);
   for (int32_t k = 1; status == MPS_OK && k < c.ranks; k++) first[k] = c.most[k - 1];
-  mpsi_free(domain->context, c.below);
-  mpsi_free(domain->context, c.least);
-  mpsi_free(domain->context, c.most);
-  mpsi_free(domain->context, c.probe);
+  MPSI_FREE(domain->context, c.below, c.least, c.most, c.probe);
   return status;
 }
 

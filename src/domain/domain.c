@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 /* ---- for the program ------------------------------------------------------------------------- */
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {

@@ -65,6 +65,9 @@ mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
                            int64_t *values);
+/* vote.c: how many items ranks have: those of all ranks, and from *first on this rank's `own`. */
+mps_status mpsi_domain_count(mps_domain *domain, const char *function, int64_t own, int64_t *first,
+                             int64_t *all);
 /* Sums whose terms lie on all ranks. */
 mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32_t count,
                                  mpsi_exact *sums);

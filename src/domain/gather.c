@@ -5,7 +5,6 @@
 #include "domain_private.h"
 #include "row_heads.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -261,9 +260,7 @@ static mps_status make_whole(mps_domain *domain, const char *function, const mps
   if (status == MPS_OK) status = put(&a, whole);
   mpsi_values_free(context, &a.whole.fields);
   mpsi_values_free(context, &a.whole.state);
-  mpsi_free(context, a.owner);
-  mpsi_free(context, a.piece);
-  mpsi_free(context, a.share);
+  MPSI_FREE(context, a.owner, a.piece, a.share);
   return status;
 }
 

@@ -131,10 +131,7 @@ void mpsi_halo_destroy(mps_context *context, mpsi_halo **pointer) {
   *pointer = NULL;
   if (!halo) return;
   if (halo->star) halo->domain->def.star_destroy(halo->domain->def.user, halo->star);
-  mpsi_free(context, halo->item);
-  mpsi_free(context, halo->out);
-  mpsi_free(context, halo->in);
-  mpsi_free(context, halo);
+  MPSI_FREE(context, halo->item, halo->out, halo->in, halo);
 }
 
 int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index) {

@@ -2,8 +2,6 @@
  * the sender only. SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 void mpsi_domain_free_mail(mpsi_mailbox *box) {
   for (int32_t k = 0; k < box->count; k++) mpsi_free(box->context, box->mail[k].data);
   if (box->mail) mpsi_free(box->context, box->mail);

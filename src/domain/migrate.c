@@ -33,9 +33,7 @@ typedef struct parcel {
 } parcel;
 
 static void free_parcel(mps_context *context, parcel *p) {
-  mpsi_free(context, p->begin);
-  mpsi_free(context, p->record);
-  mpsi_free(context, p->message);
+  MPSI_FREE(context, p->begin, p->record, p->message);
 }
 
 /* Records of `columns` words each, by rank and then in the order given. */

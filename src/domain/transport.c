@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char *callback,
                             mps_status status) {
   if (status == MPS_OK) return MPS_OK;

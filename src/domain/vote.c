@@ -220,6 +220,28 @@ mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_statu
   return mpsi_domain_agree_max(domain, function, status, 0, NULL);
 }
 
+mps_status mpsi_domain_count(mps_domain *domain, const char *function, int64_t own, int64_t *first,
+                             int64_t *all) {
+  *first = 0, *all = own;
+  if (!mpsi_domain_many(domain)) return MPS_OK;
+  const int32_t ranks = domain->def.size;
+  int64_t *count = mpsi_alloc(domain->context, ranks, sizeof *count);
+  mps_status status = MPS_OK;
+  if (!count) status = mpsi_fail_memory(domain->context, function, (size_t)ranks * sizeof *count);
+  status = mpsi_domain_agree(domain, function, status);
+  if (status == MPS_OK) {
+    count[domain->def.rank] = own;
+    status = mpsi_domain_sum(domain, function, ranks, count);
+  }
+  *all = 0;
+  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
+    if (r < domain->def.rank) *first += count[r];
+    *all += count[r];
+  }
+  mpsi_free(domain->context, count);
+  return status;
+}
+
 mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,
                                   const char *name, double value) {
   const bool none = isnan(value); /* unset, equal on all */

@@ -496,8 +496,7 @@ static void report(const reading *r, mps_checkpoint *info) {
 static void drop_reading(reading *r) {
   mpsi_values_free(r->context, &r->values.fields);
   mpsi_values_free(r->context, &r->values.state);
-  mpsi_free(r->context, r->source);
-  mpsi_free(r->context, r->user_data);
+  MPSI_FREE(r->context, r->source, r->user_data);
 }
 
 mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {

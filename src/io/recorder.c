@@ -443,11 +443,8 @@ static mps_status end(mps_recorder **pointer, const char *function) {
   if (closed != 0 && status == MPS_OK)
     status = mpsi_fail_io(function ? context : NULL, function, "close", recorder->xdmf.path, errno);
   mpsi_particles_release(recorder->particles, &recorder->holder);
-  mpsi_free(context, recorder->rows);
-  mpsi_free(context, recorder->path);
-  mpsi_free(context, recorder->xdmf.path);
-  mpsi_free(context, recorder->fields);
-  mpsi_free(context, recorder);
+  MPSI_FREE(context, recorder->rows, recorder->path, recorder->xdmf.path, recorder->fields,
+            recorder);
   mpsi_context_release(context);
   return status;
 }

@@ -1,7 +1,7 @@
 /* unsupported.c - the functions of mps/io.h and io/checkpoint.h in a libmps built without HDF5.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "checkpoint.h"
-#include "io_private.h"
+#include "core/particles/particles_internal.h"
 
 static mps_status unsupported(mps_context *context, const char *function) {
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,

@@ -9,12 +9,9 @@
 
 static void release(mps_material *m) {
   mps_context *context = m->context;
-  mpsi_free(context, m->history_names);
-  mpsi_free(context, m->history_fields);
-  mpsi_free(context, m->history_initial);
+  MPSI_FREE(context, m->history_names, m->history_fields, m->history_initial);
   mpsi_release(m->release, m->release_user);
-  mpsi_free(context, m->owned);
-  mpsi_free(context, m);
+  MPSI_FREE(context, m->owned, m);
   mpsi_context_release(context);
 }
 

@@ -21,8 +21,6 @@ typedef struct mpsi_unit {
 } mpsi_unit;
 /* The unit that the whole slice names: "cm/s/s", "CM/SEC**2", "m s-2", "gal"; NULL: none. */
 const mpsi_unit *mpsi_unit_find(mpsi_slice name);
-/* The unit of SI of a quantity. */
-const mpsi_unit *mpsi_unit_si(int32_t quantity);
 /* "m/s2, mm/s2, ...": units of a quantity, for messages. */
 void mpsi_unit_list(int32_t quantity, char *out, size_t size);
 

@@ -41,8 +41,7 @@ void mps_signal_destroy(mps_signal **signal) {
   if (atomic_fetch_sub(&s->references, 1) != 1) return;
   mps_context *context = s->context;
   mpsi_release(s->release, s->user);
-  mpsi_free(context, s->knots);
-  mpsi_free(context, s);
+  MPSI_FREE(context, s->knots, s);
   mpsi_context_release(context);
 }
 

@@ -114,6 +114,24 @@ static mpsi_selection selection_of(const mps_solver *s, const mpsi_condition_kin
                           .dim = mps_particles_dim(s->particles)};
 }
 
+static bool take_item(const mps_solver *s, const mpsi_condition_kind *kind, const void *def,
+                      int64_t k, double x[3], int64_t *id) {
+  if (kind->item) return kind->item(s, def, k, x, id);
+  if (k >= mps_particles_count(s->particles)) return false;
+  for (int c = 0; c < mps_particles_dim(s->particles); c++)
+    x[c] = mpsi_particles_column(s->particles, "position", c)[k];
+  *id = mpsi_particles_integers(s->particles, "id")[k];
+  return true;
+}
+
+static mps_status check_ids(mps_solver *s, const char *function, const mpsi_condition_kind *kind,
+                            const void *def, const mpsi_selection *selection) {
+  if (kind->check_ids)
+    return kind->check_ids(s, function, def, selection->id_count, selection->ids);
+  if (kind->some || mpsi_domain_many(s->domain)) return MPS_OK; /* or they are of another rank */
+  return mpsi_particles_check_ids(s->particles, function, selection->id_count, selection->ids);
+}
+
 /* Lists with a value for each id need ids. */
 static mps_status check_by_box(mps_solver *s, const char *function, const mpsi_condition_kind *kind,
                                const void *def) {
@@ -132,8 +150,7 @@ static mps_status check_selection(mps_solver *s, const char *function,
   const mpsi_selection selection = selection_of(s, kind, def);
   MPSI_TRY(mpsi_selection_read(s->context, function, &selection, by, box));
   if (*by != MPSI_SELECTED_IDS) return check_by_box(s, function, kind, def);
-  return kind->check_ids ? kind->check_ids(s, function, def, selection.id_count, selection.ids)
-                         : MPS_OK;
+  return check_ids(s, function, kind, def, &selection);
 }
 
 /* Replaces a box, or all, by the ids of the items in it. */
@@ -142,12 +159,12 @@ static mps_status list_items(mps_solver *s, const char *function, const mpsi_con
   const int dim = mps_particles_dim(s->particles);
   double x[3] = {0.0, 0.0, 0.0};
   int64_t count = 0, id;
-  for (int64_t k = 0; kind->item(s, def, k, x, &id); k++)
+  for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
     count += mpsi_selection_holds(box, dim, x);
   int64_t *ids = mpsi_alloc(s->context, count, sizeof *ids);
   if (!ids) return mpsi_fail_memory(s->context, function, (size_t)count * sizeof *ids);
   count = 0;
-  for (int64_t k = 0; kind->item(s, def, k, x, &id); k++)
+  for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
     if (mpsi_selection_holds(box, dim, x)) ids[count++] = id;
   *(int64_t **)place(kind, def, "ids") = ids;
   *(int64_t *)place(kind, def, "id_count") = count;
@@ -243,8 +260,7 @@ static mps_status reserve(mps_solver *s, const char *function, mpsi_conditions *
     return mpsi_fail_memory(s->context, function, (size_t)room * sizeof *def);
   }
   for (int32_t k = 0; k < list->room; k++) def[k] = list->def[k], own[k] = list->own[k];
-  mpsi_free(s->context, list->def);
-  mpsi_free(s->context, list->own);
+  MPSI_FREE(s->context, list->def, list->own);
   list->def = def, list->own = own, list->room = room;
   return MPS_OK;
 }
@@ -284,8 +300,7 @@ static mps_status make(mps_solver *s, const char *function, const mpsi_condition
   const bool selects = status == MPS_OK && kind->selects && number >= kind->first;
   if (selects) status = check_selection(s, function, kind, &known, &c.by, &c.box);
   if (selects) as_given = selection_of(s, kind, &known);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "number", number);
   if (status == MPS_OK && mpsi_domain_many(s->domain)) give(kind, &known, &given);
   status = mpsi_domain_agree_given(s->domain, function, status, &given);
@@ -434,8 +449,7 @@ void mpsi_conditions_drop(mps_solver *s) {
       drop_own(s, list->kind, list->own[k]);
       if (list->def[k]) drop_def(s->context, list->kind, list->def[k]);
     }
-    mpsi_free(s->context, list->def);
-    mpsi_free(s->context, list->own);
+    MPSI_FREE(s->context, list->def, list->own);
     *list = (mpsi_conditions){.kind = list->kind};
   }
 }

@@ -1,6 +1,5 @@
 /* history.c - histories of a solver (mps/history.h): columns, rows, and their place in its state.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/context/retain.h"
 #include "domain/domain_internal.h"
 #include "histories.h"
 
@@ -83,9 +82,7 @@ static void end(mps_history *h) {
   mps_context *context = h->context;
   for (int64_t k = 0; h->column && k < h->width; k++)
     mpsi_release(h->column[k].release, h->column[k].user);
-  mpsi_free(context, h->column);
-  mpsi_free(context, h->names);
-  mpsi_free(context, h->row);
+  MPSI_FREE(context, h->column, h->names, h->row);
   mps_domain_destroy(&h->domain);
   mpsi_free(context, h);
   mpsi_context_release(context);

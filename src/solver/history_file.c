@@ -174,7 +174,6 @@ mps_status mpsi_history_append(mps_history *h, const char *function) {
 void mpsi_history_close_file(mps_history *h) {
   mpsi_history_file *f = &h->file;
   if (f->fd >= 0) close(f->fd);
-  mpsi_free(h->context, f->path);
-  mpsi_free(h->context, f->end);
+  MPSI_FREE(h->context, f->path, f->end);
   *f = (mpsi_history_file){.fd = -1};
 }

@@ -41,8 +41,7 @@ static mps_status check(mps_solver *s, const char *function, int32_t equation,
 /* Status of all ranks, and whether all have such a solver. */
 static mps_status agree(mps_solver *s, const char *function, mps_status status, bool set,
                         const mps_linear_solver_def *def) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a linear solver", set);
   mpsi_give(&given, "having forget", def->forget != NULL);
   MPSI_GIVE(&given, def, least);
@@ -75,8 +74,7 @@ void mpsi_linear_drop(mps_solver *s) {
   s->linear = NULL;
   if (!l) return;
   mpsi_release(l->def.release, l->def.user);
-  mpsi_free(s->context, l->x.item);
-  mpsi_free(s->context, l);
+  MPSI_FREE(s->context, l->x.item, l);
 }
 
 bool mpsi_linear_serves(const mps_solver *s, int64_t rows) {

@@ -116,8 +116,7 @@ mps_status mps_solver_step(mps_solver *s, int64_t count) {
   if (count < 0)
     status = mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                        (long long)count);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "count", (double)count);
   status = agree_on_call(s, function, status, &given, count > 0);
   mpsi_march m = {.start = s->kind->time(s), .t_end = NAN, .total = count, .every = 1, .prompt = 1};
@@ -151,8 +150,7 @@ mps_status mps_solver_run(mps_solver *s, double t_end, int64_t every, mps_solver
   const char *function = s->kind->name.run;
   MPSI_TRY(mpsi_solver_enter(s, function));
   mps_status status = check_run(s, function, t_end, every);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "t_end", t_end);
   mpsi_give(&given, "every", (double)every);
   mpsi_give(&given, "having a callback", callback != NULL);

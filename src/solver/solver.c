@@ -3,7 +3,6 @@
 #include "linear.h"
 #include "solver_base.h"
 #include "histories.h"
-#include "core/context/retain.h"
 #include "domain/domain_internal.h"
 #include "domain/moment.h"
 #include "io/checkpoint.h"

@@ -213,14 +213,12 @@ mps_status mps_separation_find_sized(mps_context *context, const mps_separation_
   a.level = mpsi_alloc(context, a.count * def.gauges, sizeof *a.level);
   if (a.level) a.energy = mpsi_alloc(context, a.bands, sizeof *a.energy);
   if (!a.level || !a.energy) {
-    mpsi_free(context, a.level);
-    mpsi_free(context, a.energy);
+    MPSI_FREE(context, a.level, a.energy);
     return mpsi_fail_memory(context, __func__, (size_t)(a.count * def.gauges) * sizeof *a.level);
   }
   resample(&a);
   separate_bands(&a, &(rows){capacity, frequency, incident, reflected}, &result);
   if (count) *count = a.bands;
-  mpsi_free(context, a.level);
-  mpsi_free(context, a.energy);
+  MPSI_FREE(context, a.level, a.energy);
   return mpsi_out_write(context, __func__, out, size, &result, sizeof result);
 }

@@ -1,6 +1,5 @@
 /* waves.c - the sea as an object: its definition, what is refused before it is made, its limits,
  * the signal of its piston. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/context/retain.h"
 #include "dispersion.h"
 #include "signal/signal_internal.h"
 #include "waves_private.h"
@@ -136,12 +135,7 @@ static void summarise(mps_waves *w) {
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static void release(mps_waves *w) {
-  mpsi_free(w->context, w->wave);
-  mpsi_free(w->context, w->push);
-  mpsi_free(w->context, w->bound);
-  mpsi_free(w->context, w);
-}
+static void release(mps_waves *w) { MPSI_FREE(w->context, w->wave, w->push, w->bound, w); }
 
 static mps_status make_second_order(mps_waves *w) {
   if (w->def.theory == MPS_WAVES_THEORY_LINEAR) return MPS_OK;

@@ -36,6 +36,10 @@ void mpsi_free(mps_context *context, void *memory) {
   if (memory) context->def.free(context->def.memory_user, memory);
 }
 
+void mpsi_free_all(mps_context *context, void *const *memory, size_t count) {
+  for (size_t k = 0; k < count; k++) mpsi_free(context, memory[k]);
+}
+
 bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,
                size_t size) {
   void *grown = mpsi_alloc(context, new_count, size);

@@ -178,8 +178,6 @@ mps_status mpsi_particles_check_crowding(mps_particles *p, const char *function,
     mpsi_parallel_for(p->context, chunks, search_chunk, &s);
     status = judge(&s, function, chunks);
   }
-  mpsi_free(p->context, s.head);
-  mpsi_free(p->context, s.next);
-  mpsi_free(p->context, s.chunks);
+  MPSI_FREE(p->context, s.head, s.next, s.chunks);
   return status;
 }

@@ -135,8 +135,7 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   void *list = p->fields;
   if (!block ||
       !mpsi_grow(p->context, &list, p->field_count, p->field_count + 1, sizeof *p->fields)) {
-    mpsi_free(p->context, block);
-    mpsi_free(p->context, field);
+    MPSI_FREE(p->context, block, field);
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                      "could not allocate field '%s' of %lld particles", like->name,
                      (long long)p->capacity);
@@ -213,9 +212,7 @@ void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {
   while (particles->field_count > keep) {
     mpsi_field *field = particles->fields[--particles->field_count];
     particles->columns -= field->components;
-    mpsi_free(particles->context, field->block);
-    mpsi_free(particles->context, field->former);
-    mpsi_free(particles->context, field);
+    MPSI_FREE(particles->context, field->block, field->former, field);
   }
 }
 

@@ -195,9 +195,7 @@ static mps_status put_runs(mps_particles *p, filler by, mps_status status, mpsi_
     sites = former;
     if (added) *added = count;
   }
-  mpsi_free(context, runs->item);
-  mpsi_free(context, fresh.item);
-  mpsi_free(context, sites.item);
+  MPSI_FREE(context, runs->item, fresh.item, sites.item);
   return status;
 }
 
@@ -463,8 +461,7 @@ static mps_status fill_shape(const mps_particles *p, const char *function, const
   for (int64_t k = 0; *complete && k < shape->n; k++)
     row_of[k] = first_site(p, 1, shape->xy[2 * k + 1]);
   *complete = *complete && polygon_runs(p, shape, row_of, sites, runs, &more);
-  mpsi_free(context, row_of);
-  mpsi_free(context, sites);
+  MPSI_FREE(context, row_of, sites);
   if (!more) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                    "xy: the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);

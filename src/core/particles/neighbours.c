@@ -8,7 +8,6 @@
  * and rows are sorted, so the result is the same for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
-#include "core/definition/digits.h"
 
 #include <mps/experimental/neighbours.h>
 
@@ -318,8 +317,7 @@ mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def 
   mps_neighbours *nb = mpsi_alloc(context, 1, sizeof *nb);
   void *offsets = mpsi_alloc(context, 1, sizeof(int64_t));
   if (!nb || !offsets) {
-    mpsi_free(context, nb);
-    mpsi_free(context, offsets);
+    MPSI_FREE(context, nb, offsets);
     return mpsi_fail_memory(context, __func__, sizeof *nb + sizeof(int64_t));
   }
   nb->context = mpsi_context_retain(context);
@@ -335,15 +333,8 @@ void mps_neighbours_destroy(mps_neighbours **neighbours) {
   mps_neighbours *nb = *neighbours;
   *neighbours = NULL;
   mps_context *context = nb->context;
-  mpsi_free(context, nb->lists.offsets);
-  mpsi_free(context, nb->lists.indices);
-  mpsi_free(context, nb->spare.offsets);
-  mpsi_free(context, nb->spare.indices);
-  mpsi_free(context, nb->items);
-  mpsi_free(context, nb->sorted);
-  mpsi_free(context, nb->x);
-  mpsi_free(context, nb->histogram);
-  mpsi_free(context, nb);
+  MPSI_FREE(context, nb->lists.offsets, nb->lists.indices, nb->spare.offsets, nb->spare.indices,
+            nb->items, nb->sorted, nb->x, nb->histogram, nb);
   mpsi_context_release(context);
 }
 

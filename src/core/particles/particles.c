@@ -15,16 +15,13 @@
 static void free_set(mps_particles *p) {
   mps_context *context = p->context;
   for (int32_t f = 0; f < p->field_count; f++) {
-    mpsi_free(context, p->fields[f]->former);
-    mpsi_free(context, p->fields[f]->block);
-    mpsi_free(context, p->fields[f]);
+    MPSI_FREE(context, p->fields[f]->former, p->fields[f]->block, p->fields[f]);
   }
   mpsi_free(context, p->fields);
   mpsi_ids_free(context, &p->ids);
   mpsi_free(context, p->sites.item);
   if (p->deal) p->deal->release(p->deal->self);
-  mpsi_free(context, p->deal);
-  mpsi_free(context, p);
+  MPSI_FREE(context, p->deal, p);
   mpsi_context_release(context);
 }
 

@@ -354,9 +354,7 @@ mps_status mps_particles_set_table(mps_particles *particles, const char *field, 
   for (int32_t c = 0; c < t.tree.dim; c++)
     t.position[c] = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
   mps_status status = read_table(&t, field, positions, &beyond);
-  mpsi_free(t.context, t.tree.order);
-  mpsi_free(t.context, t.out);
-  mpsi_free(t.context, t.blocks);
+  MPSI_FREE(t.context, t.tree.order, t.out, t.blocks);
   if (status != MPS_OK) return status;
   if (beyond > 0)
     mpsi_log(

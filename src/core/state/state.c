@@ -4,7 +4,6 @@
 
 #include "core/particles/particles_internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Into the memory that `out` has. */
@@ -110,8 +109,7 @@ void mps_snapshot_destroy(mps_snapshot **snapshot) {
   mpsi_values_free(context, &old->state);
   mpsi_values_free(context, &old->fields);
   mpsi_state_forget(&old->identity);
-  mpsi_free(context, old->list);
-  mpsi_free(context, old);
+  MPSI_FREE(context, old->list, old);
   mpsi_context_release(context);
 }
 

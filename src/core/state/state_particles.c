@@ -205,10 +205,7 @@ void mpsi_particles_drop_prepared(mps_particles *p, void *scratch) {
   move *m = scratch;
   if (!m) return;
   for (int32_t f = 0; m->block && f < m->blocks; f++) mpsi_free(p->context, m->block[f]);
-  mpsi_free(p->context, m->block);
-  mpsi_free(p->context, m->from);
-  mpsi_free(p->context, m->column);
-  mpsi_free(p->context, m);
+  MPSI_FREE(p->context, m->block, m->from, m->column, m);
 }
 
 /* Larger memory for all fields. */

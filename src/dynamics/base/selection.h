@@ -16,10 +16,7 @@ typedef struct mpsi_dynamics_part {
   const double *factor;
 } mpsi_dynamics_part;
 
-/* Members of mpsi_condition_kind. */
-bool mpsi_dynamics_item(const void *dynamics, const void *def, int64_t k, double x[3], int64_t *id);
-mps_status mpsi_dynamics_check_ids(void *dynamics, const char *function, const void *def,
-                                   int64_t count, const int64_t *ids);
+/* A member of mpsi_condition_kind. */
 bool mpsi_dynamics_counts(const void *dynamics, int64_t id);
 
 /* The particles of `ids`, which become those of this rank, each once. */

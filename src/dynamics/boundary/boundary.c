@@ -49,9 +49,7 @@ static void drop(void *solver, void *own) {
 typedef mpsi_dynamics_lists lists;
 
 void mpsi_dynamics_free_lists(mps_dynamics *dynamics, lists *l) {
-  mpsi_free(dynamics->context, l->bound);
-  mpsi_free(dynamics->context, l->dashpot);
-  mpsi_free(dynamics->context, l->owner);
+  MPSI_FREE(dynamics->context, l->bound, l->dashpot, l->owner);
   *l = (lists){0};
 }
 
@@ -204,8 +202,7 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed, bool ot
     const mpsi_dynamics_bound *q = &l->bound[k];
     if (q->boundary == changed) velocity[q->component][q->particle] = q->before;
   }
-  mpsi_free(dynamics->context, dynamics->bound);
-  mpsi_free(dynamics->context, dynamics->dashpot);
+  MPSI_FREE(dynamics->context, dynamics->bound, dynamics->dashpot);
   dynamics->bound = l->bound;
   dynamics->bounds = l->bounds;
   dynamics->dashpot = l->dashpot;
@@ -297,21 +294,13 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
 }
 
 const mpsi_condition_kind mpsi_dynamics_boundaries = {
-    .kind = MPS_DEF_DYNAMICS_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_dynamics_boundary_def,
-    .what = "boundary",
-    .add = "mps_dynamics_add_boundary",
-    .set = "mps_dynamics_set_boundary",
-    .get = "mps_dynamics_get_boundary",
-    .remove = "mps_dynamics_remove_boundary",
+    MPSI_CONDITION_OF(DYNAMICS, dynamics, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"ids", "id_count", 1}},
     .most = INT32_MAX - 8,
     .size = sizeof(mpsi_dynamics_boundary),
     .check = check,
-    .item = mpsi_dynamics_item,
     .selects = true,
-    .check_ids = mpsi_dynamics_check_ids,
     .counts = mpsi_dynamics_counts,
     .make = make,
     .apply = apply,
@@ -345,7 +334,5 @@ mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_st
 }
 
 void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics) {
-  mpsi_free(dynamics->context, dynamics->bound);
-  mpsi_free(dynamics->context, dynamics->dashpot);
-  mpsi_free(dynamics->context, dynamics->column_dashpot);
+  MPSI_FREE(dynamics->context, dynamics->bound, dynamics->dashpot, dynamics->column_dashpot);
 }

@@ -48,21 +48,13 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_dynamics_loads = {
-    .kind = MPS_DEF_DYNAMICS_LOAD,
-    .definition = &mpsi_definition_of_mps_dynamics_load_def,
-    .what = "load",
-    .add = "mps_dynamics_add_load",
-    .set = "mps_dynamics_set_load",
-    .get = "mps_dynamics_get_load",
-    .remove = "mps_dynamics_remove_load",
+    MPSI_CONDITION_OF(DYNAMICS, dynamics, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}},
     .most = INT32_MAX - 8,
     .size = sizeof(mpsi_dynamics_load),
     .check = check,
-    .item = mpsi_dynamics_item,
     .selects = true,
-    .check_ids = mpsi_dynamics_check_ids,
     .counts = mpsi_dynamics_counts,
     .make = make,
     .apply = apply,

@@ -179,9 +179,8 @@ static void destroy(void *solver) {
   mpsi_halo_destroy(context, &dynamics->halo);
   mpsi_dynamics_free_boundaries(dynamics);
   mpsi_dynamics_free_loads(dynamics);
-  void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
-                   dynamics->before, dynamics->drag,    dynamics->part};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, dynamics->slab, dynamics->scratch, dynamics->bad, dynamics->before,
+            dynamics->drag, dynamics->part);
   mps_kernel_destroy(&dynamics->kernel);
   mps_material_destroy(&dynamics->def.material);
 }

@@ -7,7 +7,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "lattice.h"
 #include "dynamics/base/dynamics_solver.h"
-#include "core/definition/digits.h"
 
 #include <mps/experimental/dynamics_predict.h>
 

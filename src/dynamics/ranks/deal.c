@@ -249,8 +249,7 @@ static mps_status exchange_pieces(dealing *d) {
   status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, d->ranks, message, &d->box);
-  mpsi_free(context, own);
-  mpsi_free(context, message);
+  MPSI_FREE(context, own, message);
   return status;
 }
 
@@ -323,8 +322,7 @@ static mps_status request(dealing *d, mpsi_mailbox *box) {
   status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, box);
-  mpsi_free(context, list);
-  mpsi_free(context, message);
+  MPSI_FREE(context, list, message);
   return status;
 }
 
@@ -382,8 +380,7 @@ static mps_status bring_near(dealing *d, mpsi_mailbox *out) {
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, out);
   mpsi_domain_free_mail(&requests);
-  void *parts[] = {near, found, message};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, near, found, message);
   return status;
 }
 
@@ -492,7 +489,6 @@ mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
   if (status == MPS_OK) status = number(&d, &near, out); /* settled by the caller */
   mpsi_domain_free_mail(&near);
   mpsi_domain_free_mail(&d.box);
-  void *parts[] = {d.item, d.key, d.requested};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, d.item, d.key, d.requested);
   return status;
 }

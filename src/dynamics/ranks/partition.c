@@ -45,11 +45,9 @@ typedef struct plan {
 
 static void free_plan(plan *p) {
   mps_context *context = p->dynamics->context;
-  void *parts[] = {p->block,      p->order,       p->x,         p->y,
-                   p->side,       p->near,        p->present,   p->ghost,
-                   p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin,
-                   p->cut.end,    p->cut.slot,    p->cut.local, p->cut.wanted};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, p->block, p->order, p->x, p->y, p->side, p->near, p->present, p->ghost,
+            p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin, p->cut.end, p->cut.slot,
+            p->cut.local, p->cut.wanted);
 }
 
 static mps_status refused(const plan *p, int64_t bytes) {
@@ -160,8 +158,7 @@ static mps_status find_near(plan *p) {
       p->near[p->nears++] = k;
       p->near_body += k < p->body;
     }
-  mpsi_free(context, c.taken);
-  mpsi_free(context, marked);
+  MPSI_FREE(context, c.taken, marked);
   return good ? MPS_OK : refused(p, p->count * 8);
 }
 
@@ -183,8 +180,7 @@ static mps_status find_edges(plan *p, int64_t *edge) {
   if (status == MPS_OK) status = mpsi_dynamics_layout_edges(context, p->function, &g, edge);
   for (int64_t k = 0; status == MPS_OK && k < p->nears; k++)
     if (edge[k] >= 0) edge[k] = p->near[edge[k]];
-  mpsi_free(context, at);
-  mpsi_free(context, side);
+  MPSI_FREE(context, at, side);
   return status;
 }
 
@@ -374,8 +370,7 @@ static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
 /* Have all ranks the same arguments? */
 static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mps_status status) {
   const mps_dynamics_def *d = &dynamics->def;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_dynamics_def, d);
   mpsi_give(&given, "divergence", dynamics->limits.bounded ? NAN : d->divergence);
   mpsi_give(&given, "the radius of the kernel", dynamics->radius);

@@ -203,8 +203,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
   double *kept = status == MPS_OK ? keep_velocities(dynamics, __func__, &status) : NULL;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);

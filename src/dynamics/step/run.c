@@ -9,7 +9,6 @@
 #include "dynamics/step/step.h"
 
 #include <float.h>
-#include <string.h>
 
 #define PROMPT_WORK 5000000 /* particle-steps between calls of the cancel hook: some 0.1 s */
 

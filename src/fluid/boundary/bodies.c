@@ -329,8 +329,7 @@ void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mps_fluid_contact_def *def, const mps_body *body) {
   if (!f->partition) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "number", number);
   MPSI_GIVE_DEF(&given, mps_fluid_contact_def, def);
   if (status == MPS_OK) mpsi_body_give(&given, body);

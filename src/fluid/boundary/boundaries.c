@@ -162,13 +162,7 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_fluid_boundaries = {
-    .kind = MPS_DEF_FLUID_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_fluid_boundary_def,
-    .what = "boundary",
-    .add = "mps_fluid_add_boundary",
-    .set = "mps_fluid_set_boundary",
-    .get = "mps_fluid_get_boundary",
-    .remove = "mps_fluid_remove_boundary",
+    MPSI_CONDITION_OF(FLUID, fluid, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"nodes", "node_count", 3}, {"corners", "corner_count", 3}},
     .most = MPS_FLUID_MAX_BOUNDARIES,

@@ -119,28 +119,13 @@ static void destroy(void *solver) {
   mpsi_fluid_drop_exchange(f);
   mpsi_fluid_partition_destroy(f);
   mpsi_fluid_coarse_drop(f);
-  void *const parts[] = {f->slab,
-                         f->local,
-                         f->state,
-                         f->cloud,
-                         f->index_room.item,
-                         f->w_room.item,
-                         f->crowd_room.item,
-                         f->fit_room.item,
-                         f->lower_col_room.item,
-                         f->lower_room.item,
-                         f->near_wall_room.item,
-                         f->segment_room.item,
-                         f->path_room.item,
-                         f->box_room.item,
-                         f->near_line_room.item,
-                         f->wedge_room.item,
-                         f->clip_room.item};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, f->slab, f->local, f->state, f->cloud, f->index_room.item, f->w_room.item,
+            f->crowd_room.item, f->fit_room.item, f->lower_col_room.item, f->lower_room.item,
+            f->near_wall_room.item, f->segment_room.item, f->path_room.item, f->box_room.item,
+            f->near_line_room.item, f->wedge_room.item, f->clip_room.item);
   for (int b = f->bodies - 1; b >= 0; b--) mpsi_fluid_drop_body(f, &f->body[b]);
   for (int b = 0; b < f->walls; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
-  mpsi_free(context, f->wall_room.item);
-  mpsi_free(context, f->body_room.item);
+  MPSI_FREE(context, f->wall_room.item, f->body_room.item);
   mpsi_fluid_drop_lines(f);
   mpsi_fluid_drop_rocks(f);
   mps_kernel_destroy(&f->def.kernel);
@@ -244,9 +229,8 @@ static mps_status start(mps_fluid *f, const char *function) {
 /* Have all ranks the same fluid? */
 static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
                                  mps_particles *particles) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpsi_domain_many(d->domain)) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_fluid_def, d);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_agree_particles(d->domain, function, status, particles)

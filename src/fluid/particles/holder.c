@@ -28,14 +28,10 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
   if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count, room_for_ghosts(count))) {
-    mpsi_free(f->context, block);
-    mpsi_free(f->context, local);
-    mpsi_free(f->context, state);
+    MPSI_FREE(f->context, block, local, state);
     return false;
   }
-  mpsi_free(f->context, f->slab);
-  mpsi_free(f->context, f->local);
-  mpsi_free(f->context, f->state);
+  MPSI_FREE(f->context, f->slab, f->local, f->state);
   f->slab = block, f->local = local, f->state = state;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
   f->pressure = s->right; /* of a solution, whose right side is of no more use */

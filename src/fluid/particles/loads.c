@@ -68,13 +68,7 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
 }
 
 const mpsi_condition_kind mpsi_fluid_loads = {
-    .kind = MPS_DEF_FLUID_LOAD,
-    .definition = &mpsi_definition_of_mps_fluid_load_def,
-    .what = "load",
-    .add = "mps_fluid_add_load",
-    .set = "mps_fluid_set_load",
-    .get = "mps_fluid_get_load",
-    .remove = "mps_fluid_remove_load",
+    MPSI_CONDITION_OF(FLUID, fluid, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}},
     .most = MOST_LOADS,

@@ -90,9 +90,8 @@ static void drop_if_none(mps_fluid *f) {
 /* Status of all ranks, and a check that all have the same rock of this number. */
 static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status status,
                                 int32_t number, const mps_fluid_rock_def *def) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!f->partition) return status;
-  mpsi_given_begin(&given);
   mpsi_give(&given, "the number of the rock", number);
   MPSI_GIVE_DEF(&given, mps_fluid_rock_def, def);
   if (status == MPS_OK)
@@ -163,13 +162,8 @@ void mpsi_fluid_drop_rocks(mps_fluid *f) {
   mpsi_fluid_rocks *rocks = f->rocks;
   if (!rocks) return;
   for (int32_t k = 0; k < rocks->room; k++) mpsi_free(f->context, rocks->rock[k].xy);
-  mpsi_free(f->context, rocks->rock);
-  mpsi_free(f->context, rocks->part_room.item);
-  mpsi_free(f->context, rocks->flow_room.item);
-  mpsi_free(f->context, rocks->free_room.item);
-  mpsi_free(f->context, rocks->region_room.item);
-  mpsi_free(f->context, rocks->start_room.item);
-  mpsi_free(f->context, rocks);
+  MPSI_FREE(f->context, rocks->rock, rocks->part_room.item, rocks->flow_room.item,
+            rocks->free_room.item, rocks->region_room.item, rocks->start_room.item, rocks);
   f->rocks = NULL;
 }
 

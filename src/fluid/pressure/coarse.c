@@ -391,10 +391,9 @@ bool mpsi_fluid_coarse_create(mps_fluid *f) {
 void mpsi_fluid_coarse_drop(mps_fluid *f) {
   mpsi_fluid_coarse *c = f->coarse;
   if (!c) return;
-  mpsi_room *const rooms[] = {&c->block_room, &c->of_room,   &c->map_room,
-                              &c->list_room,  &c->at_room,   &c->entry_room,
-                              &c->slot_room,  &c->part_room, &c->value_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(f->context, rooms[k]->item);
+  MPSI_FREE(f->context, c->block_room.item, c->of_room.item, c->map_room.item, c->list_room.item,
+            c->at_room.item, c->entry_room.item, c->slot_room.item, c->part_room.item,
+            c->value_room.item);
   mpsi_envelope_drop(f->context, &c->matrix);
   mpsi_free(f->context, c);
   f->coarse = NULL;

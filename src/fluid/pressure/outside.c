@@ -10,9 +10,8 @@
 #include <string.h>
 
 void mpsi_fluid_free_outside(mps_fluid *f) {
-  mpsi_room *const rooms[] = {&f->outside.start_room, &f->outside.column_room,
-                              &f->outside.value_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(f->context, rooms[k]->item);
+  MPSI_FREE(f->context, f->outside.start_room.item, f->outside.column_room.item,
+            f->outside.value_room.item);
 }
 
 bool mpsi_fluid_solved_outside(const mps_fluid *f) {

@@ -48,8 +48,7 @@ mps_status mpsi_fluid_partition_create(mps_fluid *f, const char *function) {
 
 static void drop_link(mps_fluid *f, link *l) {
   mpsi_halo_destroy(f->context, &l->halo);
-  mpsi_free(f->context, l->guest);
-  mpsi_free(f->context, l->in);
+  MPSI_FREE(f->context, l->guest, l->in);
   *l = (link){0};
 }
 
@@ -58,8 +57,7 @@ static void forget(mps_fluid *f) {
   drop_link(f, &s->all);
   drop_link(f, &s->near);
   drop_link(f, &s->back);
-  mpsi_free(f->context, s->is_guest);
-  mpsi_free(f->context, s->mark);
+  MPSI_FREE(f->context, s->is_guest, s->mark);
   s->is_guest = NULL, s->mark = NULL;
   s->count = -1;
 }
@@ -84,7 +82,6 @@ mps_status mpsi_fluid_agree_max(mps_fluid *f, const char *function, mps_status s
 
 /* Values that all ranks must agree on: motions of walls and bodies, and loads, in the step. */
 static void give_state(const mps_fluid *f, mpsi_given *list) {
-  mpsi_given_begin(list);
   mpsi_give(list, "the number of particles", (double)f->count);
   mpsi_give(list, "dt", f->dt);
   mpsi_give(list, "time", f->time);
@@ -104,7 +101,7 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
 }
 
 mps_status mpsi_fluid_agree_same(mps_fluid *f, const char *function, mps_status status) {
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   double edited = f->edited;
   if (!f->partition) return status;
   give_state(f, &list);
@@ -193,8 +190,7 @@ static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t
   const mpsi_halo_def def = {
       .guests = count, .rank = g.rank, .index = g.index, .columns = MPSI_FLUID_SHARED};
   if (status == MPS_OK) status = mpsi_halo_create(f->partition->domain, function, &def, &l->halo);
-  mpsi_free(f->context, g.rank);
-  mpsi_free(f->context, g.index);
+  MPSI_FREE(f->context, g.rank, g.index);
   return status;
 }
 
@@ -250,8 +246,7 @@ static mps_status request_items(mps_fluid *f, const char *function, mpsi_mailbox
   }
   status = mpsi_fluid_agree(f, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(s->domain, function, count, message, box);
-  mpsi_free(f->context, message);
-  mpsi_free(f->context, words);
+  MPSI_FREE(f->context, message, words);
   return status;
 }
 

@@ -134,13 +134,11 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
   for (int32_t k = 0; k < mpsi_elastic_boundary_count(e) && status == MPS_OK; k++)
     status = add_boundary_rows(e, function, k, &s);
   if (status != MPS_OK) {
-    mpsi_free(e->context, s.supports);
-    mpsi_free(e->context, s.of);
+    MPSI_FREE(e->context, s.supports, s.of);
     return status;
   }
   if (!same_directions(e, &s)) e->pattern_valid = false;
-  mpsi_free(e->context, e->supports);
-  mpsi_free(e->context, e->support_of);
+  MPSI_FREE(e->context, e->supports, e->support_of);
   e->supports = s.supports;
   e->support_of = s.of;
   e->support_count = s.count;
@@ -167,13 +165,7 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
 }
 
 const mpsi_condition_kind mpsi_elastic_boundaries = {
-    .kind = MPS_DEF_ELASTIC_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_elastic_boundary_def,
-    .what = "boundary",
-    .add = "mps_elastic_add_boundary",
-    .set = "mps_elastic_set_boundary",
-    .get = "mps_elastic_get_boundary",
-    .remove = "mps_elastic_remove_boundary",
+    MPSI_CONDITION_OF(ELASTIC, elastic, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"ids", "id_count", 1}, {"values", "id_count", 3}},
     .most = INT32_MAX - 8,
@@ -220,9 +212,8 @@ static mps_status evaluate_signals(mps_elastic *e, const char *function, double 
 static mps_status find_motions(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   const mps_status status = evaluate_signals(e, function, t, &by_caller);
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   if (!by_caller) return status;
-  mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < mpsi_elastic_boundary_count(e); k++)
     for (int m = 0; mpsi_elastic_boundary_of(e, k) && m < 3; m++)
       mpsi_give_vector(&list, "the motion of a boundary", 3,

@@ -174,13 +174,7 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_elastic_loads = {
-    .kind = MPS_DEF_ELASTIC_LOAD,
-    .definition = &mpsi_definition_of_mps_elastic_load_def,
-    .what = "load",
-    .add = "mps_elastic_add_load",
-    .set = "mps_elastic_set_load",
-    .get = "mps_elastic_get_load",
-    .remove = "mps_elastic_remove_load",
+    MPSI_CONDITION_OF(ELASTIC, elastic, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}, {"values", "id_count", 3}},
     .most = INT32_MAX - 8,
@@ -290,9 +284,8 @@ static mps_status evaluate_signals(mps_elastic *e, const char *function, double 
 static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   mps_status status = evaluate_signals(e, function, t, &by_caller);
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   if (!by_caller) return status;
-  mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < mpsi_elastic_load_count(e); k++)
     if (mpsi_elastic_load_of(e, k))
       mpsi_give_vector(&list, "the present factor on a load", 3, mpsi_elastic_load_of(e, k)->scale);

@@ -133,9 +133,8 @@ static mps_status take_edit(void *self, const char *function, const char *field,
 /* Do ranks that solve together have the same body and definition? */
 static mps_status agree_on_body(const mps_elastic_def *def, const char *function, mps_status status,
                                 mps_particles *particles) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpsi_domain_many(def->domain)) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_elastic_def, def);
   mpsi_give(&given, "the kind of the kernel", def->kernel ? mps_kernel_get_kind(def->kernel) : -1);
   if (status == MPS_OK) mpsi_material_give(&given, def->material);

@@ -29,8 +29,7 @@ static bool allocate(mps_context *context, lanczos *s) {
 }
 
 static void release(mps_context *context, lanczos *s) {
-  void *arrays[] = {s->residual, s->vectors, s->work, s->worku, s->values, s->select, s->root};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+  MPSI_FREE(context, s->residual, s->vectors, s->work, s->worku, s->values, s->select, s->root);
 }
 
 /* y = M^1/2 K^-1 M^1/2 x */

@@ -136,8 +136,7 @@ static mps_status check_finite(const mps_elastic *e, const char *function, int64
 /* Do all ranks start the same motion? */
 static mps_status agree_on_motion(mps_elastic *e, const char *function, mps_status status,
                                   const mps_elastic_motion_def *def) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_elastic_motion_def, def);
   return mpsi_elastic_agree_given(e, function, status, &given);
 }

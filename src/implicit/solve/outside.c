@@ -108,10 +108,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
     o->shift = shift;
     status = mpsi_linear_hand(&e->base, function, &matrix);
   }
-  mpsi_free(e->context, mode);
-  mpsi_free(e->context, a.start);
-  mpsi_free(e->context, a.column);
-  mpsi_free(e->context, a.value);
+  MPSI_FREE(e->context, mode, a.start, a.column, a.value);
   return status;
 }
 

@@ -378,8 +378,7 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
   MPSI_TRY(mpsi_elastic_enter(e, __func__));
   e->within = true;
   mps_status status = check_cases(e, __func__, count, loads, displacements);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of loads", status == MPS_OK ? loads : NULL,
                   status == MPS_OK ? (size_t)(count * e->n) * 3 * sizeof *loads : 0);

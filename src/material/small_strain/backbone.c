@@ -13,7 +13,6 @@
 #include <mps/experimental/soil.h>
 
 enum { TABLE = 4000 }; /* intervals of ln x in the integral */
-#define LEAST_CURVATURE 0.5
 #define LEAST_SHARE 0.05 /* of G0 gamma_r: least strength */
 #define FARTHEST 1000.0  /* x at which the largest strength of a curve without a limit is taken */
 

@@ -160,9 +160,7 @@ mps_status mpsi_mpm_send_dashpots(const mpsi_boundary_setup *setup, const char *
     for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(setup->grid))
       read_record(setup->grid, setup->boundaries, (const char *)r.box.mail[m].data + at);
   mpsi_domain_free_mail(&r.box);
-  mpsi_free(context, r.sending);
-  mpsi_free(context, r.mail);
-  mpsi_free(context, r.message);
+  MPSI_FREE(context, r.sending, r.mail, r.message);
   return status;
 }
 

@@ -11,7 +11,6 @@
 #include "kinds.h"
 #include "mpm/base/energy.h"
 #include "mpm/contact/thin_bodies.h"
-#include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
 
 #include <string.h>

@@ -9,7 +9,6 @@
  * Blocks of cells are listed colour by colour (blocks.h), the constraints of a block by place, then
  * by body: the order in which impulses.c sweeps, whatever the order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body/rotation.h"
 #include "core/base/room_array.h"
 #include "mpm/base/kernels.h"
 #include "mpm/base/run.h"

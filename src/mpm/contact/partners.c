@@ -50,8 +50,7 @@ mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *m, mps_domain *domain,
 }
 
 void mpsi_mpm_free_partners(mpsi_contact_partners *m, mps_context *context) {
-  mpsi_free(context, m->words_room.item);
-  mpsi_free(context, m->own_room.item);
+  MPSI_FREE(context, m->words_room.item, m->own_room.item);
 }
 
 bool mpsi_mpm_is_partner(const mpsi_contact_partners *m, int32_t rank) {

@@ -9,7 +9,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "blocks.h"
 #include "core/internal.h"
-#include "mpm/contact/thin_bodies.h"
 
 #include <string.h>
 

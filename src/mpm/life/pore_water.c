@@ -89,7 +89,7 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
 static mps_status begin(mps_mpm *mpm, mps_status status) {
   double bulk = 0.0; /* of all particles */
   if (status == MPS_OK) status = add_fields(mpm, &bulk);
-  if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 1, &bulk);
+  if (mpm->partition) status = mpsi_domain_agree_max(mpm->domain, add, status, 1, &bulk);
   if (status != MPS_OK) return status;
   if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = bulk;
   mpm->p.K_w = mpm->water->def.bulk;
@@ -147,12 +147,11 @@ static void restore(mps_mpm *mpm, const kept *before) {
 
 /* All ranks give the same. */
 static mps_status agree_on_water(mps_mpm *mpm, mps_status status, const mps_pore_water_def *def) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpm->partition) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_pore_water_def, def);
   mpsi_give(&given, "having a field 'permeability'", has_layers(&mpm->p));
-  return mpsi_domain_agree_given(mpm->partition->domain, add, status, &given);
+  return mpsi_domain_agree_given(mpm->domain, add, status, &given);
 }
 
 mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
@@ -200,8 +199,8 @@ mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *
 static mps_status sum_ranks(const mps_mpm *mpm, const char *function, mps_status status,
                             int32_t count, mpsi_exact *sum) {
   if (!mpm->partition) return status;
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->partition->domain, function, count, sum)
+  status = mpsi_domain_agree(mpm->domain, function, status);
+  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->domain, function, count, sum)
                           : status;
 }
 
@@ -237,7 +236,7 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
                        "number is %d, must be -1 (the free surface) to %lld", number,
                        (long long)mpm->water->faces - 1);
   if (mpm->partition)
-    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "number", number);
+    status = mpsi_domain_agree_same(mpm->domain, __func__, status, "number", number);
   const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
   if (status == MPS_OK) sum[0] = mpm->water->rate[at], sum[1] = mpm->water->drained[at];
   MPSI_TRY(sum_ranks(mpm, __func__, status, 2, sum));
@@ -270,10 +269,9 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   if (!mpm) return mpsi_null(__func__, "mpm");
   mps_status status = check_level(mpm, __func__, point);
   if (mpm->partition) {
-    mpsi_given given;
-    mpsi_given_begin(&given);
+    mpsi_given given = MPSI_GIVEN;
     if (status == MPS_OK) mpsi_give_vector(&given, "point", mpm->grid.dim, point);
-    status = mpsi_domain_agree_given(mpm->partition->domain, __func__, status, &given);
+    status = mpsi_domain_agree_given(mpm->domain, __func__, status, &given);
   }
   if (status != MPS_OK) return status;
   const mpsi_columns *p = &mpm->p;
@@ -292,12 +290,11 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
 /* All ranks give the same. */
 static mps_status agree_on_face(const mps_mpm *mpm, const char *function, mps_status status,
                                 const mps_pore_face_def *def, int32_t number) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpm->partition) return status;
-  mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
   MPSI_GIVE_DEF(&given, mps_pore_face_def, def);
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(mpm->domain, function, status, &given);
 }
 
 static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_water *water,

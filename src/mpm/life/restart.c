@@ -9,7 +9,6 @@
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
 
-#include <stdio.h>
 #include <string.h>
 
 _Static_assert(sizeof(mpsi_dashpot) == MPSI_DASH * sizeof(double), "kept as numbers");
@@ -165,7 +164,7 @@ mps_status mpsi_mpm_returned(void *solver, const char *function) {
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
   mps_status status = mpsi_mpm_partition_find_ghosts(&part, function);
   if (status == MPS_OK)
-    status = mpsi_domain_agree(mpm->partition->domain, function,
+    status = mpsi_domain_agree(mpm->domain, function,
                                mpsi_mpm_put_dashpots(&setup, function, mpm->boundaries.warm,
                                                      mpm->boundaries.warm_room.item));
   mpm->run.stale = mpm->run.stale || stale;

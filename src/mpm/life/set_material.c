@@ -1,7 +1,6 @@
 /* set_material.c - another law for some particles, or all of them, between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
-#include "mpm/particles/mpm_particles.h"
 
 /* Number of particles of a list, NULL being all; index of the i-th of them. */
 static int64_t listed(const mpsi_columns *p, int64_t count, const int64_t *ids) {
@@ -26,12 +25,11 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   if (status == MPS_OK && (!ids || count < 0 || !mpm->partition))
     status = mpsi_particles_check_ids_or_all(mpm->p.set, function, count, ids);
   if (!mpm->partition) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_material_give(&given, material);
   mpsi_give(&given, "the number of the material", number_of(&mpm->p, material));
-  status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  status = mpsi_domain_agree_given(mpm->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->p.set, ids[k]) >= 0;
   return mpsi_mpm_count_listed(mpm->context, mpm->partition, function, status, count, ids, known,

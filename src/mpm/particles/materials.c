@@ -1,6 +1,5 @@
 /* materials.c - the laws of a solver and the particles of each: fields that a law reads and writes,
  * and its initial state. SPDX-License-Identifier: BSD-3-Clause */
-
 #include "core/particles/particles_internal.h"
 #include "mpm_particles.h"
 #include "mpm/particles/rooms.h"

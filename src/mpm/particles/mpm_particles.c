@@ -2,7 +2,6 @@
  * initial state, masses, checks. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_particles.h"
 
-#include "mpm/contact/particle.h"
 #include "mpm/water/water.h"
 
 #include <string.h>

@@ -137,8 +137,6 @@ bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t rank
     least = foreign;
     *out = t.orientation;
   }
-  mpsi_free(context, t.list);
-  mpsi_free(context, t.owner);
-  mpsi_free(context, t.foreign);
+  MPSI_FREE(context, t.list, t.owner, t.foreign);
   return good;
 }

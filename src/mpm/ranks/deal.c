@@ -74,9 +74,7 @@ static mps_status place_by_list(mps_context *context, const mpsi_grid *grid,
                                                         &partition->orientation)))
     status = mpsi_fail_memory(context, function, (size_t)blocks * sizeof *all);
   mpsi_domain_free_mail(&box);
-  mpsi_free(context, own);
-  mpsi_free(context, all);
-  mpsi_free(context, message);
+  MPSI_FREE(context, own, all, message);
   return mpsi_domain_agree(domain, function, status);
 }
 

@@ -7,7 +7,6 @@
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
-#include "mpm/step/damping.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -79,8 +78,7 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
     status =
         mpsi_curve_cut(partition->domain, function, blocks, key, key + blocks, partition->first);
   }
-  mpsi_free(context, list);
-  mpsi_free(context, key);
+  MPSI_FREE(context, list, key);
   return status;
 }
 
@@ -213,10 +211,7 @@ mps_status mpsi_mpm_partition_migrate(const mpsi_rank_part *part, const char *fu
     partition->heaviest = (double)part->p->count;
     status = mpsi_domain_max(partition->domain, function, 1, &partition->heaviest);
   }
-  mpsi_free(part->context, d.column);
-  mpsi_free(part->context, d.gone);
-  mpsi_free(part->context, d.row);
-  mpsi_free(part->context, d.to);
+  MPSI_FREE(part->context, d.column, d.gone, d.row, d.to);
   return status;
 }
 

@@ -211,8 +211,7 @@ mps_status mpsi_mpm_partition_find_ghosts(const mpsi_rank_part *part, const char
   status = mpsi_mpm_exchange_notices(part->context, partition->domain, function, status, s.range,
                                      s.count, s.announced, &s.ghost, &announced);
   status = join(&s, status, announced);
-  void *parts[] = {s.own, s.announced, s.ghost, s.rank, s.index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(part->context, parts[k]);
+  MPSI_FREE(part->context, s.own, s.announced, s.ghost, s.rank, s.index);
   partition->outdated = status != MPS_OK;
   partition->searches++;
   if (partition->outdated) part->run->stale = true; /* the lists may have been freed */
@@ -270,8 +269,7 @@ static mps_status keep_own(const mpsi_rank_part *part, const char *function,
 /* Checks that all ranks are given the same definition. */
 static mps_status compare_ranks(const mpsi_columns *p, const mps_mpm_def *d, const char *function,
                                 mps_status status) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_mpm_def, d);
   mpsi_give(&given, "having a kernel", d->kernel != NULL);
   if (status == MPS_OK) mpsi_material_give(&given, p->laws.law[0].material);
@@ -317,11 +315,8 @@ void mpsi_mpm_partition_free(mps_context *context, mpsi_partition **pointer) {
   if (!partition) return;
   *pointer = NULL;
   mpsi_halo_destroy(context, &partition->halo);
-  mpsi_free(context, partition->first);
-  mpsi_free(context, partition->border_room.item);
-  mpsi_free(context, partition->rank_room.item);
-  mpsi_free(context, partition->out_room.item);
-  mpsi_free(context, partition->in_room.item);
+  MPSI_FREE(context, partition->first, partition->border_room.item, partition->rank_room.item,
+            partition->out_room.item, partition->in_room.item);
   mps_domain_destroy(&partition->domain);
   mpsi_free(context, partition);
 }

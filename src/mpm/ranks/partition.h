@@ -94,11 +94,6 @@ mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *p
 /* collective_status.c: state that is equal on all ranks: time, step, positions of bodies. */
 void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
                          mpsi_given *list);
-/* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
- * first all agree on `status`, that of this rank. */
-mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
-                              mpsi_partition *partition, const char *function, mps_status status,
-                              int64_t count, const int64_t *ids);
 /* collective_status.c: whether sums over blocks of nodes count block g on this rank. Not
  * collective. */
 bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g);

@@ -4,7 +4,6 @@
  * ranks all receive the particles near the points. Sums are in the order of cells, within a cell of
  * ids. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
-#include "mpm/particles/mpm_particles.h"
 #include "mpm/base/shape.h"
 
 #include <mps/grid.h>
@@ -106,7 +105,7 @@ static mps_status join_rows(near *list, const char *function, const mpsi_mailbox
 }
 
 static mps_status exchange_particles(near *list, const char *function, mps_status status) {
-  mps_domain *domain = list->mpm->partition->domain;
+  mps_domain *domain = list->mpm->domain;
   mps_context *context = list->mpm->context;
   mpsi_mailbox box = {.context = context};
   int32_t count = 0;
@@ -314,9 +313,8 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
 static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partition,
                                   const char *function, mps_status status, const char *field,
                                   int32_t component, int64_t count, const double *points) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!partition) return status;
-  mpsi_given_begin(&given);
   if (status == MPS_OK) {
     mpsi_give_text(&given, "a hash of field", field);
     mpsi_give(&given, "component", component);
@@ -343,8 +341,7 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
     list.column[c] = mpsi_particles_column(mpm->p.set, field, first + c);
   status = list_near(&list, __func__, count, points);
   if (status != MPS_OK) {
-    mpsi_free(mpm->context, list.row);
-    mpsi_free(mpm->context, list.item);
+    MPSI_FREE(mpm->context, list.row, list.item);
     return status;
   }
   for (int64_t i = 0; i < count; i++) {
@@ -355,7 +352,6 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
       values[width * i + c] = state == MPS_GRID_POINT_INSIDE ? value_of(&f, c) : NAN;
     if (states) states[i] = state;
   }
-  mpsi_free(mpm->context, list.row);
-  mpsi_free(mpm->context, list.item);
+  MPSI_FREE(mpm->context, list.row, list.item);
   return MPS_OK;
 }

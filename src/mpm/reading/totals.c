@@ -128,7 +128,7 @@ mps_status mpsi_mpm_get_totals(void *solver, const char *function, mps_totals *o
                                     status);
   if (status != MPS_OK) return status;
   sum_share(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->run, sum);
-  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->domain, function, SUMS, sum);
   if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
   if (status != MPS_OK) return status;
   mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),

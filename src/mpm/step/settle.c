@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define TOLERANCE 1e-3
-#define MOST_STEPS 20000
 
 /* ---- bodies at rest -------------------------------------------------------------------------- */
 
@@ -269,10 +268,9 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (status == MPS_OK) status = check_sides(mpm->context, &mpm->boundaries, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->partition) {
-    mpsi_given given;
-    mpsi_given_begin(&given);
+    mpsi_given given = MPSI_GIVEN;
     MPSI_GIVE_DEF(&given, mps_mpm_settle_def, &def);
-    status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+    status = mpsi_domain_agree_given(mpm->domain, function, status, &given);
   }
   double *motion = status == MPS_OK ? save_motion(mpm->context, &mpm->p, function) : NULL;
   if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;

@@ -104,10 +104,10 @@ static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
 
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values) {
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   mpsi_mpm_give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
   if (status == MPS_OK)
     give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
-  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
+  return mpsi_domain_agree_given_max(mpm->domain, function, status, &list, count,
                                      values);
 }

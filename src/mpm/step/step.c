@@ -13,7 +13,6 @@
 #include "mpm/base/mpm_solver.h"
 #include "mpm/boundary/free_field.h"
 #include "mpm/grid/pass.h"
-#include "mpm/particles/mpm_particles.h"
 #include "mpm/ranks/messages.h"
 #include "mpm/water/water.h"
 #include "means.h"

@@ -171,7 +171,7 @@ static void find_yields(const mps_mpm *mpm, mpsi_pore_contacts *all) {
 
 /* Sums over ranks of words to which one rank contributes. */
 static mps_status share(mps_mpm *mpm, const char *function, int64_t words, int64_t *word) {
-  return mpsi_domain_sum(mpm->partition->domain, function, (int32_t)words, word);
+  return mpsi_domain_sum(mpm->domain, function, (int32_t)words, word);
 }
 
 /* The nodes that all ranks count, each with its slot, in order of places. */
@@ -192,7 +192,7 @@ static int64_t pack(int64_t low, int64_t high) {
 /* How many nodes all ranks count; *first: those of the ranks before. Collective. */
 static mps_status count_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out,
                               int64_t *first) {
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = mpm->domain;
   const int32_t ranks = mps_domain_size(domain), own = mps_domain_rank(domain);
   const bool good = mpsi_room_ensure(mpm->context, &out->word_room, ranks, sizeof(int64_t));
   mps_status status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, 8);
@@ -213,7 +213,7 @@ static mps_status count_slots(mps_mpm *mpm, const char *function, mpsi_pore_cont
 
 /* Gives the nodes of all ranks their slots: those that rank 0 counts first. Collective. */
 static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out) {
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = mpm->domain;
   const mpsi_pore_system *s = mpm->water->system;
   int64_t first = 0;
   mps_status status = count_slots(mpm, function, out, &first);
@@ -270,8 +270,7 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
   if (!make_room(mpm, out))
     status = mpsi_fail_memory(mpm->context, function,
                               (size_t)all->constraint_count * sizeof *out->contact);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   if (out->indices > 0) memset(out->index, -1, (size_t)out->indices * sizeof *out->index);
   for (int64_t n = 0; n < all->constraint_count; n++)
     if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, out);

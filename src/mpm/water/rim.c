@@ -175,7 +175,7 @@ static double most_particles(const mps_mpm *mpm) {
 
 static mps_status find(search *s, mpsi_pore_rim *rim) {
   const mpsi_grid *grid = &s->mpm->grid;
-  mps_domain *domain = s->mpm->partition->domain;
+  mps_domain *domain = s->mpm->domain;
   double most = most_particles(s->mpm);
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
   if (status == MPS_OK) status = choose(s, rim);
@@ -204,8 +204,7 @@ mps_status mpsi_pore_find_rim(mps_mpm *mpm, const char *function) {
     else
       status = mpsi_fail_memory(mpm->context, function, sizeof *system->rim);
   }
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   mpsi_pore_rim *rim = system->rim;
   mpsi_halo_destroy(mpm->context, &rim->halo);
   mpsi_halo_destroy(mpm->context, &rim->shared);
@@ -213,8 +212,7 @@ mps_status mpsi_pore_find_rim(mps_mpm *mpm, const char *function) {
   status = find(&s, rim);
   if (status != MPS_OK) rim->blocks = rim->cells = rim->shared_blocks = 0;
   rim->searches = status == MPS_OK ? mpm->partition->searches : -1;
-  void *parts[] = {s.list, s.rank, s.index, s.shared_rank, s.shared_index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  MPSI_FREE(mpm->context, s.list, s.rank, s.index, s.shared_rank, s.shared_index);
   return status;
 }
 
@@ -224,9 +222,8 @@ void mpsi_pore_free_rim(mps_context *context, mpsi_pore_rim **pointer) {
   if (!rim) return;
   mpsi_halo_destroy(context, &rim->halo);
   mpsi_halo_destroy(context, &rim->shared);
-  const mpsi_room room[] = {rim->block_room,        rim->cell_room, rim->reached_room,
-                            rim->shared_block_room, rim->out_room,  rim->in_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  MPSI_FREE(context, rim->block_room.item, rim->cell_room.item, rim->reached_room.item,
+            rim->shared_block_room.item, rim->out_room.item, rim->in_room.item);
   mpsi_free(context, rim);
 }
 

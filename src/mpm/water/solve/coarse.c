@@ -66,33 +66,13 @@ static int32_t find_place(const coarse_of *c, const int32_t *at) {
   return found ? (int32_t)(found - (const int32_t(*)[3])c->at) : -1;
 }
 
-/* Blocks of all ranks, from `first` on those of this one; `counts` of each rank. */
+/* Blocks of all ranks, from `first` on those of this one. */
 static mps_status count_blocks(const mps_mpm *mpm, const char *function, int64_t *first,
                                int64_t *all) {
-  mps_domain *domain = mpm->partition ? mpm->partition->domain : NULL;
-  const int64_t ranks = domain ? mps_domain_size(domain) : 1,
-                rank = domain ? mps_domain_rank(domain) : 0;
   int64_t own = 0;
-  *first = *all = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++)
     own += mpsi_mpm_counts_node_block(&mpm->grid, g);
-  *all = own;
-  if (!domain) return MPS_OK;
-  int64_t *counts = mpsi_alloc(mpm->context, ranks, sizeof *counts);
-  mps_status status = counts ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)ranks * 8);
-  status = mpsi_domain_agree(domain, function, status);
-  if (status == MPS_OK) {
-    memset(counts, 0, (size_t)ranks * sizeof *counts);
-    counts[rank] = own;
-    status = mpsi_domain_sum(domain, function, (int32_t)ranks, counts);
-  }
-  *all = 0;
-  for (int64_t r = 0; status == MPS_OK && r < ranks; r++) {
-    if (r < rank) *first += counts[r];
-    *all += counts[r];
-  }
-  mpsi_free(mpm->context, counts);
-  return status;
+  return mpsi_domain_count(mpm->domain, function, own, first, all);
 }
 
 static mps_status make_room(mps_mpm *mpm, const char *function, int64_t blocks) {
@@ -122,9 +102,8 @@ static mps_status send_places(mps_mpm *mpm, const char *function, int64_t first,
     for (int a = 0; a < 3; a++) place[3 * own + a] = mpm->grid.nodes[g].at[a];
     own++;
   }
-  const mps_status status = mpm->partition ? mpsi_domain_max(mpm->partition->domain, function,
-                                                             (int32_t)(3 * blocks), place)
-                                           : MPS_OK;
+  const mps_status status = mpsi_domain_max(mpm->domain, function,
+                                                             (int32_t)(3 * blocks), place);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++)
     for (int a = 0; a < 3; a++) c->at[b][a] = (int32_t)place[3 * b + a];
   return status;
@@ -150,7 +129,7 @@ static mps_status find_list(mps_mpm *mpm, const char *function) {
   c->searches = -1;
   MPSI_TRY(count_blocks(mpm, function, &first, &blocks));
   mps_status status = make_room(mpm, function, blocks);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  status = mpsi_domain_agree(mpm->domain, function, status);
   if (status == MPS_OK) status = send_places(mpm, function, first, blocks);
   if (status != MPS_OK) return status;
   c->blocks = blocks;
@@ -269,8 +248,7 @@ static void find_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 /* Values of the blocks of this rank to all: [blocks][size]. */
 static mps_status send_blocks(mps_mpm *mpm, const char *function, int64_t size, double *values) {
   const coarse_of *c = mpm->water->system->coarse;
-  if (!mpm->partition) return MPS_OK;
-  return mpsi_domain_max(mpm->partition->domain, function, (int32_t)(c->blocks * size), values);
+  return mpsi_domain_max(mpm->domain, function, (int32_t)(c->blocks * size), values);
 }
 
 /* The memory of [blocks][size] values where this rank's are to be written. */
@@ -290,8 +268,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
   if (!MPSI_ENSURE(mpm->context, c, velocity, numbers))
     status = mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *c->velocity);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   clear_blocks(mpm, c->tiles * c->beside, c->row);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_rows, 0.0);
@@ -404,7 +381,7 @@ static mps_status count_unknowns(mps_mpm *mpm, const char *function) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; mpsi_mpm_counts_node_block(grid, g) && k < grid->block_nodes; k++)
       *unknowns += mpsi_pore_is_unknown(mpm->water, g, k);
-  return mpm->partition ? mpsi_domain_sum(mpm->partition->domain, function, 1, unknowns) : MPS_OK;
+  return mpsi_domain_sum(mpm->domain, function, 1, unknowns);
 }
 
 static mps_status make_first(mps_mpm *mpm, const char *function) {
@@ -420,7 +397,7 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
     else
       status = mpsi_fail_memory(mpm->context, function, sizeof *s->coarse);
   }
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+  return mpsi_domain_agree(mpm->domain, function, status);
 }
 
 mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
@@ -435,8 +412,7 @@ mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
   MPSI_TRY(find_list(mpm, function));
   MPSI_TRY(make_rows(mpm, function));
   mps_status status = number_tiles(mpm, function);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   for_entries(c, add);
   mpsi_envelope_factor(&c->matrix);
   if (mpm->partition) clear_blocks(mpm, c->tiles, c->sum);
@@ -485,10 +461,9 @@ void mpsi_pore_free_coarse(mps_context *context, mpsi_pore_coarse **pointer) {
   coarse_of *c = *pointer;
   *pointer = NULL;
   if (!c) return;
-  const mpsi_room room[] = {c->at_room,       c->around_room, c->number_room,
-                            c->row_room,      c->sum_room,    c->unknown_room,
-                            c->velocity_room, c->value_room,  c->order_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  MPSI_FREE(context, c->at_room.item, c->around_room.item, c->number_room.item, c->row_room.item,
+            c->sum_room.item, c->unknown_room.item, c->velocity_room.item, c->value_room.item,
+            c->order_room.item);
   mpsi_envelope_drop(context, &c->matrix);
   mpsi_free(context, c);
 }

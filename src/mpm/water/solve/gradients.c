@@ -64,7 +64,7 @@ static mps_status refuse(mps_mpm *mpm, const char *function, double rest, double
                 (long long)mpm->run.steps, sqrt(rest), (long long)mpm->water->system->iterations,
                 sqrt(least));
   /* all ranks have the same sums, and fail alike */
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+  return mpsi_domain_agree(mpm->domain, function, status);
 }
 
 /* Squares of the residual: r.D^-1 r, and r.z. */
