@@ -11,6 +11,7 @@
  * behind. That grows with k, so all cuts are found at once by bisection, whose sums over ranks are
  * of integers: every rank finds the same. SPDX-License-Identifier: BSD-3-Clause */
 #include "curve.h"
+#include "core/base/order.h"
 #include "domain_private.h"
 
 /* ---- the curve ------------------------------------------------------------------------------- */
@@ -119,14 +120,8 @@ static mps_status prepare(curve_cut *c) {
 
 /* Weight here of the keys below `key`. */
 static int64_t weight_below(const curve_cut *c, int64_t key) {
-  int64_t low = 0, high = c->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (c->key[middle] < key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, c->count, middle, c->key[middle] < key);
   return c->below[low];
 }
 

@@ -7,6 +7,7 @@
  * Work is cut into blocks whose number depends on the particles only; each writes its own rows,
  * and rows are sorted, so the result is the same for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/internal.h"
 
 #include <mps/experimental/neighbours.h>
@@ -201,14 +202,8 @@ MPSI_INLINE bool before(const cell_item *item, uint32_t x, uint32_t y, uint32_t 
 }
 
 static int64_t first_item(const build *b, uint32_t x, uint32_t y, uint32_t z) {
-  int64_t low = 0, high = b->n;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (before(&b->items[middle], x, y, z))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, b->n, middle, before(&b->items[middle], x, y, z));
   return low;
 }
 

@@ -5,6 +5,7 @@
  * BSD-3-Clause */
 #include "particles_private.h"
 
+#include "core/base/order.h"
 #include "core/base/ranges.h"
 
 #include <stdlib.h>
@@ -204,11 +205,6 @@ static bool in_box(const mps_particles *p, int64_t at, const double *lo, const d
   return true;
 }
 
-static int ascending(const void *left, const void *right) {
-  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-  return a < b ? -1 : a > b;
-}
-
 /* Of a set that has few of the ids: goes through the particles. */
 static mps_status select_few(const mps_particles *p, const char *function, const double *lo,
                              const double *hi, int64_t capacity, int64_t *ids, int64_t *count) {
@@ -220,7 +216,7 @@ static mps_status select_few(const mps_particles *p, const char *function, const
     return mpsi_fail_memory(p->context, function, (size_t)found * sizeof *list);
   for (int64_t k = 0, at = 0; list && k < p->count; k++)
     if (in_box(p, k, lo, hi)) list[at++] = id[k];
-  if (list && found > 0) qsort(list, (size_t)found, sizeof *list, ascending);
+  if (list && found > 0) qsort(list, (size_t)found, sizeof *list, mpsi_ascending);
   if (list && list != ids) {
     memcpy(ids, list, (size_t)capacity * sizeof *ids);
     mpsi_free(p->context, list);

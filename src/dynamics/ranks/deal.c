@@ -14,6 +14,7 @@
  * Finally blocks have local numbers, ascending as in the whole body, with a gap where they are not
  * neighbours in the whole body: no run of pairs crosses a gap.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/particles/particles_internal.h"
 #include "deal.h"
 #include "dynamics/base/dynamics_solver.h"
@@ -104,14 +105,8 @@ static mps_status list_items(dealing *d) {
 /* Own ones before (key, id). */
 static int64_t count_below(const dealing *d, int64_t key, int64_t id) {
   const item at = {.key = key, .id = id};
-  int64_t low = 0, high = d->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (compare(&d->item[middle], &at) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, d->count, middle, compare(&d->item[middle], &at) < 0);
   return low;
 }
 

@@ -8,6 +8,7 @@
  * step is enough: displacements and rotations of ghosts. Pairs are arranged in blocks by their
  * numbers in the whole body, and every sum has the same terms in the same order on every rank.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "partition.h"
@@ -94,11 +95,6 @@ static int64_t cell_of(const cells *c, double x, double y) {
          (int64_t)floor((x - c->lo[0]) / c->width + 1.0);
 }
 
-static int compare(const void *left, const void *right) {
-  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-  return a < b ? -1 : a > b;
-}
-
 static bool begin_cells(const plan *p, cells *c) {
   const double period = isnan(p->dynamics->def.period_x) ? 0.0 : p->dynamics->def.period_x;
   double low = INFINITY;
@@ -119,21 +115,15 @@ static void take_cells(const plan *p, const uint8_t *marked, cells *c) {
       const int64_t cell = cell_of(c, p->x[k] + (copy == 2 ? -period : copy * period), p->y[k]);
       if (c->count == 0 || c->taken[c->count - 1] != cell) c->taken[c->count++] = cell;
     }
-  qsort(c->taken, (size_t)c->count, sizeof *c->taken, compare);
+  qsort(c->taken, (size_t)c->count, sizeof *c->taken, mpsi_ascending);
 }
 
 /* Is a cell, or one around it, in the list? */
 static bool any_taken(const cells *c, int64_t cell) {
   for (int64_t row = -1; row <= 1; row++) {
     const int64_t first = cell + row * c->columns - 1;
-    int64_t low = 0, high = c->count;
-    while (low < high) {
-      const int64_t middle = (low + high) / 2;
-      if (c->taken[middle] < first)
-        low = middle + 1;
-      else
-        high = middle;
-    }
+    int64_t low;
+    MPSI_BISECT(low, c->count, middle, c->taken[middle] < first);
     if (low < c->count && c->taken[low] <= first + 2) return true;
   }
   return false;

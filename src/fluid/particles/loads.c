@@ -10,6 +10,7 @@
  * Damping, -r z^2 u, z from 0 to 1 along a zone, makes waves fade without a reflection of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loads.h"
+#include "core/base/order.h"
 #include "fluid/base/access.h"
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -47,18 +48,13 @@ static bool counts(const void *solver, int64_t id) {
   return mps_particles_index(((const mps_fluid *)solver)->particles, id) >= 0;
 }
 
-static int ascending(const void *a, const void *b) {
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-  return (x > y) - (x < y);
-}
-
 static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
   const mps_fluid_load_def *def = known;
   mpsi_fluid_given *g = own;
   const double scalar = def->kind == MPS_FLUID_LOAD_PRESSURE ? def->pressure : def->rate;
   (void)solver, (void)function, (void)number;
   g->def = def;
-  if (def->ids) qsort((void *)def->ids, (size_t)def->id_count, sizeof *def->ids, ascending);
+  if (def->ids) qsort((void *)def->ids, (size_t)def->id_count, sizeof *def->ids, mpsi_ascending);
   for (int c = 0; c < 2; c++) {
     g->lower[c] = isnan(def->lower[c]) ? -INFINITY : def->lower[c];
     g->upper[c] = isnan(def->upper[c]) ? INFINITY : def->upper[c];
@@ -85,7 +81,8 @@ const mpsi_condition_kind mpsi_fluid_loads = {
 
 static bool chosen(const mps_fluid *f, const mpsi_fluid_given *g, const int64_t *id, int64_t i) {
   if (g->def->ids)
-    return bsearch(&id[i], g->def->ids, (size_t)g->def->id_count, sizeof *id, ascending) != NULL;
+    return bsearch(&id[i], g->def->ids, (size_t)g->def->id_count, sizeof *id, mpsi_ascending) !=
+           NULL;
   for (int c = 0; c < 2; c++)
     if (!(f->x[c][i] >= g->lower[c] && f->x[c][i] <= g->upper[c])) return false;
   return true;

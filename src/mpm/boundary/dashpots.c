@@ -3,6 +3,7 @@
  * block of nodes when the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kinds.h"
+#include "core/base/order.h"
 #include "mpm/ranks/messages.h"
 
 #include <stdlib.h>
@@ -102,14 +103,8 @@ static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const c
   from += sizeof at;
   mpsi_held key = {.hold = at.hold};
   memcpy(key.at, at.at, sizeof key.at);
-  int64_t low = 0, high = b->held_count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (mpsi_mpm_compare_held(&b->held[middle], &key) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, b->held_count, middle, mpsi_mpm_compare_held(&b->held[middle], &key) < 0);
   if (low == b->held_count || mpsi_mpm_compare_held(&b->held[low], &key) != 0) return;
   memcpy(&b->dashpot[b->held[low].dashpot], from, (size_t)plane_nodes(grid) * sizeof *b->dashpot);
 }

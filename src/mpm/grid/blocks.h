@@ -242,6 +242,12 @@ static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
   return a[0] < b[0];
 }
 
+/* The same for qsort: of items that are or begin with the place of a block. */
+static inline int mpsi_compare_blocks(const void *left, const void *right) {
+  const int32_t *a = left, *b = right;
+  return mpsi_block_before(a, b) ? -1 : mpsi_block_before(b, a) ? 1 : 0;
+}
+
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_at(const mpsi_grid *grid, int c, double x) {
   return (x - grid->origin[c]) * grid->inverse;

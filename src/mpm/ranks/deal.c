@@ -15,12 +15,6 @@
 
 #define MOST_BLOCKS (INT64_C(1) << 20)
 
-static int compare(const void *left, const void *right) {
-  const mpsi_placed *a = left, *b = right;
-  if (mpsi_block_before(a->at, b->at)) return -1;
-  return mpsi_block_before(b->at, a->at) ? 1 : 0;
-}
-
 static mpsi_placed *list_own(mps_context *context, const mpsi_grid *grid) {
   const int64_t blocks = grid->cell_count;
   mpsi_placed *list = mpsi_alloc(context, blocks, sizeof *list);
@@ -42,9 +36,9 @@ static mpsi_placed *join_lists(mps_context *context, const mpsi_mailbox *box, in
   char *to = (char *)list;
   for (int32_t m = 0; m < box->count; to += box->mail[m++].bytes)
     memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
-  qsort(list, (size_t)count, sizeof *list, compare);
+  qsort(list, (size_t)count, sizeof *list, mpsi_compare_blocks);
   for (int64_t k = 0; k < count; k++)
-    if (kept > 0 && compare(&list[kept - 1], &list[k]) == 0)
+    if (kept > 0 && mpsi_compare_blocks(&list[kept - 1], &list[k]) == 0)
       list[kept - 1].particles += list[k].particles;
     else
       list[kept++] = list[k];

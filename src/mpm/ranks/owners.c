@@ -3,6 +3,7 @@
  * than any had after the last cut. Results do not depend on the partition.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
+#include "core/base/order.h"
 #include "domain/migrate.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/particles/rooms.h"
@@ -32,11 +33,6 @@ int32_t mpsi_mpm_block_owner(const mpsi_grid *grid, mpsi_partition *partition, c
 typedef struct weighed {
   int64_t key, weight;
 } weighed;
-
-static int compare(const void *left, const void *right) {
-  const int64_t a = ((const weighed *)left)->key, b = ((const weighed *)right)->key;
-  return a < b ? -1 : a > b;
-}
 
 /* Orientation of the curve over the blocks, all of which are here; false: memory refused. */
 static bool place_curve(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
@@ -73,7 +69,7 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
     list[b] = (weighed){key_of(grid, partition, cells->at), cells->end - cells->begin};
   }
   if (status == MPS_OK) {
-    qsort(list, (size_t)blocks, sizeof *list, compare);
+    qsort(list, (size_t)blocks, sizeof *list, mpsi_ascending);
     for (int64_t b = 0; b < blocks; b++) key[b] = list[b].key, key[blocks + b] = list[b].weight;
     status =
         mpsi_curve_cut(partition->domain, function, blocks, key, key + blocks, partition->first);

@@ -4,6 +4,7 @@
  * Ghosts are found from the blocks that exist: each rank sends the list of its blocks to the ranks
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/mpm_particles.h"
+#include "core/base/order.h"
 #include "core/base/room_array.h"
 #include "messages.h"
 #include "notices.h"
@@ -31,14 +32,8 @@ typedef struct search {
 } search;
 
 static bool is_own(const search *s, const int32_t *at) {
-  int64_t low = 0, high = s->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (mpsi_block_before(s->own[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, s->count, middle, mpsi_block_before(s->own[middle].at, at));
   return low < s->count && memcmp(s->own[low].at, at, sizeof s->own[low].at) == 0;
 }
 

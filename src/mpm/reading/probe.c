@@ -4,6 +4,7 @@
  * ranks all receive the particles near the points. Sums are in the order of cells, within a cell of
  * ids. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "core/base/order.h"
 #include "mpm/base/shape.h"
 
 #include <mps/grid.h>
@@ -146,14 +147,8 @@ static mps_status list_near(near *list, const char *function, int64_t count, con
 
 /* The first item that is not before `cell`. */
 static int64_t first_from(const near *list, const int64_t *cell) {
-  int64_t low = 0, high = list->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (compare_cells(list->item[middle].cell, cell) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, list->count, middle, compare_cells(list->item[middle].cell, cell) < 0);
   return low;
 }
 

@@ -1,6 +1,7 @@
 /* rim.c - see rim.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "rim.h"
 
+#include "core/base/order.h"
 #include "core/base/room_array.h"
 #include "layers.h"
 #include "mpm/ranks/messages.h"
@@ -111,27 +112,17 @@ static void take_notice(search *s, mpsi_pore_rim *rim, const mpsi_notice *from) 
   rim->shared_block[rim->shared_blocks++] = same;
 }
 
-static int compare_blocks(const void *left, const void *right) {
-  const mpsi_pore_rim_block *a = left, *b = right;
-  return mpsi_block_before(a->at, b->at) ? -1 : mpsi_block_before(b->at, a->at) ? 1 : 0;
-}
-
 static mps_status choose(search *s, mpsi_pore_rim *rim) {
   if (!make_lists(s, rim)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
   for (int64_t k = 0; k < s->found; k++) take_notice(s, rim, &s->list[k]);
-  if (rim->blocks > 1) qsort(rim->block, (size_t)rim->blocks, sizeof *rim->block, compare_blocks);
+  if (rim->blocks > 1)
+    qsort(rim->block, (size_t)rim->blocks, sizeof *rim->block, mpsi_compare_blocks);
   return MPS_OK;
 }
 
 int32_t mpsi_pore_rim_block_at(const mpsi_pore_rim *rim, const int32_t *at) {
-  int64_t low = 0, high = rim ? rim->blocks : 0;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(rim->block[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, rim ? rim->blocks : 0, middle, mpsi_block_before(rim->block[middle].at, at));
   const bool found = rim && low < rim->blocks && !mpsi_block_before(at, rim->block[low].at);
   return found ? rim->block[low].number : -1;
 }

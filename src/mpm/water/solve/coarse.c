@@ -55,14 +55,10 @@ typedef struct place_of_tile {
 
 /* ---- the list of blocks ---------------------------------------------------------------------- */
 
-static int compare_places(const void *left, const void *right) {
-  const int32_t *a = left, *b = right;
-  return mpsi_block_before(a, b) ? -1 : mpsi_block_before(b, a) ? 1 : 0;
-}
-
 static int32_t find_place(const coarse_of *c, const int32_t *at) {
   const int32_t(*found)[3] =
-      c->blocks > 0 ? bsearch(at, c->at, (size_t)c->blocks, sizeof *c->at, compare_places) : NULL;
+      c->blocks > 0 ? bsearch(at, c->at, (size_t)c->blocks, sizeof *c->at, mpsi_compare_blocks)
+                    : NULL;
   return found ? (int32_t)(found - (const int32_t(*)[3])c->at) : -1;
 }
 
@@ -110,7 +106,7 @@ static mps_status send_places(mps_mpm *mpm, const char *function, int64_t first,
 }
 
 static void join_list(const mpsi_grid *grid, coarse_of *c) {
-  qsort(c->at, (size_t)c->blocks, sizeof *c->at, compare_places);
+  qsort(c->at, (size_t)c->blocks, sizeof *c->at, mpsi_compare_blocks);
   for (int64_t b = 0; b < c->blocks; b++)
     for (int k = 0; k < MPSI_PORE_AROUND; k++) {
       int32_t at[3], step[3];
