@@ -127,14 +127,13 @@ static mps_status check_field(const mps_particles *p, const char *function,
 
 mps_status mpsi_particles_notify(mps_particles *p, const char *function, const char *field,
                                  const double *former) {
-  mps_status status = MPS_OK;
-  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+  for (mpsi_holder *h = p->holders; h; h = h->next)
     if (h->commit)
-      status = mpsi_fail_of(p->context,
+      MPSI_TRY(mpsi_fail_of(p->context,
                             h->commit(h->self, function, field,
                                       h->compares && h->compares(h->self, field) ? former : NULL),
-                            "particles");
-  return status;
+                            "particles"));
+  return MPS_OK;
 }
 
 /* ---- editing --------------------------------------------------------------------------------- */

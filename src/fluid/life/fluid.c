@@ -105,10 +105,9 @@ static mps_status add_fields(mps_particles *particles) {
   static const char *const names[] = {"velocity",         "pressure",
                                       "reduced_pressure", "reduced_pressure_old",
                                       "free_surface",     "surface_rise"};
-  mps_status status = MPS_OK;
-  for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
-    status = mps_particles_add_field(particles, names[k], 0);
-  return status;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    MPSI_TRY(mps_particles_add_field(particles, names[k], 0));
+  return MPS_OK;
 }
 
 static void destroy(void *solver) {

@@ -326,10 +326,9 @@ static void list_point(void *user, const double *x, double p) {
 static mps_status list_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                               listing *list) {
   if (!w->line) return for_points(f, w, function, list_point, list);
-  mps_status status = MPS_OK;
-  for (int64_t k = 0; k < w->line->count && status == MPS_OK; k++)
-    status = for_points(f, &w->line->segment[k].wall, function, list_point, list);
-  return status;
+  for (int64_t k = 0; k < w->line->count; k++)
+    MPSI_TRY(for_points(f, &w->line->segment[k].wall, function, list_point, list));
+  return MPS_OK;
 }
 
 mps_status mps_fluid_get_boundary_points(const mps_fluid *handle, int32_t number, int64_t capacity,

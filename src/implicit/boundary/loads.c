@@ -144,15 +144,14 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   mps_elastic *e = solver;
   const mps_elastic_load_def *def = known;
   mpsi_elastic_load *l = own;
-  mps_status status = MPS_OK;
   (void)number;
   l->def = def;
   if (def->id_count == 0) return MPS_OK;
   if (!(l->patches = mpsi_alloc(e->context, def->id_count, sizeof *l->patches)))
     return mpsi_fail_memory(e->context, function, (size_t)def->id_count * sizeof *l->patches);
-  for (int64_t k = 0; k < def->id_count && status == MPS_OK; k++)
-    status = make_patch(e, function, def, k, &l->patches[k]);
-  return status;
+  for (int64_t k = 0; k < def->id_count; k++)
+    MPSI_TRY(make_patch(e, function, def, k, &l->patches[k]));
+  return MPS_OK;
 }
 
 /* The first load by mass reads the masses. */

@@ -180,12 +180,11 @@ mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shif
 mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t count,
                                   const double *rhs, double *solution) {
   if (e->unknowns == 0) return MPS_OK;
-  mps_status status = MPS_OK;
   if (!e->use_cg) return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
-  for (int64_t k = 0; k < count && status == MPS_OK; k++)
-    status = (mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
-        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns);
-  return status;
+  for (int64_t k = 0; k < count; k++)
+    MPSI_TRY((mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
+        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns));
+  return MPS_OK;
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */

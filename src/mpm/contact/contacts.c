@@ -66,10 +66,9 @@ static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
 
 mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
                                    const mpsi_contacts *contacts, const char *function) {
-  mps_status status = MPS_OK;
-  for (int32_t b = 1; b < contacts->bodies && status == MPS_OK; b++)
-    status = check_overlap(context, grid, contacts, function, contacts->body[b]);
-  return status;
+  for (int32_t b = 1; b < contacts->bodies; b++)
+    MPSI_TRY(check_overlap(context, grid, contacts, function, contacts->body[b]));
+  return MPS_OK;
 }
 
 /* Contact by impulses separates the sides of a thin wall (thin_bodies.h), penalty contact does

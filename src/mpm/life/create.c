@@ -140,10 +140,9 @@ static mps_status join_extremes(mpsi_contacts *contacts, mpsi_run *run, const mp
 
 static mps_status add_fields(mps_context *context, const mpsi_columns *p) {
   static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
-  mps_status status = MPS_OK;
-  for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
-    status = mpsi_as(context, create, mps_particles_add_field(p->set, names[k], 0));
-  return status;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    MPSI_TRY(mpsi_as(context, create, mps_particles_add_field(p->set, names[k], 0)));
+  return MPS_OK;
 }
 
 /* ---- restoring the set after an error -------------------------------------------------------- */

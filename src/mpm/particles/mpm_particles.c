@@ -115,10 +115,9 @@ static mps_status check_amount(mps_context *context, const mpsi_grid *grid, cons
 mps_status mpsi_mpm_check_amounts(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_columns *p, const char *function) {
   const double *density = mpsi_particles_column(p->set, "density", 0);
-  mps_status status = MPS_OK;
-  for (int64_t k = 0; k < p->count && status == MPS_OK; k++)
-    status = check_amount(context, grid, p, function, k, density[k]);
-  return status;
+  for (int64_t k = 0; k < p->count; k++)
+    MPSI_TRY(check_amount(context, grid, p, function, k, density[k]));
+  return MPS_OK;
 }
 
 /* Mass of a particle from its density in the present volume. */

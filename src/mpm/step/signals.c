@@ -21,10 +21,9 @@ static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
 
 static mps_status evaluate_friction(const mpsi_contacts *contacts, const mpsi_run *run,
                                     const char *function) {
-  mps_status status = MPS_OK;
-  for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++)
-    status = mpsi_contact_set_friction(contacts->handle[b], function, b, run->time);
-  return status;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    MPSI_TRY(mpsi_contact_set_friction(contacts->handle[b], function, b, run->time));
+  return MPS_OK;
 }
 
 static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *grid,
@@ -108,6 +107,5 @@ mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status
   mpsi_mpm_give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
   if (status == MPS_OK)
     give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
-  return mpsi_domain_agree_given_max(mpm->domain, function, status, &list, count,
-                                     values);
+  return mpsi_domain_agree_given_max(mpm->domain, function, status, &list, count, values);
 }
