@@ -98,10 +98,7 @@ static bool write_fields(hid_t root, mpsi_row_source *from) {
 }
 
 /* Rows of a set that is here as a whole. */
-static mps_status begin_own(mpsi_row_source *source, mps_status status) {
-  (void)source;
-  return status;
-}
+static mps_status begin_own(mpsi_row_source *source, mps_status status) { return status; }
 
 static bool put_own(mpsi_row_source *source, int32_t field, int32_t component, mpsi_put_rows_fn put,
                     void *user) {

@@ -341,9 +341,7 @@ static void get_names(const void *history, void *values) {
   memcpy(values, ((const mps_history *)history)->names, (size_t)count_names(history));
 }
 
-static void keep_names(void *history, int64_t rows, const void *values) {
-  (void)history, (void)rows, (void)values;
-}
+static void keep_names(void *history, int64_t rows, const void *values) {}
 
 static bool same_names(const void *history, int64_t rows, const void *values) {
   return rows == count_names(history) &&
@@ -362,13 +360,11 @@ static void get_numbers(const void *history, void *values) {
 }
 
 static bool whole_rows(const void *history, int64_t numbers, const void *values) {
-  (void)values;
   return numbers % ((const mps_history *)history)->width == 0;
 }
 
 static bool reserve_numbers(void *history, int64_t numbers, const void *values) {
   mps_history *h = history;
-  (void)values;
   return reserve(h, numbers / h->width);
 }
 

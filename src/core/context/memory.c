@@ -6,14 +6,10 @@
 #include <string.h>
 
 static void *system_alloc(void *user, size_t size, size_t alignment) {
-  (void)user;
   return aligned_alloc(alignment, size); /* size is a multiple of alignment: see mpsi_alloc */
 }
 
-static void system_free(void *user, void *memory) {
-  (void)user;
-  free(memory);
-}
+static void system_free(void *user, void *memory) { free(memory); }
 
 void mpsi_use_system_memory(mps_context_def *def) {
   def->alloc = system_alloc;

@@ -85,7 +85,6 @@ static void add_cell(const search *s, int64_t k, const int64_t cell[3], double *
 
 static void search_chunk(void *data, int64_t unit, int32_t worker) {
   const search *s = data;
-  (void)worker;
   chunk *out = &s->chunks[unit];
   const int64_t begin = s->from + unit * CHUNK;
   const int64_t end = begin + CHUNK < s->count ? begin + CHUNK : s->count;

@@ -77,7 +77,6 @@ static uint32_t cell_of(double x, double reference, double side) {
 }
 
 static void find_cells(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   build *b = data;
   const int32_t dim = b->owner->def.dim;
   uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0};
@@ -103,7 +102,6 @@ static void find_cells(void *data, int64_t block, int32_t worker) {
 }
 
 static void shift_cells(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   build *b = data;
   for (int64_t i = block_begin(b, block); i < block_end(b, block); i++)
     for (int32_t c = 0; c < b->owner->def.dim; c++) b->items[i].cell[c] -= b->low[0][c] - 1;
@@ -143,7 +141,6 @@ static uint32_t digit_of(const build *b, const cell_item *item) {
 }
 
 static void count_digits(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   uint32_t *count = b->owner->histogram + block * DIGITS;
   memset(count, 0, DIGITS * sizeof *count);
@@ -152,7 +149,6 @@ static void count_digits(void *data, int64_t block, int32_t worker) {
 }
 
 static void move_items(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   uint32_t *place = b->owner->histogram + block * DIGITS;
   for (int64_t i = block_begin(b, block); i < block_end(b, block); i++)
@@ -180,7 +176,6 @@ static void sort_items(build *b, const uint32_t *most) {
 }
 
 static void gather_positions(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   for (int32_t c = 0; c < b->owner->def.dim; c++)
     for (int64_t s = block_begin(b, block); s < block_end(b, block); s++)
@@ -278,7 +273,6 @@ MPSI_INLINE void pairs_body(const build *b, int32_t dim, bool half, int64_t bloc
 }
 
 static void find_pairs(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   const bool half = b->owner->def.half != 0;
   if (b->owner->def.dim == 2)

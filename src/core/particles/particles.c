@@ -107,14 +107,12 @@ static void permute_chunk(void *data, int64_t unit, int32_t worker) {
   const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
   const double *from = (const double *)m->column[unit / m->chunks];
   double *to = (double *)m->sorted[unit / m->chunks];
-  (void)worker;
   for (int64_t k = begin; k < end; k++) memcpy(to + k, from + m->order[k], sizeof *to);
 }
 
 static void return_chunk(void *data, int64_t unit, int32_t worker) {
   const permutation *m = data;
   const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
-  (void)worker;
   memcpy(m->column[unit / m->chunks] + 8 * begin, m->sorted[unit / m->chunks] + 8 * begin,
          (size_t)(end - begin) * 8);
 }
@@ -139,7 +137,6 @@ typedef struct indexing {
 static void index_chunk(void *data, int64_t chunk, int32_t worker) {
   const indexing *i = data;
   const int64_t begin = chunk * PERMUTE_CHUNK;
-  (void)worker;
   for (int64_t k = begin; k < i->count && k < begin + PERMUTE_CHUNK; k++)
     mpsi_ids_put(i->ids, i->id[k], k);
 }

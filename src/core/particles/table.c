@@ -204,7 +204,6 @@ static bool interpolate(fit *f, const double *at, double *out, bool *outside) {
 /* ---- all particles --------------------------------------------------------------------------- */
 
 static void set_block(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   table *t = data;
   struct block *b = &t->blocks[block];
   const int64_t begin = block * BLOCK;

@@ -56,7 +56,6 @@ static void get_sites(const void *set, void *values) {
 static bool reserve_sites(void *set, int64_t rows, const void *values) {
   mps_particles *p = set;
   void *item = p->sites.item;
-  (void)values;
   if (rows <= p->sites.capacity) return true;
   if (!mpsi_grow(p->context, &item, p->sites.count, rows, sizeof *p->sites.item)) return false;
   p->sites.item = item;

@@ -14,7 +14,6 @@
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
   mps_dynamics *dynamics = solver;
   const mps_dynamics_boundary_def *def = known;
-  (void)number;
   if (def->dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation), 0 for "
@@ -26,7 +25,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
   mps_dynamics_boundary_def *def = known;
   mpsi_dynamics_boundary *b = own;
-  (void)number;
   b->def = def;
   b->kind = def->kind;
   b->dofs = def->dofs;
@@ -270,7 +268,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
   const mpsi_dynamics_boundary *before = former;
   void **const slot = &dynamics->conditions[MPSI_BOUNDARIES].own[number];
   lists l = {0};
-  (void)def;
   if (now && before) {
     memcpy(now->pushed, before->pushed, sizeof now->pushed);
     memcpy(now->impulse, before->impulse, sizeof now->impulse);

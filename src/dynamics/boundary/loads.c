@@ -12,7 +12,6 @@
 /* ---- definitions ----------------------------------------------------------------------------- */
 
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
-  (void)number, (void)known;
   return mpsi_particles_committed(((mps_dynamics *)solver)->particles, function);
 }
 
@@ -22,7 +21,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   mpsi_dynamics_load *load = own;
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def->area) ? spacing * dynamics->def.measure : def->area;
-  (void)number;
   load->kind = def->kind;
   for (int c = 0; c < 2; c++) {
     load->amount[c] =
@@ -38,7 +36,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
 
 static mps_status apply(void *solver, const char *function, int32_t number, void *def, void *own,
                         void *former) {
-  (void)def, (void)function, (void)number, (void)own, (void)former;
   ((mps_dynamics *)solver)->forces_stale = true;
   return MPS_OK;
 }

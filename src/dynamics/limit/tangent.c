@@ -93,7 +93,6 @@ static void block_pairs(const tangent *t, const mpsi_dynamics_block *block, bool
 }
 
 static void shear_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const tangent *t = data;
   const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];
   const int64_t n = t->dynamics->count, begin = block->begin;
@@ -110,7 +109,6 @@ static void shear_block(void *data, int64_t b, int32_t worker) {
 }
 
 static void pressure_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const tangent *t = data;
   const mpsi_dynamics_state *state = &t->dynamics->state;
   const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];

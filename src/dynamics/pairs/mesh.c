@@ -117,7 +117,6 @@ static void count_block(const arrange *work, int64_t b) {
 
 /* Sorts the entries of one block and marks its runs. */
 static void arrange_block(void *data, int64_t number, int32_t worker) {
-  (void)worker;
   arrange *work = data;
   entry *e = work->entry + work->first[number];
   const int64_t n = work->first[number + 1] - work->first[number];
@@ -142,7 +141,6 @@ static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r
 
 /* Copies the marked entries of one block into the run and scattered lists. */
 static void write_block(void *data, int64_t number, int32_t worker) {
-  (void)worker;
   arrange *work = data;
   batch *out = work->batch;
   mpsi_dynamics_scattered *list = &out->scattered;

@@ -31,7 +31,6 @@ static void kinetic_of_block(void *data, int64_t b, int32_t worker) {
   const double rate = 1.0 / dynamics->lag;
   const int64_t end = block->end < dynamics->body ? block->end : dynamics->body;
   double sum = 0.0;
-  (void)worker;
   for (int c = 0; c < 3; c++) /* ith is 3/(rho D^2), of half the moment of inertia */
     for (int64_t k = block->begin; k < end; k++) {
       const double speed = verlet ? (now[c][k] - old[c][k]) * rate : v[c][k];

@@ -71,7 +71,6 @@ static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_bloc
 }
 
 static void energy_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const mps_dynamics *dynamics = data;
   const mpsi_dynamics_state *s = &dynamics->state;
   const mpsi_dynamics_block *block = &dynamics->mesh.block[b];
@@ -120,7 +119,6 @@ void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block) {
 
 /* The works of one block's particles in the step that has ended, J. */
 static void work_block(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const mpsi_dynamics_account *account = data;
   mps_dynamics *dynamics = account->dynamics;
   const mpsi_dynamics_block *b = &dynamics->mesh.block[block];

@@ -261,7 +261,6 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   static const char *const fabric[] = {"reference", "free_field"};
   mps_dynamics *dynamics = self;
   const char *which = NULL;
-  (void)former;
   mps_status status = MPS_OK;
   dynamics->limits.changed = true;
   const bool of_ground = ONE_OF(field, ground, &which), of_motion = ONE_OF(field, motion, &which);

@@ -91,7 +91,6 @@ mps_status mpsi_dynamics_begin_march(void *solver, const char *function, mpsi_ma
 
 /* As many as are left to the next callback. */
 int64_t mpsi_dynamics_batch(const void *solver, const mpsi_march *m, int64_t most) {
-  (void)solver;
   const int64_t n = m->every - m->done % m->every;
   return mpsi_march_is_run(m) && n < most ? n : most;
 }
@@ -114,7 +113,6 @@ mps_status mpsi_dynamics_advance_march(void *solver, const char *function, mpsi_
 mps_status mpsi_dynamics_end_march(void *solver, const char *function, const mpsi_march *m,
                                    mps_status status) {
   mps_dynamics *dynamics = solver;
-  (void)function;
   if (status == MPS_OK || dynamics->steps > m->before) mpsi_dynamics_publish(dynamics);
   return status;
 }

@@ -177,7 +177,6 @@ static void check_block_speeds(void *data, int64_t b, int32_t worker) {
   const bool verlet = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_VERLET;
   const double *const now[3] = {s->dx, s->dy, s->th}, *const old[3] = {s->ox, s->oy, s->oth};
   const double *const v[3] = {s->vx, s->vy, s->vth};
-  (void)worker;
   dynamics->bad[b] = 0;
   for (int c = 0; c < 3; c++) {
     const double most = c == 2 ? MPSI_DYNAMICS_FASTEST / dynamics->spacing : MPSI_DYNAMICS_FASTEST;

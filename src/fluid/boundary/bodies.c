@@ -411,7 +411,6 @@ void mpsi_fluid_drop_leaving(mps_fluid *f) {
 /* The water presses on faces, not by particles. */
 static mps_status list_particles(void *owner, mps_contact *contact, const mpsi_contact_list *out,
                                  int64_t *count) {
-  (void)owner, (void)out, (void)count;
   return mpsi_fail(contact->context, "mps_contact_get_particles", MPS_ERROR_UNSUPPORTED,
                    "contact is that of a fluid, whose pressure on a body belongs to no particles: "
                    "mps_contact_get_reaction gives it by parts");

@@ -16,7 +16,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   mps_fluid *f = solver;
   const mps_fluid_boundary_def *d = known;
   const double length = hypot(d->normal[0], d->normal[1]);
-  (void)number;
   if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
@@ -138,7 +137,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_fluid *f = solver;
   mpsi_fluid_wall *now = own, *place = &f->wall[number];
-  (void)def;
   const mps_status status =
       mpsi_domain_agree_same(f->domain, function, MPS_OK, "the signal's present displacement",
                              now ? now->origin : 0.0); /* of functions of the caller */

@@ -286,7 +286,6 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
 
 /* A load acts on an image as on its parent, so that water under a load exerts it on the wall. */
 static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     double v[2], kick[2] = {0.0, 0.0};
@@ -322,7 +321,6 @@ static double late_share(const mps_fluid *f, int64_t i) {
 }
 
 static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};

@@ -140,7 +140,6 @@ static mps_status agree(void *solver, const char *function, mps_status status) {
 }
 
 static mps_status use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   ((mps_fluid *)solver)->def.dt = dt;
   return MPS_OK;
 }

@@ -83,7 +83,6 @@ static mps_status check_places(mps_fluid *f, const char *function, int64_t first
 mps_status mpsi_fluid_commit(void *self, const char *function, const char *field,
                              const double *former) {
   mps_fluid *f = self;
-  (void)former;
   const mps_status status = mpsi_fluid_ready(f, function);
   if (status == MPS_OK) f->edited = f->renewed = true;
   if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
@@ -118,7 +117,6 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
 
 mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   mps_fluid *f = self;
-  (void)ids;
   MPSI_TRY(mpsi_fluid_ready(f, function));
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,

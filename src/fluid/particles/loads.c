@@ -24,7 +24,6 @@
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
   const mps_fluid *f = solver;
   const mps_fluid_load_def *d = known;
-  (void)number;
   if (d->kind == MPS_FLUID_LOAD_PRESSURE && f->classical.gamma > 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_UNSUPPORTED,
@@ -39,10 +38,7 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 }
 
 /* The particles of a box are those that are in it in each step. */
-static bool keeps(const void *def, mpsi_selected by) {
-  (void)def, (void)by;
-  return true;
-}
+static bool keeps(const void *def, mpsi_selected by) { return true; }
 
 static bool counts(const void *solver, int64_t id) {
   return mps_particles_index(((const mps_fluid *)solver)->particles, id) >= 0;
@@ -52,7 +48,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   const mps_fluid_load_def *def = known;
   mpsi_fluid_given *g = own;
   const double scalar = def->kind == MPS_FLUID_LOAD_PRESSURE ? def->pressure : def->rate;
-  (void)solver, (void)function, (void)number;
   g->def = def;
   if (def->ids) qsort((void *)def->ids, (size_t)def->id_count, sizeof *def->ids, mpsi_ascending);
   for (int c = 0; c < 2; c++) {

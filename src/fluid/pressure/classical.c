@@ -52,7 +52,6 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
 /* ---- before the pressure --------------------------------------------------------------------- */
 
 static void fall(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++)
     for (int c = 0; c < 2; c++) {
       f->u[c][i] -= f->dt * f->g * f->up[c];
@@ -62,7 +61,6 @@ static void fall(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 /* The weights of the pairs in place of the smooth ones; n. */
 static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double least = 0.05 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     double n = 0.0;
@@ -93,7 +91,6 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
 }
 
 void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const mpsi_fluid_classical *c = &f->classical;
   const double *p = mpsi_particles_column(f->particles, "pressure", 0);
   const double size = c->lambda * c->n_wide / 4.0 * c->gamma * f->def.density / (f->dt * f->dt);
@@ -111,7 +108,6 @@ void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t
 
 /* q of a pressure that is not below 0. */
 void mpsi_fluid_classical_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     f->pressure[i] = fmax(f->system.x[i], 0.0);
     f->q[i] = f->pressure[i] + mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
@@ -121,7 +117,6 @@ void mpsi_fluid_classical_solution(mps_fluid *f, int64_t begin, int64_t end, int
 /* ---- after it -------------------------------------------------------------------------------- */
 
 void mpsi_fluid_classical_accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double factor = f->dt / f->def.density * 2.0 / f->classical.n0, reach = NEAR * f->l0;
   for (int64_t i = begin; i < end; i++) {
     double least = f->pressure[i], sum[2] = {0.0, 0.0};

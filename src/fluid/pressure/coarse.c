@@ -77,7 +77,6 @@ static void tile_block(mps_fluid *f, int64_t begin, int64_t end, int64_t block) 
 }
 
 static void number_ghosts(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) f->coarse->of[f->count + g] = f->coarse->of[f->parent[g]];
 }
 
@@ -175,7 +174,6 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
 }
 
 static void add_rows(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
   const mpsi_fluid_coarse_at *at = c->at + b * c->room;
@@ -345,7 +343,6 @@ void mpsi_fluid_coarse_solve(mps_fluid *f) {
 }
 
 static void sum_residual(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
   const int64_t end = (b + 1) * c->block < f->count ? (b + 1) * c->block : f->count;
@@ -356,7 +353,6 @@ static void sum_residual(void *data, int64_t b, int32_t worker) {
 }
 
 static void correct(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   const mpsi_fluid_coarse *c = f->coarse;
   const int64_t end = (b + 1) * c->block < f->count ? (b + 1) * c->block : f->count;

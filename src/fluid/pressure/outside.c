@@ -46,7 +46,6 @@ static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *
 /* The rows of a chunk one after the other, in the memory behind its pairs and diagonals; start[i +
  * 1] receives the length of row i. */
 static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const mpsi_fluid_outside *o = &f->outside;
   int64_t at = mpsi_fluid_pairs(f, begin) - mpsi_fluid_pairs(f, f->own[0]) + begin - f->own[0];
   for (int64_t i = begin; i < end; i++) {

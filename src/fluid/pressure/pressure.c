@@ -70,7 +70,6 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 /* The right side, with the walls' accelerations. */
 static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double rho = f->def.density, dt = f->dt, share = step_share(f);
   for (int64_t i = begin; i < end; i++) {
     f->system.right[i] = 0.0;
@@ -98,7 +97,6 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 /* No suction beyond that of the surface: where p would be below 0 it is 0. Isolated particles have
  * p = 0. */
 static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
     const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;

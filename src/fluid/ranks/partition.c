@@ -253,7 +253,6 @@ static mps_status request_items(mps_fluid *f, const char *function, mpsi_mailbox
 /* Its guests are the guests of `near` elsewhere that are this rank's particles. */
 static void list_requested(const mps_fluid *f, const void *from, guests *g) {
   const mpsi_mailbox *box = from;
-  (void)f;
   for (int32_t m = 0; m < box->count; m++) {
     const int64_t *words = box->mail[m].data;
     for (int64_t k = 1; k < box->mail[m].bytes / 8; k++)
@@ -300,7 +299,6 @@ typedef struct search {
 } search;
 
 static void find_guests(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
   search *s = data;
   mps_fluid *f = s->fluid;
   const int64_t end = (chunk + 1) * MPSI_FLUID_CHUNK;

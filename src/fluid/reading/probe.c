@@ -283,7 +283,6 @@ static mps_status check_wall(const mps_fluid *f, const char *function, int32_t n
 mps_status mpsi_fluid_get_reaction(void *solver, const char *function, mps_status status,
                                    int32_t number, mps_reaction *out) {
   const mps_fluid *f = solver;
-  (void)function;
   if (status != MPS_OK) return status;
   const mpsi_fluid_wall *w = &f->wall[number];
   mps_reaction reaction = {.count = w->load.wetted,

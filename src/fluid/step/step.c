@@ -208,10 +208,7 @@ static double dt_of(const mps_fluid *f) {
   return isnan(f->def.dt) ? mpsi_fluid_limit(f) : f->def.dt;
 }
 
-double mpsi_fluid_dt(void *solver, const char *function) {
-  (void)function;
-  return dt_of(solver);
-}
+double mpsi_fluid_dt(void *solver, const char *function) { return dt_of(solver); }
 
 /* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
  * (`span`, s) where nothing limits that: the fluid has diverged, and the run would hardly end. */

@@ -68,6 +68,5 @@ int64_t mpsi_elastic_steps(const void *solver) {
 
 double mpsi_elastic_dt(void *solver, const char *function) {
   const mps_elastic *e = solver;
-  (void)function;
   return e->motion ? e->motion->dt : 0.0;
 }

@@ -331,7 +331,6 @@ typedef struct loop {
 } loop;
 
 static void loop_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
   const loop *l = data;
   const int64_t end = (chunk + 1) * MPSI_ELASTIC_CHUNK;
   for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++)

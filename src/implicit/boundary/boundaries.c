@@ -27,7 +27,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   const mps_elastic_boundary_def *def = known;
   const uint32_t all = e->dim == 2 ? MPS_DOF_X | MPS_DOF_Y : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   const double length = length_of(e, def->normal);
-  (void)number;
   if (def->kind == MPS_BOUNDARY_ROLLER &&
       !(isfinite(length) && length > 1e-150)) /* its square must not underflow */
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -41,7 +40,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 
 static bool item(const void *solver, const void *def, int64_t k, double x[3], int64_t *id) {
   const mps_elastic *e = solver;
-  (void)def;
   if (k >= e->n) return false;
   memcpy(x, &e->x[k * e->dim], (size_t)e->dim * sizeof *x);
   *id = e->id[k];
@@ -51,7 +49,6 @@ static bool item(const void *solver, const void *def, int64_t k, double x[3], in
 static mps_status check_ids(void *solver, const char *function, const void *def, int64_t count,
                             const int64_t *ids) {
   const mps_elastic *e = solver;
-  (void)def;
   for (int64_t i = 0; i < count; i++)
     if (mpsi_elastic_find(e, ids[i]) < 0)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -64,7 +61,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   const mps_elastic *e = solver;
   const mps_elastic_boundary_def *def = known;
   mpsi_elastic_boundary *b = own;
-  (void)function, (void)number;
   b->def = def;
   b->dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | (e->dim == 3 ? MPS_DOF_Z : 0);
   b->present = def->id_count;
@@ -152,7 +148,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_elastic *e = solver;
   void **const slot = &e->conditions[MPSI_BOUNDARIES].own[number];
-  (void)def;
   if (own && former)
     ((mpsi_elastic_boundary *)own)->reaction = ((mpsi_elastic_boundary *)former)->reaction;
   *slot = own;
@@ -181,7 +176,6 @@ const mpsi_condition_kind mpsi_elastic_boundaries = {
 
 mps_status mpsi_elastic_get_reaction(void *solver, const char *function, mps_status status,
                                      int32_t number, mps_reaction *out) {
-  (void)function;
   if (status == MPS_OK) *out = mpsi_elastic_boundary_of(solver, number)->reaction;
   return status;
 }

@@ -144,7 +144,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   mps_elastic *e = solver;
   const mps_elastic_load_def *def = known;
   mpsi_elastic_load *l = own;
-  (void)number;
   l->def = def;
   if (def->id_count == 0) return MPS_OK;
   if (!(l->patches = mpsi_alloc(e->context, def->id_count, sizeof *l->patches)))
@@ -159,7 +158,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_elastic *e = solver;
   const mpsi_elastic_load *l = own;
-  (void)number, (void)def, (void)former;
   if (!l || l->def->kind != MPS_ELASTIC_LOAD_BODY || e->mass) return MPS_OK;
   double *mass = NULL;
   const mps_status status =

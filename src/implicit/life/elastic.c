@@ -116,7 +116,6 @@ static mps_status take_edit(void *self, const char *function, const char *field,
                             const double *former) {
   mps_elastic *e = self;
   bool same = true;
-  (void)former;
   for (int32_t c = 0; c < e->dim && strcmp(field, "position") == 0; c++) {
     const double *x = mpsi_particles_column(e->particles, "position", c);
     for (int64_t i = 0; i < e->n && same; i++)

@@ -107,9 +107,6 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 #else
 static mps_status solve(mps_elastic *e, const char *function, int32_t count, double *omega,
                         double *shapes) {
-  (void)count;
-  (void)omega;
-  (void)shapes;
   return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                    "this libmps was built without ARPACK");
 }

@@ -344,10 +344,7 @@ mps_status mpsi_elastic_end_march(void *solver, const char *function, const mpsi
   return mpsi_elastic_agree(e, function, status);
 }
 
-double mpsi_elastic_limit(const void *solver) {
-  (void)solver;
-  return INFINITY;
-}
+double mpsi_elastic_limit(const void *solver) { return INFINITY; }
 
 mps_status mpsi_elastic_check_dt(void *solver, const char *function, double dt) {
   const mps_elastic *e = solver;
@@ -356,7 +353,6 @@ mps_status mpsi_elastic_check_dt(void *solver, const char *function, double dt) 
 }
 
 mps_status mpsi_elastic_use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   ((mps_elastic *)solver)->motion->dt = dt;
   return MPS_OK;
 }

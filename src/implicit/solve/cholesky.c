@@ -23,12 +23,7 @@ struct mpsi_cholesky {
 
 /* Errors are read from common->status after each call; the handler only has to exist, so that
  * CHOLMOD does not print. */
-static void quiet(int status, const char *file, int line, const char *message) {
-  (void)status;
-  (void)file;
-  (void)line;
-  (void)message;
-}
+static void quiet(int status, const char *file, int line, const char *message) {}
 
 static mps_status failure(mpsi_cholesky *c, const char *function, const char *what) {
   switch (c->common.status) {

@@ -20,7 +20,6 @@ static void pack(void *data, int64_t b, int32_t worker, double *message) {
   const mpsi_boundary_setup *setup = data;
   const mpsi_grid *grid = setup->grid;
   const size_t bytes = (size_t)plane_doubles(grid) * sizeof *message;
-  (void)worker;
   for (int32_t side = 0; side < MPSI_SIDES; side++, message += plane_doubles(grid)) {
     double tile[MPSI_DASH_PLANE][2];
     memset(message, 0, bytes);

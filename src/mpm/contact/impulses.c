@@ -34,7 +34,6 @@ static void one_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_contact_stage *stage = s->stage;
   mpsi_impulses *all = &stage->contact->impulses;
   mpsi_constraint_block *block = &all->block[s->first + unit];
-  (void)worker;
   if (s->kind == MPSI_SWEEP_WARM)
     stage->kernels->warm(all, stage->transfer.run->dt, block);
   else if (s->kind == MPSI_SWEEP_RELEASE)

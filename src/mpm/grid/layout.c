@@ -58,7 +58,6 @@ static void find_begins(void *data, int64_t chunk, int32_t worker) {
   const mpsi_radix *key = grid->sorted;
   const int64_t end = end_of_chunk(c, chunk);
   int64_t number = c->cells ? c->first[chunk] : 0;
-  (void)worker;
   for (int64_t k = chunk * c->length; k < end; k++) {
     if (k > 0 && key[k].key >> grid->own_bits == key[k - 1].key >> grid->own_bits) continue;
     if (c->cells) c->cells[number] = (mpsi_cell_block){.begin = k, .bad = -1};
@@ -90,7 +89,6 @@ static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
 static void list_chunk(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
   const int64_t end = end_of_chunk(c, chunk);
-  (void)worker;
   c->in_order[chunk] = true;
   for (int64_t k = chunk * c->length; k < end; k++) {
     c->order[k] = c->grid->sorted[k].index;
@@ -128,7 +126,6 @@ static void place_block(void *data, int64_t b, int32_t worker) {
   const key_chunks *of = data;
   const mpsi_grid *grid = of->grid;
   const mpsi_columns *p = of->p;
-  (void)worker;
   mpsi_cell_block *cells = &grid->cells[b];
   mpsi_radix *key = grid->sorted;
   const uint64_t own = (UINT64_C(1) << grid->own_bits) - 1;

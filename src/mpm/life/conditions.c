@@ -41,10 +41,7 @@ static mps_status check_boundary(void *solver, const char *function, int32_t num
 }
 
 /* The nodes of a box are those of the grid. */
-static bool keeps(const void *def, mpsi_selected by) {
-  (void)def, (void)by;
-  return true;
-}
+static bool keeps(const void *def, mpsi_selected by) { return true; }
 
 static mps_status make_boundary(void *solver, const char *function, int32_t number, void *def,
                                 void *own) {
@@ -55,7 +52,6 @@ static mps_status make_boundary(void *solver, const char *function, int32_t numb
 static mps_status apply_boundary(void *solver, const char *function, int32_t number, void *def,
                                  void *own, void *former) {
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
-  (void)former;
   return def ? mpsi_mpm_set_boundary(&setup, function, number, def, own)
              : mpsi_mpm_remove_boundary(&setup, function, number);
 }
@@ -87,14 +83,12 @@ mps_status mpsi_mpm_get_reaction(void *solver, const char *function, mps_status 
 
 static mps_status check_load(void *solver, const char *function, int32_t number, const void *def) {
   const mps_mpm *mpm = solver;
-  (void)number;
   return mpsi_mpm_check_load(mpm->context, &mpm->grid, &mpm->p, mpm->partition, function, def);
 }
 
 static mps_status make_load(void *solver, const char *function, int32_t number, void *def,
                             void *own) {
   mps_mpm *mpm = solver;
-  (void)number;
   ((mpsi_traction *)own)->def = def;
   return mpsi_mpm_make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, function);
 }
@@ -102,7 +96,6 @@ static mps_status make_load(void *solver, const char *function, int32_t number, 
 static mps_status apply_load(void *solver, const char *function, int32_t number, void *def,
                              void *own, void *former) {
   mpsi_traction *now = own;
-  (void)solver, (void)function, (void)number, (void)def;
   if (!now || !former) return MPS_OK;
   memcpy(now->now, ((mpsi_traction *)former)->now, sizeof now->now);
   memcpy(now->former, ((mpsi_traction *)former)->former, sizeof now->former);

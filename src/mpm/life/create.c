@@ -406,10 +406,7 @@ static void destroy(void *solver) {
 static double time_of(const void *solver) { return ((const mps_mpm *)solver)->run.time; }
 static int64_t steps_of(const void *solver) { return ((const mps_mpm *)solver)->run.steps; }
 
-static double dt_of(void *solver, const char *function) {
-  (void)function;
-  return mpsi_mpm_dt(solver);
-}
+static double dt_of(void *solver, const char *function) { return mpsi_mpm_dt(solver); }
 
 static mps_status agree(void *solver, const char *function, mps_status status) {
   mps_mpm *mpm = solver;
@@ -419,7 +416,6 @@ static mps_status agree(void *solver, const char *function, mps_status status) {
 }
 
 static mps_status use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   mps_mpm *mpm = solver;
   if (mpm->bound.beyond >= 0)
     mpm->run.renewed = true; /* the caller continues from the present state */

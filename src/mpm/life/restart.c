@@ -50,7 +50,6 @@ static void get_blocks(const void *solver, void *values) {
 static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpsi_grid *grid = &mpm->grid;
-  (void)values;
   const int64_t entries = 4 * rows + grid->nodes_room.capacity; /* see mpsi_mpm_ensure_pass */
   const bool good = keep_room(mpm->context, &grid->cells_room, rows, sizeof *grid->cells) &&
                     keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured) &&
@@ -73,10 +72,7 @@ static void set_blocks(void *solver, int64_t rows, const void *values) {
  * mirrors. */
 enum { SIZES = 4 };
 
-static int64_t one_row(const void *solver) {
-  (void)solver;
-  return 1;
-}
+static int64_t one_row(const void *solver) { return 1; }
 
 static void get_sizes(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
@@ -112,9 +108,7 @@ static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
   return good;
 }
 
-static void set_sizes(void *solver, int64_t rows, const void *values) {
-  (void)solver, (void)rows, (void)values;
-}
+static void set_sizes(void *solver, int64_t rows, const void *values) {}
 
 /* Number of dashpots on blocks of nodes for which this rank has all particles. */
 static int64_t count_dashes(const void *solver) {
@@ -141,7 +135,6 @@ static void get_dashes(const void *solver, void *values) {
 /* On several ranks dashpots are restored after the ghosts are found: mpsi_mpm_returned. */
 static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  (void)values;
   return !mpm->partition ||
          mpsi_room_ensure(mpm->context, &mpm->boundaries.warm_room, rows, sizeof(mpsi_dashpot));
 }
@@ -196,7 +189,6 @@ static void get_warm_start_owners(const void *solver, void *values) {
 
 static bool reserve_kept(void *solver, int64_t rows, const void *values) {
   bool good = true;
-  (void)values;
   for (int which = 0; which < 2; which++) {
     mpsi_impulses *all = impulses_of(solver, which);
     good =
@@ -226,7 +218,6 @@ static void get_kept(const void *solver, void *values) {
 
 static void set_kept(void *solver, int64_t rows, const void *values) {
   const double *row = values;
-  (void)rows;
   for (int which = 0; which < 2; which++) {
     mpsi_impulses *all = impulses_of(solver, which);
     for (int64_t k = 0; k < all->warm_count; k++, row += 3)

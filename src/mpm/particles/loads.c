@@ -28,7 +28,6 @@ static void begin_forces(void *data, int64_t b, int32_t worker) {
   const field_forces *of = data;
   const mpsi_columns *p = of->p;
   const mpsi_cell_block *cells = &of->grid->cells[b];
-  (void)worker;
   for (int c = 0; c < of->grid->dim; c++) {
     const double *a = of->loads->body_acceleration[c], *f = of->loads->external_force[c];
     for (int64_t k = cells->begin; k < cells->end; k++)

@@ -201,7 +201,6 @@ static void add_weight(fit *f, int64_t k, double w, const double *s, void *data)
   const double across =
       mpm->grid.measure *
       (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
-  (void)data;
   f->weight += w;
   f->filled += w * f->list->row[k].value[ROW_V] / across;
   for (int c = 0; c < 3; c++) f->mean[c] += w * s[c];
@@ -209,7 +208,6 @@ static void add_weight(fit *f, int64_t k, double w, const double *s, void *data)
 
 static void add_spread(fit *f, int64_t k, double w, const double *s, void *data) {
   double(*spread)[3] = data;
-  (void)k;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) spread[a][b] += w * (s[a] - f->mean[a]) * (s[b] - f->mean[b]);
 }

@@ -20,7 +20,6 @@
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 bool mpsi_mpm_compares(const void *self, const char *field) {
-  (void)self;
   return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
 }
 

@@ -52,7 +52,6 @@ mps_status mpsi_mpm_advance_march(void *solver, const char *function, mpsi_march
 mps_status mpsi_mpm_end_march(void *solver, const char *function, const mpsi_march *m,
                               mps_status status) {
   mpsi_run *run = &((mps_mpm *)solver)->run;
-  (void)function;
   if (status != MPS_OK && run->steps == m->before)
     mpsi_mpm_restore_edit_state(run, &run->as_edited);
   return status;

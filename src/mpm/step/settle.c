@@ -54,7 +54,6 @@ static void release_bodies(const mpsi_contacts *contacts) {
 
 static void stop_block(void *data, int64_t b, int32_t worker) {
   mps_mpm *mpm = data;
-  (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
   for (int c = 0; c < mpm->grid.dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);

@@ -279,7 +279,6 @@ static mps_status apply_impulses(step *s) {
 
 static void save(void *solver, int64_t b, int32_t worker) {
   mps_mpm *mpm = solver;
-  (void)worker;
   mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
 }
 

@@ -36,7 +36,6 @@ typedef struct mpsi_pore_system system_of;
 static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   mpsi_pore_cell *cell = mpm->water->cell + first;
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
     if (mpsi_pore_is_unknown(mpm->water, g, k)) cell[k].now = cell[k].p + s->change[first + k];
 }
@@ -45,7 +44,6 @@ static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 static void take_motion(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -60,7 +58,6 @@ static void find_squeeze(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -103,7 +100,6 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
 static void take_ahead(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = mpm->water->cell + first;
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     const bool unknown = mpsi_pore_is_unknown(mpm->water, g, k);
     s->ahead[first + k] = unknown ? cell[k].change / cell[k].volume : 0.0;

@@ -224,7 +224,6 @@ static void pack_particles(void *data, int64_t b, int32_t worker, double *messag
   const mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_pore_particle *out = (void *)message;
-  (void)worker;
   *out = (mpsi_pore_particle){.place = (int32_t)(cells->end - cells->begin)};
   for (int64_t k = cells->begin; k < cells->end; k++) *++out = mpsi_pore_particle_of(mpm, cells, k);
 }

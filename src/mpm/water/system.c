@@ -148,7 +148,6 @@ typedef struct block_loop {
 static void run_block(void *data, int64_t g, int32_t worker) {
   const block_loop *loop = data;
   const mpsi_grid *grid = &loop->mpm->grid;
-  (void)worker;
   if (g < grid->node_count && loop->which != MPSI_PORE_ALL)
     if (loop->which == MPSI_PORE_COMPUTED ? grid->nodes[g].foreign
                                           : !mpsi_mpm_counts_node_block(grid, g))
@@ -184,7 +183,6 @@ mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_ta
 static void find_reach(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
-  (void)factor;
   for (int t = 0; t < mpsi_pore_box_places(grid); t++) {
     int offset[3];
     mpsi_unravel(t, MPSI_PORE_BOX, offset);

@@ -98,8 +98,7 @@ static mps_status send_places(mps_mpm *mpm, const char *function, int64_t first,
     for (int a = 0; a < 3; a++) place[3 * own + a] = mpm->grid.nodes[g].at[a];
     own++;
   }
-  const mps_status status = mpsi_domain_max(mpm->domain, function,
-                                                             (int32_t)(3 * blocks), place);
+  const mps_status status = mpsi_domain_max(mpm->domain, function, (int32_t)(3 * blocks), place);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++)
     for (int a = 0; a < 3; a++) c->at[b][a] = (int32_t)place[3 * b + a];
   return status;
@@ -157,7 +156,6 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
   const int nodes = mpsi_pore_span_nodes(grid), dim = grid->dim, corners = 1 << dim;
   const int32_t *tile = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -232,7 +230,6 @@ static void add_flow(const mps_mpm *mpm, const system_of *s, int64_t g, int k, d
 static void find_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t b = s->coarse->number[g];
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -343,7 +340,6 @@ static void for_entries(coarse_of *c, entry_task *task) {
 }
 
 static void widen(mpsi_envelope *e, int32_t row, int32_t column, double value) {
-  (void)value;
   if (column < e->first[row]) e->first[row] = column;
 }
 

@@ -20,7 +20,6 @@ typedef struct mpsi_pore_system system_of;
 static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {

@@ -13,7 +13,6 @@ void mpsi_pore_find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double fac
   const int nodes = mpsi_pore_span_nodes(grid);
   const int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -65,7 +64,6 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(grid, g);
   const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < grid->block_nodes; k++) {

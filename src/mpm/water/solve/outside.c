@@ -43,14 +43,11 @@ static int64_t for_unknowns(mps_mpm *mpm, unknown_task *task) {
   return number;
 }
 
-static void count(mps_mpm *mpm, int64_t cell, int64_t number) {
-  (void)mpm, (void)cell, (void)number;
-}
+static void count(mps_mpm *mpm, int64_t cell, int64_t number) {}
 
 /* The root of the reciprocal diagonal. */
 static void set_root(mps_mpm *mpm, int64_t cell, int64_t number) {
   system_of *s = mpm->water->system;
-  (void)number;
   s->direction[cell] = s->product[cell] = sqrt(s->inverse[cell]);
 }
 
@@ -166,7 +163,6 @@ static void count_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const outside_of *o = mpm->water->outside;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int64_t cell[MOST];
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
     if (mpsi_pore_is_unknown(mpm->water, g, k))
       o->start[(int64_t)s->direction[first + k] - o->first + 1] =
@@ -180,7 +176,6 @@ static void fill_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   int shift[MPSI_PORE_MOST_SPAN];
   int64_t cell[MOST];
   double row[MOST];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -236,7 +231,8 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
 static mps_status make_memory(mps_mpm *mpm, const char *function) {
   outside_of **o = &mpm->water->outside;
   if (!*o) *o = mpsi_alloc(mpm->context, 1, sizeof **o);
-  return mpsi_domain_agree(mpm->domain, function, *o ? MPS_OK : mpsi_fail_memory(mpm->context, function, sizeof **o));
+  return mpsi_domain_agree(mpm->domain, function,
+                           *o ? MPS_OK : mpsi_fail_memory(mpm->context, function, sizeof **o));
 }
 
 mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance) {
