@@ -5,7 +5,6 @@
 #include "mesh.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define FIRST_PARTS 4 /* room for so many parts at first */
@@ -28,21 +27,15 @@ void mpsi_body_release(mps_body *body) {
   mps_context *context = body->context;
   for (int c = 0; c < MPSI_MOTIONS; c++) mps_signal_destroy(&body->signal[c]);
   mpsi_mesh_destroy(context, body->mesh);
-  mpsi_free(context, body->xy);
-  mpsi_free(context, body->face_of);
-  mpsi_free(context, body->part_of);
-  mpsi_free(context, body->names);
-  mpsi_free(context, body->reaction);
-  mpsi_free(context, body);
+  MPSI_FREE(context, body->xy, body->face_of, body->part_of, body->names, body->reaction, body);
   mpsi_context_release(context);
 }
 
 mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *user_def,
                          int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out) {
   mps_body_def def;
-  const mps_status status = MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, mps_body_def, user_def,
-                                                         mpsi_scene_of(dim), &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, mps_body_def, user_def,
+                                        mpsi_scene_of(dim), &def));
   drop_unset(&def, dim);
   mps_body *body = mpsi_alloc(context, 1, sizeof *body);
   if (!body) return mpsi_fail_memory(context, function, sizeof *body);

@@ -1,7 +1,6 @@
 /* body_internal.h - the interface of a rigid body for solvers, besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_BODY_H
-#define MPSI_BODY_H
+#pragma once
 
 #include "core/base/given.h"
 #include "core/state/state.h"
@@ -213,5 +212,3 @@ void mpsi_body_add_reaction(mps_reaction *sum, const mps_reaction *r);
 mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t number, double dt);
 /* Advances the body by dt: see mps_body_advance. Its signals have been evaluated. */
 void mpsi_body_advance(mps_body *body, double dt);
-
-#endif

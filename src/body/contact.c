@@ -4,7 +4,6 @@
 
 #include "rotation.h"
 #include "core/context/retain.h"
-#include "core/definition/digits.h"
 
 #include <string.h>
 
@@ -39,17 +38,13 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
                             const mps_contact_def *user, const mpsi_contact_owner *kind,
                             void *owner, mps_contact **out) {
   mps_contact_def def;
-  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_contact_def, user, &def);
-  if (status == MPS_OK)
-    status = mpsi_fail_of(
-        context, mpsi_signal_check(context, function, MPSI_SIGNAL_NUMBER, 1, &def.friction_factor),
-        "friction_factor");
-  if (status == MPS_OK && def.mover == MPS_CONTACT_MOVER_SOLVER)
-    status = mpsi_body_check_mover(body, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_contact_def, user, &def));
+  MPSI_TRY(mpsi_fail_of(
+      context, mpsi_signal_check(context, function, MPSI_SIGNAL_NUMBER, 1, &def.friction_factor),
+      "friction_factor"));
+  if (def.mover == MPS_CONTACT_MOVER_SOLVER) MPSI_TRY(mpsi_body_check_mover(body, function));
   mps_contact *contact = NULL;
-  status = mpsi_contact_make(context, function, body, kind, owner, &contact);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_contact_make(context, function, body, kind, owner, &contact));
   contact->def = def;
   contact->friction = def.friction;
   if (def.friction_factor) contact->def.friction_factor = mpsi_signal_retain(def.friction_factor);
@@ -125,8 +120,7 @@ mps_status mps_contact_get_reaction_sized(const mps_contact *contact, int32_t pa
                                           mps_reaction *out, size_t size) {
   static const char function[] = "mps_contact_get_reaction";
   if (!contact) return mpsi_null(__func__, "contact");
-  const mps_status status = mpsi_body_check_part(contact->body, function, part);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_body_check_part(contact->body, function, part));
   const bool asks = contact->owner && contact->kind->reaction;
   mps_reaction sum = {0};
   for (int32_t p = 0; p < contact->body->parts; p++) {
@@ -175,8 +169,7 @@ mps_status mpsi_contact_set_friction(mps_contact *contact, const char *function,
                                      double t) {
   const mpsi_signal_use use = {contact->context, function, "contact", number, -1};
   double factor = 1.0;
-  const mps_status status = mpsi_signal_factor(contact->def.friction_factor, use, t, &factor);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_signal_factor(contact->def.friction_factor, use, t, &factor));
   if (!(factor >= 0.0))
     return mpsi_fail(contact->context, function, MPS_ERROR_ARGUMENT,
                      "friction_factor of contact %d is %g at t = %g s, must be >= 0", number,

@@ -1,7 +1,6 @@
 /* contact_internal.h - the contact of one solver with one body: the caller's handle, and its
  * interface for solvers. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_BODY_CONTACT_H
-#define MPSI_BODY_CONTACT_H
+#pragma once
 
 #include "body_internal.h"
 #include "signal/signal_internal.h"
@@ -86,5 +85,3 @@ mps_status mpsi_contact_set_friction(mps_contact *contact, const char *function,
 double mpsi_contact_speed(const mps_contact *contact);
 
 void mpsi_contact_list_state(mpsi_state *state, mps_contact *contact);
-
-#endif

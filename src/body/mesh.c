@@ -77,8 +77,7 @@ static mps_status join_points(mps_context *context, const char *function, mpsi_m
   }
   for (int64_t s = 0; s < 3 * mesh->triangles; s++)
     mesh->corner[s] = number[corner ? corner[s] : s];
-  mpsi_free(context, known.item);
-  mpsi_free(context, number);
+  MPSI_FREE(context, known.item, number);
   return MPS_OK;
 }
 
@@ -160,8 +159,7 @@ static mps_status join_near(mps_context *context, const char *function, mpsi_mes
   *joined = *joined && together;
   for (int64_t s = 0; s < 3 * mesh->triangles && *joined; s++)
     mesh->corner[s] = root_of(&g, mesh->corner[s]);
-  mpsi_free(context, g.cells.item);
-  mpsi_free(context, g.parent);
+  MPSI_FREE(context, g.cells.item, g.parent);
   return MPS_OK;
 }
 
@@ -421,14 +419,13 @@ static mps_status build(mps_context *context, const char *function, mpsi_mesh *m
   bool joined = false;
   find_box(mesh);
   if (volume(mesh) < 0.0) turn_over(mesh);
-  mps_status status = find_normals(context, function, mesh);
-  if (status == MPS_OK) status = match_edges(context, function, mesh, &hole);
-  if (status == MPS_OK && hole >= 0) status = join_near(context, function, mesh, &joined);
-  if (status == MPS_OK && joined) status = find_normals(context, function, mesh);
-  if (status == MPS_OK && joined) status = match_edges(context, function, mesh, &hole);
-  if (status == MPS_OK && hole >= 0) status = fail_hole(context, function, mesh, hole);
-  if (status == MPS_OK) status = check_fans(context, function, mesh);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_normals(context, function, mesh));
+  MPSI_TRY(match_edges(context, function, mesh, &hole));
+  if (hole >= 0) MPSI_TRY(join_near(context, function, mesh, &joined));
+  if (joined) MPSI_TRY(find_normals(context, function, mesh));
+  if (joined) MPSI_TRY(match_edges(context, function, mesh, &hole));
+  if (hole >= 0) MPSI_TRY(fail_hole(context, function, mesh, hole));
+  MPSI_TRY(check_fans(context, function, mesh));
   const double inside = volume(mesh), size = mesh->size;
   if (!(inside > FLAT * size * size * size) || !isfinite(inside))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -441,10 +438,9 @@ static mps_status build(mps_context *context, const char *function, mpsi_mesh *m
 mps_status mpsi_mesh_create(mps_context *context, const char *function, int64_t vertices,
                             const double *xyz, int64_t triangles, const int32_t *corner,
                             mpsi_mesh **out) {
-  mps_status status = check_arrays(context, function, vertices, xyz, triangles, corner);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_arrays(context, function, vertices, xyz, triangles, corner));
   mpsi_mesh *mesh = NULL;
-  status = allocate(context, function, vertices, triangles, &mesh);
+  mps_status status = allocate(context, function, vertices, triangles, &mesh);
   if (status == MPS_OK) status = join_points(context, function, mesh, vertices, xyz, corner);
   if (status == MPS_OK) status = build(context, function, mesh);
   if (status == MPS_OK)

@@ -1,7 +1,6 @@
 /* mesh.h - closed meshes of triangles as the surface of a rigid body.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MESH_H
-#define MPSI_MESH_H
+#pragma once
 
 #include "body_internal.h"
 
@@ -41,5 +40,3 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t);
 mps_status mpsi_stl_read(mps_context *context, const char *function, const char *path,
                          const char *data, int64_t size, double scale, int64_t *triangles,
                          double **xyz);
-
-#endif

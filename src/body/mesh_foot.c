@@ -237,10 +237,6 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
 void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh) {
   if (!mesh) return;
   drop_index(mesh);
-  mpsi_free(context, mesh->xyz);
-  mpsi_free(context, mesh->corner);
-  mpsi_free(context, mesh->across);
-  mpsi_free(context, mesh->normal);
-  mpsi_free(context, mesh->vertex_normal);
-  mpsi_free(context, mesh);
+  MPSI_FREE(context, mesh->xyz, mesh->corner, mesh->across, mesh->normal, mesh->vertex_normal,
+            mesh);
 }

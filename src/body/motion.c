@@ -24,8 +24,7 @@ static mps_status find_course(const mps_body *body, mpsi_signal_use use, mps_sig
                               double factor, double t, mpsi_course *out) {
   const int c = use.component;
   mpsi_signal_motion m;
-  const mps_status status = mpsi_signal_evaluate(signal, use, t, &m);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_signal_evaluate(signal, use, t, &m));
   const double first = c < 3 ? body->def.position[c] : body->def.rotation[c - 3];
   out->at[c] = signal ? first + factor * m.u : first;
   out->rate[c] = signal ? factor * m.v : 0.0;
@@ -242,8 +241,7 @@ mps_status mps_body_advance(mps_body *body, double dt) {
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a solver moves this body: end that contact first, or make it with the mover "
                      "MPS_CONTACT_MOVER_OTHER");
-  const mps_status status = mpsi_body_look_ahead(body, __func__, -1, dt);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_body_look_ahead(body, __func__, -1, dt));
   const mps_body before = *body;
   mpsi_body_advance(body, dt);
   if (is_sane(&body->pose)) return MPS_OK;
@@ -308,12 +306,11 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
     if (status == MPS_OK) follow(body, &course);
     return status;
   }
-  mps_status status = MPSI_DEF_READ_IN(body->context, __func__, mps_body_motion, user_motion,
-                                       mpsi_scene_of(body->dim), &motion);
-  if (status == MPS_OK && free_body && body->axial)
-    status = mpsi_body_check_axial(body->context, __func__, motion.velocity, motion.spin,
-                                   body->def.gravity);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_IN(body->context, __func__, mps_body_motion, user_motion,
+                            mpsi_scene_of(body->dim), &motion));
+  if (free_body && body->axial)
+    MPSI_TRY(mpsi_body_check_axial(body->context, __func__, motion.velocity, motion.spin,
+                                   body->def.gravity));
   mpsi_pose *pose = &body->pose;
   body->outside = !free_body;
   memset(&body->pending, 0, sizeof body->pending);

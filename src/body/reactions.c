@@ -110,8 +110,7 @@ mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_r
                                        size_t size) {
   static const char function[] = "mps_body_get_reaction";
   if (!body) return mpsi_null(__func__, "body");
-  const mps_status status = mpsi_body_check_part(body, function, part);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_body_check_part(body, function, part));
   mps_reaction sum = {0};
   for (int32_t p = 0; p < body->parts; p++)
     if (part < 0 || p == part) mpsi_body_add_reaction(&sum, &body->reaction[p]);
@@ -134,8 +133,7 @@ bool mpsi_body_make_source(mps_body *body, mpsi_body_source *source) {
 }
 
 void mpsi_body_free_source(mps_body *body, mpsi_body_source *source) {
-  mpsi_free(body->context, source->reaction);
-  mpsi_free(body->context, source->part);
+  MPSI_FREE(body->context, source->reaction, source->part);
 }
 
 /* Memory for one more part, here and in all sources. */
@@ -178,8 +176,7 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
     if (body->parts == MOST_PARTS)
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                        "the body has %d named parts, the most there can be", MOST_PARTS - 1);
-    const mps_status status = ensure_part(body, __func__);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(ensure_part(body, __func__));
     number = body->parts++;
     strcpy(body->names[number], name);
   }

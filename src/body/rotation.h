@@ -1,7 +1,6 @@
 /* rotation.h - rotations in space: matrices (9 values, rows) and rotation vectors (axis times
  * angle, rad). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ROTATION_H
-#define MPSI_ROTATION_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -35,5 +34,3 @@ void mpsi_rotation_turn(const double *v, double *R);
 void mpsi_rotation_turn_own(int axis, double angle, double *R);
 /* Removes the round-off of many products from R: its rows become orthonormal again. */
 void mpsi_rotation_clean(double *R);
-
-#endif

@@ -33,9 +33,8 @@ static double area2(int64_t n, const double *xy) {
 static mps_status make_polygon(mps_context *context, const char *function, const mps_body_def *def,
                                int32_t dim, int64_t n, const double *xy, mps_body **out) {
   mps_body *body = NULL;
-  const mps_status status = mpsi_body_new(context, function, def, dim,
-                                          dim == 2 ? MPSI_POLYGON : MPSI_REVOLUTION, n, &body);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_body_new(context, function, def, dim, dim == 2 ? MPSI_POLYGON : MPSI_REVOLUTION, n,
+                         &body));
   body->edges = n;
   body->xy = mpsi_alloc(context, 2 * (n + 1), sizeof *body->xy);
   if (body->xy) body->face_of = mpsi_alloc(context, n, sizeof *body->face_of);
@@ -76,8 +75,7 @@ mps_status mps_body_create_polygon(mps_context *context, const mps_body_def *def
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  const mps_status status = check_corners(context, __func__, vertices, xy, "xy");
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_corners(context, __func__, vertices, xy, "xy"));
   return make_polygon(context, __func__, def, 2, vertices, xy, out);
 }
 
@@ -86,9 +84,8 @@ mps_status mps_body_create_box(mps_context *context, const mps_body_def *def, do
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_length(context, __func__, "width", width);
-  if (status == MPS_OK) status = check_length(context, __func__, "height", height);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_length(context, __func__, "width", width));
+  MPSI_TRY(check_length(context, __func__, "height", height));
   const double x = 0.5 * width, y = 0.5 * height;
   const double xy[8] = {-x, -y, x, -y, x, y, -x, y};
   return make_polygon(context, __func__, def, 2, 4, xy, out);
@@ -169,9 +166,8 @@ mps_status mps_body_create_revolution(mps_context *context, const mps_body_def *
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_corners(context, __func__, vertices, rz, "rz");
-  if (status == MPS_OK) status = check_profile(context, __func__, vertices, rz);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_corners(context, __func__, vertices, rz, "rz"));
+  MPSI_TRY(check_profile(context, __func__, vertices, rz));
   return make_polygon(context, __func__, def, 3, vertices, rz, out);
 }
 
@@ -180,13 +176,11 @@ mps_status mps_body_create_cylinder(mps_context *context, const mps_body_def *de
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_length(context, __func__, "radius", radius);
-  if (status == MPS_OK) status = check_length(context, __func__, "length", length);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_length(context, __func__, "radius", radius));
+  MPSI_TRY(check_length(context, __func__, "length", length));
   const double z = 0.5 * length;
   const double rz[8] = {0.0, -z, radius, -z, radius, z, 0.0, z};
-  status = make_polygon(context, __func__, def, 3, 4, rz, out);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_polygon(context, __func__, def, 3, 4, rz, out));
   (*out)->faces = 3; /* the edge on the axis has no face, and the side is the last */
   (*out)->face_of[1] = 2, (*out)->face_of[2] = 1;
   return MPS_OK;

@@ -133,8 +133,7 @@ static mps_status read_facets(reader *r, double scale, int64_t *count, double **
       *xyz = grown;
       capacity = wanted;
     }
-    const mps_status status = read_facet(r, scale, *xyz + 9 * (*count)++);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(read_facet(r, scale, *xyz + 9 * (*count)++));
   }
 }
 
@@ -142,11 +141,10 @@ static mps_status read_ascii(mps_context *context, const char *function, const c
                              const char *data, int64_t size, double scale, int64_t *triangles,
                              double **xyz) {
   reader r = {.line = {NULL, NULL}};
-  mps_status status = mpsi_text_wrap(context, function, path, data, (size_t)size, &r.text);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_text_wrap(context, function, path, data, (size_t)size, &r.text));
   int64_t count = 0;
   double *out = NULL;
-  status = expect(&r, "solid");
+  mps_status status = expect(&r, "solid");
   r.line.begin = r.line.end; /* the solid's name, of any words */
   if (status == MPS_OK) status = read_facets(&r, scale, &count, &out);
   mpsi_slice word;

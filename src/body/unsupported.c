@@ -10,14 +10,12 @@ static mps_status unsupported(mps_context *context, const char *function) {
 mps_status mps_body_create_mesh(mps_context *context, const mps_body_def *def, int64_t vertices,
                                 const double *xyz, int64_t triangles, const int32_t *corner,
                                 mps_body **out) {
-  (void)def, (void)vertices, (void)xyz, (void)triangles, (void)corner;
   if (out) *out = NULL;
   return unsupported(context, __func__);
 }
 
 mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def, const char *path,
                                double scale, mps_body **out) {
-  (void)def, (void)path, (void)scale;
   if (out) *out = NULL;
   return unsupported(context, __func__);
 }
@@ -26,11 +24,7 @@ mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def, co
 void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh) { (void)context, (void)mesh; }
 
 mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x) {
-  (void)mesh, (void)x;
   return (mpsi_foot){.distance = NAN};
 }
 
-double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
-  (void)mesh, (void)t;
-  return INFINITY;
-}
+double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) { return INFINITY; }

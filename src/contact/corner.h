@@ -2,8 +2,7 @@
  * the grid can show: docs/theory/contact.md derives it. The rounded body is that which a ball of
  * this radius sweeps out inside the body; faces stay where they are.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CORNER_H
-#define MPSI_CORNER_H
+#pragma once
 
 #include "body/body_internal.h"
 
@@ -19,5 +18,3 @@ typedef struct mpsi_bearing {
  * corner one for each of its faces. */
 mpsi_bearing mpsi_corner_bearing(const mps_body *body, double radius, const double *x, double half,
                                  const mpsi_foot *own);
-
-#endif

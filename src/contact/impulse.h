@@ -6,8 +6,7 @@
  * is at its bound. The mass on the other side (nodes of a grid, ...) belongs to the solver, which
  * passes u and the mobility 1/m_c of its side. Vectors have three components, of which the last
  * is 0 in 2D. One Gauss-Seidel update is in update.h. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IMPULSE_H
-#define MPSI_IMPULSE_H
+#pragma once
 
 #include "body/contact_internal.h"
 #include "body/rotation.h"
@@ -83,5 +82,3 @@ typedef struct mpsi_impulse {
  * none where that pulled; `by` (N s) is what acts on the particle. Before all updates of a step. */
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
                        double fraction, double *by);
-
-#endif

@@ -4,8 +4,7 @@
  * is near a body, and keeps sums at its nodes, is its own: WLS-MPM does so in mpm/contact/pairs.c
  * and inside.c. Vectors have three components, of which the last is 0 in 2D.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_PENALTY_CONTACT_H
-#define MPSI_PENALTY_CONTACT_H
+#pragma once
 
 #include "body/contact_internal.h"
 
@@ -83,5 +82,3 @@ typedef struct mpsi_contact_motion {
 bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_contact_node *at,
                            const mpsi_contact_motion *node, double all_mass, double dt,
                            double *force);
-
-#endif

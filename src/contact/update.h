@@ -1,7 +1,6 @@
 /* update.h - one Gauss-Seidel update of a contact (impulse.h), for the loops of a sweep: updates
  * are many, and each depends on the previous one. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_UPDATE_H
-#define MPSI_UPDATE_H
+#pragma once
 
 #include "impulse.h"
 
@@ -63,5 +62,3 @@ static inline bool mpsi_impulse_update(mpsi_impulse *c, const mpsi_impulse_body 
   }
   return by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0;
 }
-
-#endif

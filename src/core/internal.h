@@ -1,8 +1,7 @@
 /* internal.h - the core's interface for all source files of the library: errors, memory, definition
  * structs, reference counts, parallel loops. Internal names begin with mpsi_.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_INTERNAL_H
-#define MPSI_INTERNAL_H
+#pragma once
 
 #ifndef MPSI_LEVEL /* inner loops read no definitions: a new one does not compile them again */
 #include "core/definition/definition.h"
@@ -54,6 +53,13 @@ mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *arg
 int64_t mpsi_failures(const mps_context *context); /* number of records so far */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 
+/* Returns from the function around it with the status of `call` where that is an error. */
+#define MPSI_TRY(call)                                                                             \
+  do {                                                                                             \
+    const mps_status mpsi_tried = (call);                                                          \
+    if (mpsi_tried != MPS_OK) return mpsi_tried;                                                   \
+  } while (0)
+
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
  * `room` characters or more. The rest is not checked. */
 size_t mpsi_identifier(const char *name, size_t room);
@@ -64,6 +70,11 @@ size_t mpsi_identifier(const char *name, size_t room);
  * NULL. */
 void *mpsi_alloc(mps_context *context, int64_t count, size_t size);
 void mpsi_free(mps_context *context, void *memory); /* accepts NULL */
+void mpsi_free_all(mps_context *context, void *const *memory, size_t count);
+/* The same for each of several pointers. */
+#define MPSI_FREE(context, ...)                                                                    \
+  mpsi_free_all(context, (void *const[]){__VA_ARGS__},                                             \
+                sizeof((void *const[]){__VA_ARGS__}) / sizeof(void *))
 /* Grows *array from `old_count` to `new_count` items, keeping and zero filling; false and
  * unchanged when out of memory. */
 bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,
@@ -139,5 +150,3 @@ bool mpsi_executor_is_own(const mps_context *context);
 bool mpsi_wait_a_little(int32_t look, bool may_sleep);
 /* For loops that poll memory written by another thread. */
 void mpsi_pause(void);
-
-#endif

@@ -27,11 +27,7 @@ static bool allocate(mps_coupling *c) {
   return true;
 }
 
-static void release(mps_coupling *c) {
-  mpsi_free(c->context, c->block);
-  mpsi_free(c->context, c->column);
-  mpsi_free(c->context, c);
-}
+static void release(mps_coupling *c) { MPSI_FREE(c->context, c->block, c->column, c); }
 
 mps_status mps_coupling_create(mps_context *context, const mps_coupling_def *user_def,
                                mps_coupling **out) {
@@ -40,8 +36,7 @@ mps_status mps_coupling_create(mps_context *context, const mps_coupling_def *use
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", user_def ? "out" : "def");
   *out = NULL;
   mps_coupling_def def;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_coupling_def, user_def, &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_coupling_def, user_def, &def));
   if (def.columns > def.size) def.columns = (int32_t)def.size;
   mps_coupling *c = mpsi_alloc(context, 1, sizeof *c);
   if (!c) return mpsi_fail_memory(context, __func__, sizeof *c);
@@ -181,8 +176,7 @@ mps_status mps_coupling_next(mps_coupling *c, const double *answer, double *gues
                      "allowed %g",
                      c->repeats, c->relative, c->def.tolerance);
   improve(c);
-  const mps_status status = check_iterate(c, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_iterate(c, __func__));
   memcpy(c->last_residual, c->residual, (size_t)n * sizeof *guess);
   memcpy(c->last_answer, c->answer, (size_t)n * sizeof *guess);
   memcpy(guess, c->x, (size_t)n * sizeof *guess);

@@ -1,7 +1,6 @@
 /* coupling_private.h - a coupling: iterates, their answers H, and the differences that the
  * quasi-Newton method learns from. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_COUPLING_PRIVATE_H
-#define MPSI_COUPLING_PRIVATE_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -49,5 +48,3 @@ void mpsi_coupling_forget(mps_coupling *c, int64_t oldest, int64_t newest);
 /* x becomes answer + W alpha with |V alpha + residual| least. False where nothing is known. */
 bool mpsi_coupling_quasi_newton(mps_coupling *c);
 double mpsi_coupling_dot(int64_t n, const double *a, const double *b);
-
-#endif

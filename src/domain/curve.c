@@ -11,6 +11,7 @@
  * behind. That grows with k, so all cuts are found at once by bisection, whose sums over ranks are
  * of integers: every rank finds the same. SPDX-License-Identifier: BSD-3-Clause */
 #include "curve.h"
+#include "core/base/order.h"
 #include "domain_private.h"
 
 /* ---- the curve ------------------------------------------------------------------------------- */
@@ -119,14 +120,8 @@ static mps_status prepare(curve_cut *c) {
 
 /* Weight here of the keys below `key`. */
 static int64_t weight_below(const curve_cut *c, int64_t key) {
-  int64_t low = 0, high = c->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (c->key[middle] < key)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, c->count, middle, c->key[middle] < key);
   return c->below[low];
 }
 
@@ -145,8 +140,7 @@ static mps_status narrow(curve_cut *c, bool *open) {
       const int64_t at = probe_at(c, k, p);
       c->probe[k * c->probes + p] = weight_below(c, at) + weight_below(c, at + 1);
     }
-  const mps_status status = mpsi_domain_sum(c->domain, c->function, cuts * c->probes, c->probe);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(c->domain, c->function, cuts * c->probes, c->probe));
   *open = false;
   for (int32_t k = 0; k < cuts; k++) {
     const int64_t part = k + 1, rest = c->all % c->ranks;
@@ -190,10 +184,7 @@ mps_status mpsi_curve_cut(mps_domain *domain, const char *function, int64_t coun
   status = measure(&c, status);
   for (bool open = true; status == MPS_OK && open;) status = narrow(&c, &open);
   for (int32_t k = 1; status == MPS_OK && k < c.ranks; k++) first[k] = c.most[k - 1];
-  mpsi_free(domain->context, c.below);
-  mpsi_free(domain->context, c.least);
-  mpsi_free(domain->context, c.most);
-  mpsi_free(domain->context, c.probe);
+  MPSI_FREE(domain->context, c.below, c.least, c.most, c.probe);
   return status;
 }
 

@@ -8,8 +8,7 @@
  *
  * Owners follow from keys, not from lists of blocks: a particle that enters an empty block has an
  * owner at once, without a message. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DOMAIN_CURVE_H
-#define MPSI_DOMAIN_CURVE_H
+#pragma once
 
 #include "domain_internal.h"
 
@@ -42,5 +41,3 @@ mps_status mpsi_curve_cut(mps_domain *domain, const char *function, int64_t coun
 
 /* Owner of a key, 0 <= key < MPSI_CURVE_END. Not collective. */
 int32_t mpsi_curve_owner(int32_t ranks, const int64_t *first, int64_t key);
-
-#endif

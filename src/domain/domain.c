@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 /* ---- for the program ------------------------------------------------------------------------- */
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {
@@ -55,13 +53,12 @@ mps_status mps_domain_create(mps_context *context, const mps_domain_def *user_de
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_domain_def def;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_domain_def, user_def, &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_domain_def, user_def, &def));
   mps_domain *domain = mpsi_alloc(context, 1, sizeof *domain);
   if (!domain) return mpsi_fail_memory(context, __func__, sizeof *domain);
   *domain = (mps_domain){.context = mpsi_context_retain(context), .def = def, .references = 1};
   domain->settled = -1;
-  status = try_transport(domain);
+  mps_status status = try_transport(domain);
   if (status != MPS_OK) {
     domain->def.release = NULL;
     domain->def.max_leave = NULL; /* all ranks are here */

@@ -4,8 +4,7 @@
  * different functions detect that: vote.c. A failure that ranks have agreed upon has the same
  * record on all of them, and may be agreed upon again without harm.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DOMAIN_INTERNAL_H
-#define MPSI_DOMAIN_INTERNAL_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "core/base/given.h"
@@ -66,6 +65,9 @@ mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
                            int64_t *values);
+/* vote.c: how many items ranks have: those of all ranks, and from *first on this rank's `own`. */
+mps_status mpsi_domain_count(mps_domain *domain, const char *function, int64_t own, int64_t *first,
+                             int64_t *all);
 /* Sums whose terms lie on all ranks. */
 mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32_t count,
                                  mpsi_exact *sums);
@@ -99,5 +101,3 @@ mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int
 typedef mps_status mpsi_take_rows_fn(void *user, mpsi_row_source *source);
 mps_status mpsi_domain_write_rows(mps_domain *domain, const char *function,
                                   mps_particles *particles, mpsi_take_rows_fn *take, void *user);
-
-#endif

@@ -1,7 +1,6 @@
 /* domain_private.h - the members of a domain.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DOMAIN_PRIVATE_H
-#define MPSI_DOMAIN_PRIVATE_H
+#pragma once
 
 #include "domain_internal.h"
 
@@ -27,5 +26,3 @@ mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char
 mps_status mpsi_domain_alive(mps_domain *domain, const char *function);
 /* vote.c: this rank leaves, which the others learn from their next vote. */
 void mpsi_domain_leave(mps_domain *domain);
-
-#endif

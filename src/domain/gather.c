@@ -5,7 +5,6 @@
 #include "domain_private.h"
 #include "row_heads.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,14 +26,13 @@ static bool is_chosen(const choice *c, int32_t field, const char *name) {
 static mps_status check_choice(const mps_domain *domain, const char *function,
                                mps_particles *particles, const choice *c) {
   mps_view view;
-  mps_status status = MPS_OK;
   if (c->count < 0 || (c->count > 0 && !c->names))
     return mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld with names %s, must be >= 0, and 0 where names is NULL",
                      (long long)c->count, c->names ? "given" : "NULL");
-  for (int64_t k = 0; k < c->count && status == MPS_OK; k++)
-    status = mpsi_as(domain->context, function, mps_particles_view(particles, c->names[k], &view));
-  return status;
+  for (int64_t k = 0; k < c->count; k++)
+    MPSI_TRY(mpsi_as(domain->context, function, mps_particles_view(particles, c->names[k], &view)));
+  return MPS_OK;
 }
 
 static mps_status pack(mps_domain *domain, const char *function, mps_particles *particles,
@@ -261,9 +259,7 @@ static mps_status make_whole(mps_domain *domain, const char *function, const mps
   if (status == MPS_OK) status = put(&a, whole);
   mpsi_values_free(context, &a.whole.fields);
   mpsi_values_free(context, &a.whole.state);
-  mpsi_free(context, a.owner);
-  mpsi_free(context, a.piece);
-  mpsi_free(context, a.share);
+  MPSI_FREE(context, a.owner, a.piece, a.share);
   return status;
 }
 

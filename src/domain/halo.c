@@ -1,6 +1,7 @@
 /* halo.c - copies of particles that other ranks own: made once, filled again and again.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
+#include "core/base/order.h"
 #include "halo.h"
 
 #include <stdlib.h>
@@ -15,11 +16,6 @@ struct mpsi_halo {
   double *out, *in;      /* [item][column] */
   int32_t columns;       /* of the copy under way */
 };
-
-static int compare(const void *left, const void *right) {
-  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-  return a < b ? -1 : a > b;
-}
 
 /* One message to each rank that owns guests: `value` of each of them, in their order. */
 static mps_status request_items(mpsi_halo *halo, const char *function, const int32_t *rank,
@@ -50,7 +46,7 @@ static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_m
     memcpy(halo->item + halo->items, requested->mail[k].data, (size_t)requested->mail[k].bytes);
     halo->items += requested->mail[k].bytes / 8;
   }
-  qsort(halo->item, (size_t)halo->items, sizeof *halo->item, compare);
+  qsort(halo->item, (size_t)halo->items, sizeof *halo->item, mpsi_ascending);
   int64_t kept = 0;
   for (int64_t k = 0; k < halo->items; k++)
     if (k == 0 || halo->item[k] != halo->item[k - 1]) halo->item[kept++] = halo->item[k];
@@ -68,7 +64,7 @@ static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *re
     int64_t *index = requested->mail[k].data;
     for (int64_t i = 0; i < requested->mail[k].bytes / 8; i++)
       index[i] = (int64_t *)bsearch(&index[i], halo->item, (size_t)halo->items, sizeof *halo->item,
-                                    compare) -
+                                    mpsi_ascending) -
                  halo->item;
     message[k] = (mps_domain_message){
         .rank = requested->mail[k].rank, .bytes = requested->mail[k].bytes, .data = index};
@@ -131,10 +127,7 @@ void mpsi_halo_destroy(mps_context *context, mpsi_halo **pointer) {
   *pointer = NULL;
   if (!halo) return;
   if (halo->star) halo->domain->def.star_destroy(halo->domain->def.user, halo->star);
-  mpsi_free(context, halo->item);
-  mpsi_free(context, halo->out);
-  mpsi_free(context, halo->in);
-  mpsi_free(context, halo);
+  MPSI_FREE(context, halo->item, halo->out, halo->in, halo);
 }
 
 int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index) {
@@ -145,8 +138,7 @@ int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index) {
 mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
                                  const void *own, void *guests) {
   const mps_domain_def *def = &halo->domain->def;
-  const mps_status status = mpsi_domain_alive(halo->domain, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_alive(halo->domain, function));
   halo->domain->calls++;
   return mpsi_domain_note(halo->domain, function, "star_begin",
                           def->star_begin(def->user, halo->star, item_bytes, own, guests));
@@ -167,8 +159,7 @@ mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t column
 }
 
 mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column) {
-  const mps_status status = mpsi_halo_end_bytes(halo, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_halo_end_bytes(halo, function));
   for (int32_t c = 0; c < halo->columns; c++)
     for (int64_t k = 0; k < halo->guests; k++)
       column[c][halo->first + k] = halo->in[k * halo->columns + c];

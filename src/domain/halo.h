@@ -1,7 +1,6 @@
 /* halo.h - copies of particles that other ranks own, behind a rank's own ones in the same columns.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DOMAIN_HALO_H
-#define MPSI_DOMAIN_HALO_H
+#pragma once
 
 #include "domain_internal.h"
 
@@ -32,5 +31,3 @@ int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index);
 mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
                                  const void *own, void *guests);
 mps_status mpsi_halo_end_bytes(mpsi_halo *halo, const char *function);
-
-#endif

@@ -2,8 +2,6 @@
  * the sender only. SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 void mpsi_domain_free_mail(mpsi_mailbox *box) {
   for (int32_t k = 0; k < box->count; k++) mpsi_free(box->context, box->mail[k].data);
   if (box->mail) mpsi_free(box->context, box->mail);
@@ -30,10 +28,9 @@ static void *make_room(void *user, int32_t rank, int64_t bytes) {
 mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t count,
                             const mps_domain_message *messages, mpsi_mailbox *box) {
   *box = (mpsi_mailbox){.context = domain->context};
-  mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_alive(domain, function));
   domain->calls++;
-  status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
+  mps_status status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
   if (status == MPS_ERROR_MEMORY) /* no memory for a message: the others are valid */
     return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
                      "could not allocate the messages of other ranks");

@@ -33,9 +33,7 @@ typedef struct parcel {
 } parcel;
 
 static void free_parcel(mps_context *context, parcel *p) {
-  mpsi_free(context, p->begin);
-  mpsi_free(context, p->record);
-  mpsi_free(context, p->message);
+  MPSI_FREE(context, p->begin, p->record, p->message);
 }
 
 /* Records of `columns` words each, by rank and then in the order given. */
@@ -120,8 +118,7 @@ mps_status mpsi_census_take(mps_domain *domain, const char *function, int64_t co
 mps_status mpsi_census_check(mps_domain *domain, const char *function, int64_t count,
                              const int64_t *id, const mpsi_census *before) {
   mpsi_census now;
-  const mps_status status = mpsi_census_take(domain, function, count, id, &now);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_census_take(domain, function, count, id, &now));
   if (now.count == before->count && now.sum == before->sum && now.mixed == before->mixed)
     return MPS_OK;
   /* the sums are the same everywhere, and so is this, without a message */

@@ -14,8 +14,7 @@
  * Rows arrive in the order of their senders, and of each in its own order: sort them by block and
  * id, not by arrival. SPDX-License-Identifier: BSD-3-Clause
  * */
-#ifndef MPSI_DOMAIN_MIGRATE_H
-#define MPSI_DOMAIN_MIGRATE_H
+#pragma once
 
 #include "domain_internal.h"
 
@@ -50,5 +49,3 @@ mps_status mpsi_census_take(mps_domain *domain, const char *function, int64_t co
 /* MPS_ERROR_INTERNAL on all ranks, with both counts, where the ids are not those of `before`. */
 mps_status mpsi_census_check(mps_domain *domain, const char *function, int64_t count,
                              const int64_t *id, const mpsi_census *before);
-
-#endif

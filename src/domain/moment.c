@@ -12,12 +12,11 @@ static void give(mpsi_given *list, const mps_snapshot *to, const char *name) {
 mps_status mpsi_domain_agree_moment(mps_domain *domain, const char *function, mps_status status,
                                     const mps_snapshot *to) {
   static const char *const names[] = {"steps", "time", "base_step", "base_time"};
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   if (!mpsi_domain_many(domain)) return status;
   if (status == MPS_OK && !to)
     status =
         mpsi_fail(mpsi_domain_context(domain), function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
-  mpsi_given_begin(&list);
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
     give(&list, to, names[k]);
   return mpsi_domain_agree_given(domain, function, status, &list);

@@ -1,6 +1,5 @@
 /* moment.h - states that ranks go back to. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MOMENT_H
-#define MPSI_MOMENT_H
+#pragma once
 
 #include "domain/domain_internal.h"
 
@@ -9,5 +8,3 @@
  * where `status` is MPS_OK. */
 mps_status mpsi_domain_agree_moment(mps_domain *domain, const char *function, mps_status status,
                                     const mps_snapshot *to);
-
-#endif

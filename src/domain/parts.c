@@ -9,8 +9,7 @@
 
 static mps_status agree_added(void *self, const char *function, mps_status status, int64_t count,
                               uint64_t hash) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "the number of particles that are added", (double)count);
   mpsi_give(&given, "a hash of the positions of the added particles", mpsi_hash_short(hash));
   return mpsi_domain_agree_given(self, function, status, &given);
@@ -50,13 +49,12 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
                                        mps_particles **out) {
   if (!domain) return mpsi_null(__func__, "domain");
   mps_particles *made = NULL;
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (out) *out = NULL;
   mps_status status = create(domain, __func__, def, out ? &made : NULL);
   mps_particles_def known = mps_particles_defaults();
   if (status == MPS_OK)
     status = MPSI_DEF_READ(domain->context, __func__, mps_particles_def, def, &known);
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_particles_def, &known);
   status = mpsi_domain_agree_given(domain, __func__, status, &given);
   if (status != MPS_OK)
@@ -69,8 +67,7 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
 mps_status mpsi_domain_agree_parts(mps_domain *domain, const char *function, mps_status status,
                                    const mps_particles *particles) {
   const mpsi_deal *deal = mpsi_particles_deal(particles);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "whether the set is in parts (mps_domain_create_particles)", deal != NULL);
   if (deal) {
     uint64_t fields = MPSI_HASH;
@@ -163,7 +160,6 @@ mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status
     mpsi_particles_admit(particles, arriving);
   }
   mpsi_domain_free_mail(&box);
-  void *parts[] = {d.gone, d.row, d.to, d.column};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, d.gone, d.row, d.to, d.column);
   return status;
 }

@@ -1,8 +1,7 @@
 /* row_heads.h - a rank's description of its particles as a message (gather.c, rows.c): head, runs
  * of rows, then the head of each field.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ROW_HEADS_H
-#define MPSI_ROW_HEADS_H
+#pragma once
 
 #include "core/particles/particles_internal.h"
 #include "core/state/state.h"
@@ -41,5 +40,3 @@ static inline int mpsi_row_run_order(const mpsi_row_run *a, const mpsi_row_run *
     if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
   return 0;
 }
-
-#endif

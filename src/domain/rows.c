@@ -9,7 +9,6 @@
 #include "domain_private.h"
 #include "row_heads.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -319,7 +318,6 @@ mps_status mpsi_domain_write_rows(mps_domain *domain, const char *function,
     status = mpsi_domain_agree(domain, function, status);
   }
   mpsi_domain_free_mail(&s.heads);
-  void *parts[] = {s.keep, s.buffer, s.piece, s.first_piece};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(domain->context, parts[k]);
+  MPSI_FREE(domain->context, s.keep, s.buffer, s.piece, s.first_piece);
   return status;
 }

@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <string.h>
-
 mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char *callback,
                             mps_status status) {
   if (status == MPS_OK) return MPS_OK;
@@ -29,8 +27,7 @@ mps_status mpsi_domain_alive(mps_domain *domain, const char *function) {
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count,
                            double *values) {
   if (!mpsi_domain_many(domain)) return MPS_OK;
-  const mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_alive(domain, function));
   domain->calls++;
   return mpsi_domain_note(domain, function, "reduce_max",
                           domain->def.reduce_max(domain->def.user, count, values));
@@ -39,8 +36,7 @@ mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t cou
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
                            int64_t *values) {
   if (!mpsi_domain_many(domain)) return MPS_OK;
-  const mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_alive(domain, function));
   domain->calls++;
   return mpsi_domain_note(domain, function, "reduce_sum",
                           domain->def.reduce_sum(domain->def.user, count, values));

@@ -81,8 +81,7 @@ static mps_status share_record(mps_domain *domain, const char *function, int32_t
     }
     memcpy(words, &record, sizeof record);
   }
-  const mps_status failed = mpsi_domain_sum(domain, function, RECORD, words);
-  if (failed != MPS_OK) return failed;
+  MPSI_TRY(mpsi_domain_sum(domain, function, RECORD, words));
   memcpy(&record, words, sizeof record);
   (void)mpsi_fail(context, record.function, status, "%s", record.message);
   mpsi_fail_where(context, record.step, record.particle);
@@ -126,14 +125,12 @@ static mps_status report_calls(mps_domain *domain, const char *function, const d
   int64_t words[2 * CALL] = {0};
   call mine = {.number = domain->voted}, seen[2];
   snprintf(mine.function, sizeof mine.function, "%s", function);
-  mps_status status = find_ranks(domain, function, vote, own, found);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_ranks(domain, function, vote, own, found));
   const int32_t rank[2] = {domain->def.size - (int32_t)found[0],
                            domain->def.size - (int32_t)found[1]};
   for (int k = 0; k < 2; k++)
     if (rank[k] == domain->def.rank) memcpy(words + k * CALL, &mine, sizeof mine);
-  status = mpsi_domain_sum(domain, function, 2 * CALL, words);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(domain, function, 2 * CALL, words));
   memcpy(seen, words, sizeof seen);
   domain->calls = (int64_t)found[2]; /* the same on all */
   const int a = rank[0] < rank[1] ? 0 : 1, b = 1 - a;
@@ -221,6 +218,28 @@ mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_s
 
 mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_status status) {
   return mpsi_domain_agree_max(domain, function, status, 0, NULL);
+}
+
+mps_status mpsi_domain_count(mps_domain *domain, const char *function, int64_t own, int64_t *first,
+                             int64_t *all) {
+  *first = 0, *all = own;
+  if (!mpsi_domain_many(domain)) return MPS_OK;
+  const int32_t ranks = domain->def.size;
+  int64_t *count = mpsi_alloc(domain->context, ranks, sizeof *count);
+  mps_status status = MPS_OK;
+  if (!count) status = mpsi_fail_memory(domain->context, function, (size_t)ranks * sizeof *count);
+  status = mpsi_domain_agree(domain, function, status);
+  if (status == MPS_OK) {
+    count[domain->def.rank] = own;
+    status = mpsi_domain_sum(domain, function, ranks, count);
+  }
+  *all = 0;
+  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
+    if (r < domain->def.rank) *first += count[r];
+    *all += count[r];
+  }
+  mpsi_free(domain->context, count);
+  return status;
 }
 
 mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,

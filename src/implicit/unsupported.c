@@ -14,135 +14,72 @@ static mps_status refuse(mps_context *context, const char *function, mps_elastic
 
 mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
                               const mps_elastic_def *def, mps_elastic **out) {
-  (void)particles;
-  (void)def;
   return refuse(context, __func__, out);
 }
 
 mps_status mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
                                               const mps_elastic_def *def, int32_t constant,
                                               mps_elastic **out) {
-  (void)particles;
-  (void)def;
-  (void)constant;
   return refuse(context, __func__, out);
 }
 
 mps_status mps_elastic_set_material(mps_elastic *elastic, const mps_material *material,
                                     const int64_t *ids, int64_t count) {
-  (void)elastic;
-  (void)material;
-  (void)count;
-  (void)ids;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_cut(mps_elastic *elastic, int32_t side, const int64_t *ids, int64_t count) {
-  (void)elastic;
-  (void)side;
-  (void)count;
-  (void)ids;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-int64_t mps_elastic_facet_count(const mps_elastic *elastic) {
-  (void)elastic;
-  return 0;
-}
+int64_t mps_elastic_facet_count(const mps_elastic *elastic) { return 0; }
 
 mps_status mps_elastic_select_facets(const mps_elastic *elastic, int32_t side, const double *lo,
                                      const double *hi, int64_t capacity, int64_t *count,
                                      int64_t *facets) {
-  (void)elastic;
-  (void)side;
-  (void)lo;
-  (void)hi;
-  (void)capacity;
-  (void)facets;
-  (void)count;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_get_facets_sized(const mps_elastic *elastic, const int64_t *facets,
                                         int64_t count, const mps_elastic_facet_arrays *arrays,
                                         size_t size) {
-  (void)elastic;
-  (void)count;
-  (void)facets;
-  (void)arrays;
-  (void)size;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_get_load_resultant(const mps_elastic *elastic, const double *about,
                                           double *force, double *moment) {
-  (void)elastic;
-  (void)about;
-  (void)force;
-  (void)moment;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_analyse_sized(mps_elastic *elastic, mps_elastic_estimate *out, size_t size) {
-  (void)elastic;
-  (void)out;
-  (void)size;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_solve(mps_elastic *elastic) {
-  (void)elastic;
-  return MPS_ERROR_UNSUPPORTED;
-}
+mps_status mps_elastic_solve(mps_elastic *elastic) { return MPS_ERROR_UNSUPPORTED; }
 
 mps_status mps_elastic_solve_cases(mps_elastic *elastic, int64_t count, const double *loads,
                                    double *displacements) {
-  (void)elastic;
-  (void)count;
-  (void)loads;
-  (void)displacements;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_get_report_sized(const mps_elastic *elastic, mps_elastic_report *out,
                                         size_t size) {
-  (void)elastic;
-  (void)out;
-  (void)size;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_update_stress(mps_elastic *elastic) {
-  (void)elastic;
-  return MPS_ERROR_UNSUPPORTED;
-}
+mps_status mps_elastic_update_stress(mps_elastic *elastic) { return MPS_ERROR_UNSUPPORTED; }
 
 mps_status mps_elastic_get_section(const mps_elastic *elastic, int32_t axis, double position,
                                    const double *about, double *force, double *moment) {
-  (void)elastic;
-  (void)axis;
-  (void)position;
-  (void)about;
-  (void)force;
-  (void)moment;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_start(mps_elastic *elastic, const mps_elastic_motion_def *def) {
-  (void)elastic;
-  (void)def;
   return MPS_ERROR_UNSUPPORTED;
 }
 
 mps_status mps_elastic_modes(mps_elastic *elastic, int64_t count, double *omega, double *shapes) {
-  (void)elastic;
-  (void)count;
-  (void)omega;
-  (void)shapes;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_solver *mps_elastic_solver(const mps_elastic *elastic) {
-  (void)elastic;
-  return NULL;
-}
+mps_solver *mps_elastic_solver(const mps_elastic *elastic) { return NULL; }

@@ -98,10 +98,7 @@ static bool write_fields(hid_t root, mpsi_row_source *from) {
 }
 
 /* Rows of a set that is here as a whole. */
-static mps_status begin_own(mpsi_row_source *source, mps_status status) {
-  (void)source;
-  return status;
-}
+static mps_status begin_own(mpsi_row_source *source, mps_status status) { return status; }
 
 static bool put_own(mpsi_row_source *source, int32_t field, int32_t component, mpsi_put_rows_fn put,
                     void *user) {
@@ -159,9 +156,8 @@ typedef struct writing {
 static mps_status open_checkpoint(writing *w, const char *path, const mps_checkpoint *user_info) {
   mps_context *context = w->context;
   const mps_checkpoint *info = &w->info;
-  mps_status status = check_path(context, w->function, path);
-  if (status == MPS_OK) status = read_info(context, w->function, user_info, &w->info);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_path(context, w->function, path));
+  MPSI_TRY(read_info(context, w->function, user_info, &w->info));
   if (info->user_bytes > 0 && !info->user_data)
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
                      "user_bytes is %lld and user_data NULL", (long long)info->user_bytes);
@@ -193,7 +189,7 @@ static mps_status fill_checkpoint(writing *w, mpsi_row_source *from, const char 
 }
 
 mps_status mpsi_checkpoint_write(mps_particles *particles, const char *path,
-                                const mps_checkpoint *info) {
+                                 const mps_checkpoint *info) {
   if (!particles) return mpsi_null(__func__, "particles");
   writing w = {.context = mpsi_particles_context(particles), .function = __func__};
   mps_status status = mpsi_particles_committed(particles, __func__);
@@ -205,9 +201,7 @@ mps_status mpsi_checkpoint_write(mps_particles *particles, const char *path,
 static mps_status open_solver(writing *w, const mpsi_state_of *of, const char *path,
                               const mps_checkpoint *user_info) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_status status =
-      MPSI_DEF_READ_OR_DEFAULTS(of->context, w->function, mps_checkpoint, user_info, &info);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(of->context, w->function, mps_checkpoint, user_info, &info));
   info.struct_size = sizeof info;
   info.time = of->time;
   info.step = of->steps;
@@ -231,9 +225,8 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
                                 const mps_checkpoint *info) {
   mps_snapshot state = {.context = of->context};
   writing w = {.context = of->context, .function = function};
-  mps_status status = open_solver(&w, of, path, info);
-  if (status != MPS_OK) return status;
-  status = mpsi_state_get(of, function, &state);
+  MPSI_TRY(open_solver(&w, of, path, info));
+  mps_status status = mpsi_state_get(of, function, &state);
   mpsi_row_source own = source_of(of->particles);
   if (status == MPS_OK)
     status = fill_checkpoint(&w, &own, of->name, &state.state);
@@ -500,8 +493,7 @@ static void report(const reading *r, mps_checkpoint *info) {
 static void drop_reading(reading *r) {
   mpsi_values_free(r->context, &r->values.fields);
   mpsi_values_free(r->context, &r->values.state);
-  mpsi_free(r->context, r->source);
-  mpsi_free(r->context, r->user_data);
+  MPSI_FREE(r->context, r->source, r->user_data);
 }
 
 mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
@@ -519,12 +511,11 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
 /* Checks everything; nothing has changed yet. */
 static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_state_of *of) {
   mps_checkpoint wanted;
-  mps_status status = check_path(r->context, r->function, r->path);
-  if (status == MPS_OK) status = read_info(r->context, r->function, info, &wanted);
-  if (status == MPS_OK) status = stage(r, &wanted, of);
-  if (status == MPS_OK && !r->any_particles) status = match_ids(r);
-  if (status == MPS_OK) status = check_shapes(r);
-  return status;
+  MPSI_TRY(check_path(r->context, r->function, r->path));
+  MPSI_TRY(read_info(r->context, r->function, info, &wanted));
+  MPSI_TRY(stage(r, &wanted, of));
+  if (!r->any_particles) MPSI_TRY(match_ids(r));
+  return check_shapes(r);
 }
 
 static reading reading_of(mps_particles *particles, const char *function, const char *path) {

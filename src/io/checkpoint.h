@@ -1,7 +1,6 @@
 /* checkpoint.h - the state of a solver (core/state.h) in a checkpoint file, for the solvers'
  * mps_S_save and mps_S_restore. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_CHECKPOINT_H
-#define MPSI_IO_CHECKPOINT_H
+#pragma once
 
 #include "core/state/row_source.h"
 #include "core/state/state.h"
@@ -28,5 +27,3 @@ mps_status mpsi_checkpoint_save_rows(void *request, mpsi_row_source *source);
  * (may be NULL) is as for mps_checkpoint_info. On an error nothing has changed. */
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
                                    mps_checkpoint *info);
-
-#endif

@@ -1,7 +1,6 @@
 /* checkpoint_private.h - declarations of checkpoint.c, attributes.c and state_file.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_CHECKPOINT_PRIVATE_H
-#define MPSI_IO_CHECKPOINT_PRIVATE_H
+#pragma once
 
 #include "checkpoint.h"
 #include "hdf5_file.h"
@@ -62,5 +61,3 @@ bool mpsi_h5_read_text(hid_t object, const char *name, size_t size, char *out);
 bool mpsi_h5_write_state(hid_t root, const char *name, const mpsi_values *state);
 /* Reads it to r->values.state. */
 mps_status mpsi_h5_read_state(mpsi_reading *r, const mpsi_state_of *of);
-
-#endif

@@ -65,43 +65,34 @@ typedef struct driver_info { /* passed to driver_open in a property list */
 } driver_info;
 
 static H5FD_t *driver_open(const char *name, unsigned flags, hid_t access, haddr_t max_address) {
-  (void)name, (void)flags, (void)max_address;
   const driver_info *info = H5Pget_driver_info(access);
   return info ? &info->file->driver : NULL;
 }
 
 /* The descriptor and the structure belong to the caller that opened the file. */
-static herr_t driver_close(H5FD_t *driver) {
-  (void)driver;
-  return 0;
-}
+static herr_t driver_close(H5FD_t *driver) { return 0; }
 
 static herr_t driver_query(const H5FD_t *driver, unsigned long *flags) {
-  (void)driver;
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA;
   return 0;
 }
 
 static haddr_t driver_get_eoa(const H5FD_t *driver, H5FD_mem_t type) {
-  (void)type;
   return ((const mpsi_h5_file *)driver)->end_of_allocation;
 }
 
 static herr_t driver_set_eoa(H5FD_t *driver, H5FD_mem_t type, haddr_t address) {
-  (void)type;
   ((mpsi_h5_file *)driver)->end_of_allocation = address;
   return 0;
 }
 
 static haddr_t driver_get_eof(const H5FD_t *driver, H5FD_mem_t type) {
-  (void)type;
   return ((const mpsi_h5_file *)driver)->end_of_file;
 }
 
 static herr_t driver_read(H5FD_t *driver, H5FD_mem_t type, hid_t transfer, haddr_t address,
                           size_t size, void *buffer) {
-  (void)type, (void)transfer;
   mpsi_h5_file *file = (mpsi_h5_file *)driver;
   char *to = buffer;
   while (size > 0) {
@@ -132,7 +123,6 @@ static int reserve(mpsi_h5_file *file) {
 
 static herr_t driver_write(H5FD_t *driver, H5FD_mem_t type, hid_t transfer, haddr_t address,
                            size_t size, const void *buffer) {
-  (void)transfer;
   mpsi_h5_file *file = (mpsi_h5_file *)driver;
   const char *from = buffer;
   if (type != H5FD_MEM_DRAW && !file->error) file->error = reserve(file);
@@ -147,7 +137,6 @@ static herr_t driver_write(H5FD_t *driver, H5FD_mem_t type, hid_t transfer, hadd
 }
 
 static herr_t driver_truncate(H5FD_t *driver, hid_t transfer, hbool_t closing) {
-  (void)transfer, (void)closing;
   mpsi_h5_file *file = (mpsi_h5_file *)driver;
   if (file->end_of_allocation == file->end_of_file) return 0;
   if (!file->error && ftruncate(file->fd, (off_t)file->end_of_allocation) != 0) file->error = errno;

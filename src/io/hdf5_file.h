@@ -1,8 +1,7 @@
 /* hdf5_file.h - calls of HDF5: one caller at a time, without printing, and with file access that
  * survives a full disk.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_HDF5_FILE_H
-#define MPSI_IO_HDF5_FILE_H
+#pragma once
 
 #include "io_private.h"
 
@@ -67,5 +66,3 @@ hid_t mpsi_h5_dataset(hid_t group, const char *name, hid_t type, hid_t space);
 bool mpsi_h5_attribute(hid_t object, const char *name, hid_t type, hsize_t count,
                        const void *values);
 bool mpsi_h5_attribute_text(hid_t object, const char *name, const char *text);
-
-#endif

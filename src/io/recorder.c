@@ -369,18 +369,16 @@ static mps_status build(mps_recorder *recorder, const mps_recorder_def *def) {
   static const char *const function = "mps_recorder_create";
   mps_context *context = recorder->context;
   int32_t widest = 0;
-  mps_status status = choose_fields(recorder, def, &widest);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(choose_fields(recorder, def, &widest));
   const size_t length = strlen(def->path) + 1, row = (size_t)widest * 8;
   recorder->path = mpsi_alloc(context, (int64_t)length, 1);
   if (!recorder->path) return mpsi_fail_memory(context, function, length);
   memcpy(recorder->path, def->path, length);
   recorder->rows = mpsi_alloc(context, MAX_CHUNK_ROWS, row);
   if (!recorder->rows) return mpsi_fail_memory(context, function, MAX_CHUNK_ROWS * row);
-  status = open_file(recorder);
-  if (status == MPS_OK && def->xdmf)
-    status = mpsi_xdmf_open(context, function, recorder->path, &recorder->xdmf);
-  return status;
+  MPSI_TRY(open_file(recorder));
+  if (def->xdmf) MPSI_TRY(mpsi_xdmf_open(context, function, recorder->path, &recorder->xdmf));
+  return MPS_OK;
 }
 
 mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
@@ -445,11 +443,8 @@ static mps_status end(mps_recorder **pointer, const char *function) {
   if (closed != 0 && status == MPS_OK)
     status = mpsi_fail_io(function ? context : NULL, function, "close", recorder->xdmf.path, errno);
   mpsi_particles_release(recorder->particles, &recorder->holder);
-  mpsi_free(context, recorder->rows);
-  mpsi_free(context, recorder->path);
-  mpsi_free(context, recorder->xdmf.path);
-  mpsi_free(context, recorder->fields);
-  mpsi_free(context, recorder);
+  MPSI_FREE(context, recorder->rows, recorder->path, recorder->xdmf.path, recorder->fields,
+            recorder);
   mpsi_context_release(context);
   return status;
 }

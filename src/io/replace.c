@@ -184,12 +184,11 @@ mps_status mpsi_replace_begin(mps_context *context, const char *function, const 
                               bool sealed, mpsi_replacement *out) {
   const size_t size = strlen(path) + sizeof ".part";
   *out = (mpsi_replacement){.path = path, .fd = -1, .sealed = sealed};
-  mps_status status = check_place(context, function, path, sealed);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_place(context, function, path, sealed));
   out->part = mpsi_alloc(context, (int64_t)size, 1);
   if (!out->part) return mpsi_fail_memory(context, function, size);
   snprintf(out->part, size, "%s.part", path);
-  status = clear_name(context, function, out->part);
+  mps_status status = clear_name(context, function, out->part);
   if (status == MPS_OK) {
     out->fd = open(out->part, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (out->fd < 0 || !lock(out->fd)) /* another began at the same time */

@@ -1,7 +1,6 @@
 /* replace.h - files that appear whole or not at all, with a seal that shows damage.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_REPLACE_H
-#define MPSI_IO_REPLACE_H
+#pragma once
 
 #include "io_private.h"
 
@@ -27,5 +26,3 @@ void mpsi_replace_abandon(mps_context *context, mpsi_replacement *replacement);
 
 /* MPS_ERROR_FORMAT if the open file has no seal or is not what was sealed. */
 mps_status mpsi_seal_check(mps_context *context, const char *function, int fd, const char *path);
-
-#endif

@@ -1,7 +1,6 @@
 /* series.h - datasets that grow by rows, of which a VTKHDF file consists.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_SERIES_H
-#define MPSI_IO_SERIES_H
+#pragma once
 
 #include "hdf5_file.h"
 
@@ -20,5 +19,3 @@ bool mpsi_series_create(hid_t group, const char *path, mpsi_item item, int32_t w
 
 /* Writes `rows` rows from row `first` on; they become the last ones. False on an error. */
 bool mpsi_series_append(const mpsi_series *series, int64_t first, int64_t rows, const void *values);
-
-#endif

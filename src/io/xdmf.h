@@ -1,7 +1,6 @@
 /* xdmf.h - an XDMF file beside a series, which says where its frames lie: for programs that do not
  * read series of VTKHDF. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IO_XDMF_H
-#define MPSI_IO_XDMF_H
+#pragma once
 
 #include "series.h"
 
@@ -29,5 +28,3 @@ void mpsi_xdmf_array(mpsi_xdmf *x, const char *name, mpsi_item item, int32_t wid
 /* Ends the frame, and the file behind it. Returns the byte at which the next frame begins; -1 on an
  * error. */
 int64_t mpsi_xdmf_end(mpsi_xdmf *x, int64_t count);
-
-#endif

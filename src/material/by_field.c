@@ -52,8 +52,7 @@ mps_status mpsi_apply_by_field(const mps_material *material, const mps_material_
   for (int64_t k = 0; k < block->count; k++) {
     take_particle(block, k, history, &one);
     scale_law(&law, &material->law, mpsi_factor(stiff[k]), mpsi_factor(strength[k]));
-    const mps_status status = apply(&law, &one);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(apply(&law, &one));
   }
   return MPS_OK;
 }

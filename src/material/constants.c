@@ -8,11 +8,8 @@
 
 mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
                               double poisson) {
-  const mps_status status =
-      mpsi_check_range(context, function, "young", young, MPSI_RANGE_MODULUS);
-  if (status != MPS_OK) return status;
-  return mpsi_check_range(context, function, "poisson", poisson,
-                          MPSI_RANGE_POISSON);
+  MPSI_TRY(mpsi_check_range(context, function, "young", young, MPSI_RANGE_MODULUS));
+  return mpsi_check_range(context, function, "poisson", poisson, MPSI_RANGE_POISSON);
 }
 
 /* ---- constants ------------------------------------------------------------------------------- */

@@ -1,7 +1,6 @@
 /* constants.h - from the parameters of a definition to the constants of a law's loop.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONSTANTS_H
-#define MPSI_CONSTANTS_H
+#pragma once
 
 #include "core/base/ranges.h"
 #include "material_private.h"
@@ -23,5 +22,3 @@ mps_status mpsi_law_soften_mises(mps_context *context, const char *function, mps
 mps_status mpsi_law_soften_mohr_coulomb(mps_context *context, const char *function, mpsi_law *law,
                                         const mps_material_mohr_coulomb_def *def);
 double mpsi_law_wave_modulus(const mpsi_law *law);
-
-#endif

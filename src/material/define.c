@@ -16,8 +16,7 @@ static mps_status create(mps_context *context, const char *function, mpsi_law_ki
   mpsi_law law = {.has_moduli = false};
   int32_t count = 0;
   while (type->columns[count]) count++;
-  const mps_status status = type->define(context, function, def, &law);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(type->define(context, function, def, &law));
   mps_material *material = mpsi_material_new(context, function, type, type->name, count);
   if (!material) return MPS_ERROR_MEMORY;
   material->law = law;
@@ -46,15 +45,15 @@ static mps_status check_out(mps_context *context, const char *function, mps_mate
 mps_status mps_material_create_linear_elastic(mps_context *context, double young, double poisson,
                                               mps_material **out) {
   const mpsi_elastic_def def = {.young = young, .poisson = poisson};
-  const mps_status status = check_out(context, __func__, out);
-  return status == MPS_OK ? create(context, __func__, MPSI_LAW_LINEAR_ELASTIC, &def, out) : status;
+  MPSI_TRY(check_out(context, __func__, out));
+  return create(context, __func__, MPSI_LAW_LINEAR_ELASTIC, &def, out);
 }
 
 mps_status mps_material_create_neo_hookean(mps_context *context, double young, double poisson,
                                            mps_material **out) {
   const mpsi_elastic_def def = {.young = young, .poisson = poisson};
-  const mps_status status = check_out(context, __func__, out);
-  return status == MPS_OK ? create(context, __func__, MPSI_LAW_NEO_HOOKEAN, &def, out) : status;
+  MPSI_TRY(check_out(context, __func__, out));
+  return create(context, __func__, MPSI_LAW_NEO_HOOKEAN, &def, out);
 }
 
 #define CREATE(name, KIND)                                                                         \
@@ -114,8 +113,7 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
                                    const mps_material_user_def *def, mps_material **out) {
   const mpsi_law_type *type = &mpsi_law_types[MPSI_LAW_USER];
   mpsi_law law = {.has_moduli = false};
-  const mps_status status = type->define(context, function, def, &law);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(type->define(context, function, def, &law));
   mps_material *material =
       mpsi_material_new(context, function, type, def->name, def->history_count);
   if (!material) return MPS_ERROR_MEMORY;

@@ -23,10 +23,8 @@ mps_status mps_moduli_from_elastic_sized(mps_context *context, double young, dou
                                          double density, mps_moduli *out, size_t size) {
   static const char function[] = "mps_moduli_from_elastic";
   if (!context) return mpsi_null(__func__, "context");
-  mps_status status = mpsi_check_elastic(context, function, young, poisson);
-  if (status == MPS_OK)
-    status = mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_check_elastic(context, function, young, poisson));
+  MPSI_TRY(mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY));
   const mpsi_law law = mpsi_law_elastic(young, poisson);
   mps_moduli m = moduli_of(law.shear, law.bulk, density);
   m.young = young, m.poisson = poisson; /* to the last bit */
@@ -72,9 +70,7 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
   if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the law %s has no elastic constants known to the library", material->name);
-  const mps_status status =
-      mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY));
   const mps_moduli m = moduli_of(material->law.shear, material->law.bulk, density);
   return mpsi_out_write(context, function, out, size, &m, sizeof m);
 }

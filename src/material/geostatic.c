@@ -130,10 +130,9 @@ static mps_status find_depths(geostatic *g) {
   double flat = d->surface;
   if (isnan(flat)) {
     /* of a set in parts the highest particle may lie on another rank */
-    const mps_status here = d->surface_line || d->surface_level
-                                ? MPS_OK
-                                : mpsi_particles_check_deal(g->set, g->function, NULL);
-    if (here != MPS_OK) return here;
+    MPSI_TRY(d->surface_line || d->surface_level
+                 ? MPS_OK
+                 : mpsi_particles_check_deal(g->set, g->function, NULL));
     flat = -INFINITY;
     for (int64_t k = 0; k < g->count; k++) flat = fmax(flat, g->x[g->up][k]);
     flat += 0.5 * spacing;
@@ -201,9 +200,8 @@ static mps_status take_densities(geostatic *g, double *density) {
 static mps_status weigh(geostatic *g) {
   const int64_t n = g->def.layer_count;
   for (int32_t k = 1; k < n; k++) g->top[k] = g->top[k - 1] + layer_of(g, k - 1)->thickness;
-  mps_status status = find_depths(g);
-  if (status == MPS_OK) status = take_densities(g, g->weight);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_depths(g));
+  MPSI_TRY(take_densities(g, g->weight));
   g->burden[0] = g->def.surcharge;
   for (int32_t k = 0; k < n; k++) {
     g->weight[k] = isnan(g->weight[k]) ? 0.0 : g->weight[k] * g->def.gravity; /* nothing there */
@@ -249,20 +247,18 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
                  .context = mpsi_particles_context(particles),
                  .def = mps_geostatic_defaults(),
                  .function = set_geostatic};
-  mps_status status = MPSI_DEF_READ_IN(g.context, set_geostatic, mps_geostatic_def, def,
-                                       mpsi_scene_of(mps_particles_dim(particles)), &g.def);
-  if (status == MPS_OK) status = mpsi_particles_writable(particles, set_geostatic);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_IN(g.context, set_geostatic, mps_geostatic_def, def,
+                            mpsi_scene_of(mps_particles_dim(particles)), &g.def));
+  MPSI_TRY(mpsi_particles_writable(particles, set_geostatic));
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
-  status = check_line(&g);
-  if (status == MPS_OK) status = check_layers(&g);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_line(&g));
+  MPSI_TRY(check_layers(&g));
   const int64_t n = g.def.layer_count, room = g.count + 3 * n;
   g.depth = mpsi_alloc(g.context, room, sizeof *g.depth);
   if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
-  status = weigh(&g);
+  mps_status status = weigh(&g);
   if (status == MPS_OK) status = open_stress(&g, set_geostatic);
   if (status == MPS_OK) write_stress(&g);
   mpsi_free(g.context, g.depth);
@@ -292,12 +288,11 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stre
   if (!particles) return mpsi_null(__func__, "particles");
   geostatic g = {.set = particles, .context = mpsi_particles_context(particles)};
   if (!fn) return mpsi_fail(g.context, __func__, MPS_ERROR_ARGUMENT, "stress is NULL");
-  mps_status status = mpsi_particles_writable(particles, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_writable(particles, __func__));
   look_at_set(&g);
   double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
   if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
-  status = evaluate_stress(&g, fn, user, s);
+  mps_status status = evaluate_stress(&g, fn, user, s);
   if (status == MPS_OK) status = open_stress(&g, __func__);
   for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
     double *column = mpsi_particles_column(particles, "stress", c);
@@ -345,11 +340,10 @@ static double profile_at(int32_t count, const double *depth, const double *value
 static mps_status write_profile(const geostatic *g, const char *field, int64_t count,
                                 const double *depth, const double *value) {
   mps_edit edit;
-  mps_status status = mpsi_as(g->context, g->function, mps_particles_edit(g->set, field, &edit));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_as(g->context, g->function, mps_particles_edit(g->set, field, &edit)));
   for (int64_t k = 0; k < g->count; k++)
     *mps_edit_f64(&edit, k, 0) = profile_at(count, depth, value, g->depth[k]);
-  status = mpsi_as(g->context, g->function, mps_particles_commit(g->set, &edit));
+  mps_status status = mpsi_as(g->context, g->function, mps_particles_commit(g->set, &edit));
   if (status != MPS_OK && mps_particles_abandon(g->set, &edit) != MPS_OK) return MPS_ERROR_INTERNAL;
   return status;
 }
@@ -363,20 +357,18 @@ mps_status mps_particles_set_profile(mps_particles *particles, const char *field
                  .def = mps_geostatic_defaults(),
                  .function = __func__};
   mps_view view;
-  mps_status status = check_profile(&g, field, count, depth, value);
-  if (status == MPS_OK && ground)
-    status = MPSI_DEF_READ_IN(g.context, __func__, mps_geostatic_def, ground,
-                              mpsi_scene_of(mps_particles_dim(particles)), &g.def);
-  if (status == MPS_OK) status = mpsi_particles_writable(particles, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_profile(&g, field, count, depth, value));
+  if (ground)
+    MPSI_TRY(MPSI_DEF_READ_IN(g.context, __func__, mps_geostatic_def, ground,
+                              mpsi_scene_of(mps_particles_dim(particles)), &g.def));
+  MPSI_TRY(mpsi_particles_writable(particles, __func__));
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
-  status = check_line(&g);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_line(&g));
   g.depth = mpsi_alloc(g.context, g.count, sizeof *g.depth);
   if (!g.depth) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * sizeof *g.depth);
   const int32_t fields = mps_particles_field_count(particles);
-  status = find_depths(&g);
+  mps_status status = find_depths(&g);
   if (status == MPS_OK)
     status = mpsi_as(g.context, __func__, mps_particles_add_field(particles, field, 1));
   if (status == MPS_OK)

@@ -14,8 +14,7 @@
  *   moduli    the wave moduli of a block in its present state; NULL: that of zero strain. A user's
  *             law may have none: mpsi_material_stiffens
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MATERIAL_KINDS_H
-#define MPSI_MATERIAL_KINDS_H
+#pragma once
 
 #include "material_internal.h"
 
@@ -140,5 +139,3 @@ void mpsi_neo_hookean_moduli(const struct mpsi_law *law, const mps_material_bloc
                              double *moduli);
 void mpsi_newtonian_moduli(const struct mpsi_law *law, const mps_material_block *block,
                            double *moduli);
-
-#endif

@@ -399,8 +399,8 @@ MPSI_INLINE mps_status user_loop(const int geometry, const mpsi_law *law,
   else
     volume_loop(geometry, BY_SUM, block, 0, block->count, NULL);
   if (law->turns_stress) turn_loop(geometry, block);
-  const mps_status status = law->update(law->user, block);
-  return status == MPS_OK ? mpsi_check_results(block, law->history_count) : status;
+  MPSI_TRY(law->update(law->user, block));
+  return mpsi_check_results(block, law->history_count);
 }
 
 /* ---- one function for each law and geometry -------------------------------------------------- */

@@ -9,12 +9,9 @@
 
 static void release(mps_material *m) {
   mps_context *context = m->context;
-  mpsi_free(context, m->history_names);
-  mpsi_free(context, m->history_fields);
-  mpsi_free(context, m->history_initial);
+  MPSI_FREE(context, m->history_names, m->history_fields, m->history_initial);
   mpsi_release(m->release, m->release_user);
-  mpsi_free(context, m->owned);
-  mpsi_free(context, m);
+  MPSI_FREE(context, m->owned, m);
   mpsi_context_release(context);
 }
 
@@ -228,9 +225,8 @@ mps_status mps_material_update(mps_context *context, const mps_material *materia
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      material ? "block" : "material");
   mps_material_block block = {.dim = 2};
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_material_block, user_block, &block);
-  if (status == MPS_OK) status = check_block(context, __func__, material, &block);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_material_block, user_block, &block));
+  MPSI_TRY(check_block(context, __func__, material, &block));
   char message[MPSI_MATERIAL_MESSAGE] = "";
   int64_t refused = -1;
   if (!block.message || block.message_size == 0)
@@ -238,7 +234,7 @@ mps_status mps_material_update(mps_context *context, const mps_material *materia
   if (!block.refused) block.refused = &refused;
   block.message[0] = '\0';
   *block.refused = -1;
-  status = mpsi_material_apply(material, &block);
+  mps_status status = mpsi_material_apply(material, &block);
   if (status == MPS_OK) return MPS_OK;
   const int64_t k = *block.refused;
   const bool there = k >= 0 && k < block.count;

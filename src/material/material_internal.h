@@ -23,8 +23,7 @@
  * Any number of threads may apply one material at once. Results do not depend on how particles are
  * cut into blocks, nor on the processor's instruction set, bit for bit.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MATERIAL_INTERNAL_H
-#define MPSI_MATERIAL_INTERNAL_H
+#pragma once
 
 #include "core/base/given.h"
 #include "core/internal.h"
@@ -117,5 +116,3 @@ double mpsi_material_viscosity(const mps_material *material);
 /* Fills the history columns of new particles [begin, end). */
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end);
-
-#endif

@@ -1,8 +1,7 @@
 /* material_private.h - the members of a material, and the loops over a block that are compiled for
  * several instruction sets, for src/material only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MATERIAL_PRIVATE_H
-#define MPSI_MATERIAL_PRIVATE_H
+#pragma once
 
 #include "kinds.h"
 
@@ -143,5 +142,3 @@ int64_t mpsi_soften_mohr_coulomb(const mpsi_law *law, int32_t dim, double rate, 
 static inline double mpsi_least_mean(const mpsi_law *law, double volume_ratio) {
   return law->loosest > 0.0 ? law->bulk * log(volume_ratio / law->loosest) : -INFINITY;
 }
-
-#endif

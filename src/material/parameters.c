@@ -5,8 +5,7 @@
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *values,
                                mpsi_law *law) {
   const mpsi_elastic_def *def = values;
-  const mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_check_elastic(context, function, def->young, def->poisson));
   *law = mpsi_law_elastic(def->young, def->poisson);
   return MPS_OK;
 }
@@ -30,7 +29,6 @@ mps_status mpsi_define_von_mises(mps_context *context, const char *function, con
 mps_status mpsi_define_drucker_prager(mps_context *context, const char *function,
                                       const void *values, mpsi_law *law) {
   const mps_material_drucker_prager_def *def = values;
-  (void)context, (void)function;
   *law = mpsi_law_elastic(def->young, def->poisson);
   mpsi_law_add_cone(law, (mps_material_cone)def->cone, def->friction, def->dilation, def->cohesion,
                     def->tension);
@@ -56,7 +54,6 @@ mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, 
 mps_status mpsi_define_newtonian(mps_context *context, const char *function, const void *values,
                                  mpsi_law *law) {
   const mps_material_newtonian_def *def = values;
-  (void)context, (void)function;
   *law = (mpsi_law){.bulk = def->bulk_modulus,
                     .viscosity = def->viscosity,
                     .tait = def->state == MPS_MATERIAL_STATE_EQUATION_TAIT,

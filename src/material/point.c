@@ -88,9 +88,7 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
                                     mps_material_point *point, const double gradient[9],
                                     double duration, int64_t steps) {
   if (!context) return mpsi_null(__func__, "context");
-  const mps_status status =
-      check_drive(context, __func__, material, point, gradient, duration, steps);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_drive(context, __func__, material, point, gradient, duration, steps));
   drive *d = mpsi_alloc(context, 1, sizeof *d);
   if (!d) return mpsi_fail_memory(context, __func__, sizeof *d);
   const mps_status answer =
@@ -196,8 +194,7 @@ static mps_status find_direction(const control *c, const double *rate, const dou
   memcpy(moved, rate, sizeof moved);
   for (int k = 0; k < c->n; k++) {
     moved[k] = rate[k] + c->small;
-    const mps_status status = try_rates(c, moved, c->other, other, &size);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(try_rates(c, moved, c->other, other, &size));
     for (int i = 0; i < c->n; i++) matrix[i][k] = (other[i] - miss[i]) / (moved[k] - rate[k]);
     moved[k] = rate[k];
     direction[k] = -miss[k];
@@ -299,7 +296,6 @@ static mps_status follow_targets(mps_context *context, const mps_material *mater
                                  uint32_t controlled, const double target[6], double duration,
                                  int64_t steps, mps_material_point *room, double found[9]) {
   mps_material_point *now = &room[0], *next = &room[1];
-  mps_status status = MPS_OK;
   double rate[COMPONENTS] = {0.0};
   control c = {.context = context,
                .material = material,
@@ -320,8 +316,7 @@ static mps_status follow_targets(mps_context *context, const mps_material *mater
       const int a = c.component[k];
       c.target[k] = point->stress[a] + share * (target[a] - point->stress[a]);
     }
-    status = mpsi_as(context, function, take_step(&c, rate, next, step));
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_as(context, function, take_step(&c, rate, next, step)));
     *now = *next;
   }
   now->time = point->time + duration;
@@ -335,13 +330,12 @@ mps_status mps_material_point_control(mps_context *context, const mps_material *
                                       uint32_t controlled, const double target[6], double duration,
                                       int64_t steps, double found[9]) {
   if (!context) return mpsi_null(__func__, "context");
-  mps_status status = check_drive(context, function, material, point, gradient, duration, steps);
-  if (status == MPS_OK) status = check_targets(context, point, target, controlled);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_drive(context, function, material, point, gradient, duration, steps));
+  MPSI_TRY(check_targets(context, point, target, controlled));
   mps_material_point *room = mpsi_alloc(context, 3, sizeof *room); /* too large for a small stack */
   if (!room) return mpsi_fail_memory(context, function, 3 * sizeof *room);
-  status = follow_targets(context, material, point, gradient, controlled, target, duration, steps,
-                          room, found);
+  mps_status status = follow_targets(context, material, point, gradient, controlled, target,
+                                     duration, steps, room, found);
   mpsi_free(context, room);
   return status;
 }

@@ -1,8 +1,7 @@
 /* tensor.h - stress, strain increment and spin of one particle, for the vector loops: every
  * function is inlined, without branches but on literal arguments. Nakamura (44)-(47).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_TENSOR_H
-#define MPSI_TENSOR_H
+#pragma once
 
 #include "material_private.h"
 
@@ -135,5 +134,3 @@ MPSI_INLINE mpsi_sym mpsi_hooke(const mpsi_law *law, mpsi_sym s, mpsi_sym d) {
                     .yz = s.yz + g2 * d.yz,
                     .zx = s.zx + g2 * d.zx};
 }
-
-#endif

@@ -222,9 +222,8 @@ mps_status mps_material_create_umat(mps_context *context, const mps_material_uma
   *out = NULL;
   mps_material_umat_def def = mps_material_umat_defaults();
   mps_material *material = NULL;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_material_umat_def, user_def, &def);
-  if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_material_umat_def, user_def, &def));
+  MPSI_TRY(make_law(context, __func__, &def, &material));
   const size_t size = sizeof(umat_law) + ((size_t)def.props_count + 2) * sizeof(double);
   umat_law *law = mpsi_alloc(context, 1, size);
   if (!law) {

@@ -51,8 +51,8 @@ static mps_status check_user_law(mps_context *context, const char *function,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
                      def->name);
-  const mps_status named = check_history(context, function, def);
-  return named == MPS_OK ? check_frictional(context, function, def) : named;
+  MPSI_TRY(check_history(context, function, def));
+  return check_frictional(context, function, def);
 }
 
 /* K + 4G/3, where the definition states K and G. */
@@ -61,18 +61,16 @@ static mps_status check_moduli(mps_context *context, const char *function,
   const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
   if (isnan(least) || isnan(def->wave_modulus) || def->wave_modulus >= least * (1.0 - 1e-12))
     return MPS_OK;
-  return mpsi_fail(
-      context, function, MPS_ERROR_ARGUMENT,
-      "wave_modulus is %g Pa, must be NaN or at least K + 4G/3 of its moduli, %g Pa",
-      def->wave_modulus, least);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "wave_modulus is %g Pa, must be NaN or at least K + 4G/3 of its moduli, %g Pa",
+                   def->wave_modulus, least);
 }
 
 mps_status mpsi_define_user(mps_context *context, const char *function, const void *values,
                             mpsi_law *law) {
   const mps_material_user_def *def = values;
-  mps_status status = check_user_law(context, function, def);
-  if (status == MPS_OK) status = check_moduli(context, function, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_user_law(context, function, def));
+  MPSI_TRY(check_moduli(context, function, def));
   *law = (mpsi_law){.update = def->update,
                     .user = def->user,
                     .viscosity = def->viscosity,

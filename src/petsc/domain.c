@@ -152,7 +152,6 @@ typedef struct star {
 
 static void star_destroy(void *user, void *handle) {
   star *s = handle;
-  (void)user;
   if (mpsi_petsc_stranded()) return;
   if (s->item_bytes > 0) (void)MPI_Type_free(&s->item);
   (void)PetscSFDestroy(&s->forest);
@@ -183,7 +182,6 @@ static mps_status star_create(void *user, int64_t own, int64_t guests, const int
 static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const void *own,
                              void *guests) {
   star *s = handle;
-  (void)user;
   if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   if (item_bytes != s->item_bytes) {
     const int size = (int)sizeof(double);
@@ -202,7 +200,6 @@ static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const
 
 static mps_status star_end(void *user, void *handle) {
   star *s = handle;
-  (void)user;
   if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   return MPSI_PETSC_STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
 }

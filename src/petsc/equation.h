@@ -1,7 +1,6 @@
 /* equation.h - symmetric positive definite systems solved by PETSc, in one process or on all of a
  * communicator. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_PETSC_EQUATION_H
-#define MPSI_PETSC_EQUATION_H
+#pragma once
 
 #include "guest.h"
 
@@ -32,5 +31,3 @@ void mpsi_petsc_forget(mps_petsc_solver *s);
 /* This rank's rows: x holds a start and receives the solution, |b - A x| <= tolerance |b|. */
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations);
-
-#endif

@@ -18,7 +18,6 @@ static struct {
 static PetscErrorCode quiet(MPI_Comm comm, int line, const char *function, const char *file,
                             PetscErrorCode code, PetscErrorType type, const char *message,
                             void *context) {
-  (void)comm, (void)line, (void)file, (void)type, (void)context;
   const char *text = message;
   if (!text || !text[strspn(text, " ")]) (void)PetscErrorMessage(code, &text, NULL);
   if (!guest.said[0])

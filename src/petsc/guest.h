@@ -1,7 +1,6 @@
 /* guest.h - MPI and PETSc as a guest of the program: started where they are not running, ended with
  * the last object that has entered. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_PETSC_GUEST_H
-#define MPSI_PETSC_GUEST_H
+#pragma once
 
 #include <petscksp.h>
 #include <petscsf.h>
@@ -31,5 +30,3 @@ mps_status mpsi_petsc_fail(mps_context *context, const char *function, mps_statu
  * nothing here waits for them any more, and neither MPI nor PETSc is ended. */
 void mpsi_petsc_strand(void);
 int mpsi_petsc_stranded(void);
-
-#endif

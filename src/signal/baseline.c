@@ -76,8 +76,7 @@ static mps_status remove_trend(mps_context *context, const char *function, int d
     c[0] = velocities[count - 1] / largest;
   } else {
     for (int64_t i = 0; i < count; i++) velocities[i] /= largest;
-    const mps_status status = fit_trend(context, function, degree, count, times, velocities, c);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(fit_trend(context, function, degree, count, times, velocities, c));
   }
   for (int64_t i = 0; i < count; i++) {
     const double s = times[i] / end;

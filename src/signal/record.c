@@ -131,10 +131,9 @@ static mps_status make_signal(mpsi_text *text, int32_t format, mpsi_samples *sam
 
 mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out) {
   int32_t format = def->format;
-  mps_status status = recognise(text, &format);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(recognise(text, &format));
   mpsi_samples samples = {.def = def};
-  status = make_signal(text, format, &samples, out);
+  mps_status status = make_signal(text, format, &samples, out);
   mpsi_samples_free(text->context, &samples);
   return status;
 }
@@ -162,14 +161,11 @@ mps_status mps_signal_create_record(mps_context *context, const char *path,
   *out = NULL;
   if (!path) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "path is NULL");
   mps_signal_record_def known;
-  mps_status status =
-      MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_signal_record_def, def, &known);
-  if (status == MPS_OK) status = check_scale_and_unit(context, __func__, &known);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_signal_record_def, def, &known));
+  MPSI_TRY(check_scale_and_unit(context, __func__, &known));
   mpsi_text text;
-  status = mpsi_text_load(context, __func__, path, MPSI_RECORD_LIMIT, &text);
-  if (status != MPS_OK) return status;
-  status = mpsi_record_signal(&text, &known, out);
+  MPSI_TRY(mpsi_text_load(context, __func__, path, MPSI_RECORD_LIMIT, &text));
+  mps_status status = mpsi_record_signal(&text, &known, out);
   mpsi_text_close(&text);
   return status;
 }

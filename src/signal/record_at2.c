@@ -26,8 +26,7 @@ static mps_status read_header(mpsi_text *text, mpsi_header *h) {
     if (text->line == MPSI_RECORD_HEADER || !mpsi_text_line(text, &line))
       return mpsi_text_fail(text, "no line with NPTS= and DT= ends the header of an AT2 file");
     const mpsi_quote quote = mpsi_slice_quote(line);
-    const mps_status status = mpsi_header_line(text, line, h);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_header_line(text, line, h));
     /* the files of velocities (.VT2) and displacements (.DT2) look the same but for one line */
     if (h->velocity || h->displacement ||
         (h->unit && h->unit->quantity != MPS_SIGNAL_QUANTITY_ACCELERATION))
@@ -42,9 +41,8 @@ static mps_status read_header(mpsi_text *text, mpsi_header *h) {
 mps_status mpsi_at2_read(mpsi_text *text, mpsi_samples *samples) {
   static const char g[] = "g";
   mpsi_header h = {.count = NAN, .step = NAN};
-  mps_status status = read_header(text, &h);
-  if (status == MPS_OK) status = mpsi_header_step(text, samples, &h.step);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(read_header(text, &h));
+  MPSI_TRY(mpsi_header_step(text, samples, &h.step));
   samples->unit = h.unit ? h.unit : mpsi_unit_find((mpsi_slice){g, g + 1});
   return mpsi_samples_read(text, samples, (int64_t)h.count, h.step, 0, false);
 }

@@ -51,9 +51,7 @@ static mps_status read_numbers(mpsi_text *text, double count, int width, int at,
     if (mpsi_slice_size(field) > width) field.end = field.begin + width;
     line.begin = field.end;
     if (k != at) continue;
-    const mps_status status =
-        mpsi_text_number(text, mpsi_slice_word(&field, ""), "the step of the header", out);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_text_number(text, mpsi_slice_word(&field, ""), "the step of the header", out));
   }
   return MPS_OK;
 }
@@ -91,9 +89,8 @@ mps_status mpsi_cosmos_read(mpsi_text *text, mpsi_samples *samples) {
     if (status != MPS_OK) return status;
   }
   if (isnan(step)) return mpsi_text_fail(text, "the header ends without its real values");
-  mps_status status = mpsi_header_size(text, "the number of points", count, step);
-  if (status == MPS_OK) status = mpsi_header_step(text, samples, &step);
-  if (status == MPS_OK) status = read_unit(text, line, &samples->unit);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_header_size(text, "the number of points", count, step));
+  MPSI_TRY(mpsi_header_step(text, samples, &step));
+  MPSI_TRY(read_unit(text, line, &samples->unit));
   return mpsi_samples_read(text, samples, (int64_t)count, step, width_of(line), true);
 }

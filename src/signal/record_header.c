@@ -4,7 +4,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "record_private.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define SAME_STEP 1e-3 /* relative: headers round */

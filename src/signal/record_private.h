@@ -1,7 +1,6 @@
 /* record_private.h - parsers of recorded motions. For the files record*.c (and their tests) only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_RECORD_PRIVATE_H
-#define MPSI_RECORD_PRIVATE_H
+#pragma once
 
 #include "core/base/text.h"
 
@@ -22,8 +21,6 @@ typedef struct mpsi_unit {
 } mpsi_unit;
 /* The unit that the whole slice names: "cm/s/s", "CM/SEC**2", "m s-2", "gal"; NULL: none. */
 const mpsi_unit *mpsi_unit_find(mpsi_slice name);
-/* The unit of SI of a quantity. */
-const mpsi_unit *mpsi_unit_si(int32_t quantity);
 /* "m/s2, mm/s2, ...": units of a quantity, for messages. */
 void mpsi_unit_list(int32_t quantity, char *out, size_t size);
 
@@ -97,5 +94,3 @@ mps_status mpsi_cosmos_read(mpsi_text *text, mpsi_samples *samples);
 /* The signal of a text: mps_signal_create_record without the file. `def` is checked; NULL *out
  * before. */
 mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out);
-
-#endif

@@ -3,8 +3,6 @@
 #include "core/internal.h"
 #include "record_private.h"
 
-#include <string.h>
-
 #define FIRST_SAMPLES 4096
 
 mps_status mpsi_samples_add(const mpsi_text *text, mpsi_samples *samples, double time,
@@ -61,7 +59,6 @@ mps_status mpsi_samples_read(mpsi_text *text, mpsi_samples *samples, int64_t ann
 }
 
 void mpsi_samples_free(mps_context *context, mpsi_samples *samples) {
-  mpsi_free(context, samples->times);
-  mpsi_free(context, samples->values);
+  MPSI_FREE(context, samples->times, samples->values);
   *samples = (mpsi_samples){0};
 }

@@ -46,9 +46,7 @@ static mps_status pick(mpsi_text *text, int lines, int width, int each, int coun
       mpsi_slice field = {line.begin + (int64_t)(k[i] % each) * width, line.end};
       if (field.begin > line.end) field.begin = line.end;
       if (mpsi_slice_size(field) > width) field.end = field.begin + width;
-      const mps_status status =
-          mpsi_text_number(text, mpsi_slice_word(&field, ""), "the header's number", &out[i]);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_text_number(text, mpsi_slice_word(&field, ""), "the header's number", &out[i]));
     }
   }
   return MPS_OK;
@@ -68,16 +66,16 @@ mps_status mpsi_smc_read(mpsi_text *text, mpsi_samples *samples) {
     if (!mpsi_text_line(text, &line))
       return mpsi_text_fail(text, "the file ends within the header of an SMC file");
   double number[2] = {0.0}, rate = 0.0;
-  mps_status status = pick(text, INTEGER_LINES, INTEGER_WIDTH, IN_LINE, 2, wanted, number);
-  if (status == MPS_OK) status = pick(text, REAL_LINES, REAL_WIDTH, 5, 1, &rate_at, &rate);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(pick(text, INTEGER_LINES, INTEGER_WIDTH, IN_LINE, 2, wanted, number));
+  MPSI_TRY(pick(text, REAL_LINES, REAL_WIDTH, 5, 1, &rate_at, &rate));
   if (!(number[0] >= 0.0 && number[0] <= COMMENTS_MAX))
     return mpsi_text_fail(text, "the header has %g lines of comments", number[0]);
   if (!(rate > 0.0 && rate < 1e9))
     return mpsi_text_fail(text, "the sampling rate of the header is %g, a number > 0 is expected",
                           rate);
   double step = 1.0 / rate;
-  status = mpsi_header_size(text, "the number of samples in the header", number[1], step);
+  mps_status status =
+      mpsi_header_size(text, "the number of samples in the header", number[1], step);
   if (status == MPS_OK) status = mpsi_header_step(text, samples, &step);
   for (int i = 0; status == MPS_OK && i < (int)number[0]; i++)
     if (!mpsi_text_line(text, &line) || mpsi_slice_size(line) == 0 || *line.begin != '|')

@@ -100,12 +100,6 @@ const mpsi_unit *mpsi_unit_find(mpsi_slice name) {
   return NULL;
 }
 
-const mpsi_unit *mpsi_unit_si(int32_t quantity) {
-  int i = 0;
-  while (i + 1 < UNITS && units[i].quantity != quantity) i++;
-  return &units[i];
-}
-
 void mpsi_unit_list(int32_t quantity, char *out, size_t size) {
   size_t used = 0;
   out[0] = '\0';

@@ -41,8 +41,7 @@ void mps_signal_destroy(mps_signal **signal) {
   if (atomic_fetch_sub(&s->references, 1) != 1) return;
   mps_context *context = s->context;
   mpsi_release(s->release, s->user);
-  mpsi_free(context, s->knots);
-  mpsi_free(context, s);
+  MPSI_FREE(context, s->knots, s);
   mpsi_context_release(context);
 }
 
@@ -142,7 +141,7 @@ static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
     const double sample[3] = {m.u, m.v, m.a};
     hash = mpsi_hash(hash, sample, sizeof sample);
   }
-  const double numbers[] = {signal->start, signal->end,   signal->amplitude, signal->rate,
+  const double numbers[] = {signal->start, signal->end,   signal->amplitude,    signal->rate,
                             signal->shift, signal->coast, (double)signal->count};
   hash = mpsi_hash(hash, numbers, sizeof numbers);
   return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
@@ -302,8 +301,7 @@ mps_status mps_signal_create_ramp(mps_context *context, int32_t quantity, double
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_quantity(context, __func__, quantity);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_quantity(context, __func__, quantity));
   if (!isfinite(start))
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "start is %g s, must be finite", start);
   if (!isfinite(duration) || duration < SHORTEST || !isfinite(start + duration) ||
@@ -318,8 +316,7 @@ mps_status mps_signal_create_ramp(mps_context *context, int32_t quantity, double
   const mpsi_signal_motion peaks = {.u = peak,
                                     .v = peak * 1.875 / duration,
                                     .a = peak * (10.0 / sqrt(3.0)) / duration / duration};
-  status = check_motion(context, __func__, quantity, amplitude, peaks);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_motion(context, __func__, quantity, amplitude, peaks));
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->at = ramp_at;
@@ -352,10 +349,9 @@ mps_status mps_signal_create_user(mps_context *context, int32_t quantity, mps_si
   if (!context) return mpsi_null(__func__, "context");
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = check_quantity(context, __func__, quantity);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_quantity(context, __func__, quantity));
   if (!fn) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "fn is NULL");
-  status = mpsi_signal_create_owned(context, __func__, fn, release, user, out);
+  mps_status status = mpsi_signal_create_owned(context, __func__, fn, release, user, out);
   if (status == MPS_OK) (*out)->value = quantity == MPS_SIGNAL_QUANTITY_VALUE;
   return status;
 }

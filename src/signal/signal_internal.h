@@ -1,7 +1,6 @@
 /* signal_internal.h - what solvers and bodies use of a signal besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_SIGNAL_INTERNAL_H
-#define MPSI_SIGNAL_INTERNAL_H
+#pragma once
 
 #include "core/base/given.h"
 
@@ -44,5 +43,3 @@ mps_status mpsi_signal_create_owned(mps_context *context, const char *function, 
                                     void (*release)(void *user), void *user, mps_signal **out);
 /* Adds that hash. */
 void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal);
-
-#endif

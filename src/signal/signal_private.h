@@ -1,8 +1,7 @@
 /* signal_private.h - the members of a signal, and what a table of accelerations goes through, for
  * the files signal*.c, baseline.c and record*.c only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_SIGNAL_PRIVATE_H
-#define MPSI_SIGNAL_PRIVATE_H
+#pragma once
 
 #include "core/internal.h"
 #include "signal_internal.h"
@@ -52,5 +51,3 @@ void mpsi_taper(int64_t count, const double *times, double *accelerations, doubl
 /* Corrects the accelerations in place: see mps_signal_baseline. times[0] is 0. */
 mps_status mpsi_baseline_correct(mps_context *context, const char *function, int32_t baseline,
                                  int64_t count, const double *times, double *accelerations);
-
-#endif

@@ -101,8 +101,7 @@ static mps_status solve_spline(mps_context *context, const char *function, mpsi_
 static mps_status fit_displacements(mps_context *context, const char *function, mpsi_knot *knots,
                                     int64_t count, const double *values) {
   for (int64_t i = 0; i < count; i++) knots[i].u = values[i];
-  const mps_status status = solve_spline(context, function, knots, count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(solve_spline(context, function, knots, count));
   for (int64_t i = 0; i + 1 < count; i++) {
     mpsi_knot *k = &knots[i], *next = k + 1;
     const double h = next->t - k->t, slope = (next->u - k->u) / h;
@@ -182,8 +181,7 @@ static mps_status fill_knots(mps_context *context, const char *function, int32_t
 mps_status mpsi_signal_from_table(mps_context *context, const char *function, int32_t quantity,
                                   int64_t count, const double *times, const double *values,
                                   mps_signal **out) {
-  mps_status status = check_table(context, function, quantity, count, times, values);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_table(context, function, quantity, count, times, values));
   mps_signal *signal = mpsi_signal_new(context, function);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->knots = mpsi_alloc(context, count, sizeof *signal->knots);
@@ -192,7 +190,7 @@ mps_status mpsi_signal_from_table(mps_context *context, const char *function, in
     return mpsi_fail_memory(context, function, (size_t)count * sizeof(mpsi_knot));
   }
   for (int64_t i = 0; i < count; i++) signal->knots[i].t = times[i];
-  status = fill_knots(context, function, quantity, signal->knots, count, values);
+  mps_status status = fill_knots(context, function, quantity, signal->knots, count, values);
   if (status != MPS_OK) {
     mps_signal_destroy(&signal);
     return status;

@@ -63,8 +63,7 @@ static void *copy_def(mps_context *context, const mpsi_condition_kind *kind, con
     if (signal[c]) (void)mpsi_signal_retain(signal[c]);
   for (LISTS(k, kind)) {
     const size_t bytes = bytes_of(kind, def, k);
-    void *list = *list_of(kind, copy, k) =
-        bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
+    void *list = *list_of(kind, copy, k) = bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
     if (list) memcpy(list, *list_of(kind, def, k), bytes);
     good = good && (list || bytes == 0);
   }
@@ -115,6 +114,24 @@ static mpsi_selection selection_of(const mps_solver *s, const mpsi_condition_kin
                           .dim = mps_particles_dim(s->particles)};
 }
 
+static bool take_item(const mps_solver *s, const mpsi_condition_kind *kind, const void *def,
+                      int64_t k, double x[3], int64_t *id) {
+  if (kind->item) return kind->item(s, def, k, x, id);
+  if (k >= mps_particles_count(s->particles)) return false;
+  for (int c = 0; c < mps_particles_dim(s->particles); c++)
+    x[c] = mpsi_particles_column(s->particles, "position", c)[k];
+  *id = mpsi_particles_integers(s->particles, "id")[k];
+  return true;
+}
+
+static mps_status check_ids(mps_solver *s, const char *function, const mpsi_condition_kind *kind,
+                            const void *def, const mpsi_selection *selection) {
+  if (kind->check_ids)
+    return kind->check_ids(s, function, def, selection->id_count, selection->ids);
+  if (kind->some || mpsi_domain_many(s->domain)) return MPS_OK; /* or they are of another rank */
+  return mpsi_particles_check_ids(s->particles, function, selection->id_count, selection->ids);
+}
+
 /* Lists with a value for each id need ids. */
 static mps_status check_by_box(mps_solver *s, const char *function, const mpsi_condition_kind *kind,
                                const void *def) {
@@ -131,11 +148,9 @@ static mps_status check_selection(mps_solver *s, const char *function,
                                   const mpsi_condition_kind *kind, const void *def,
                                   mpsi_selected *by, mpsi_selection_box *box) {
   const mpsi_selection selection = selection_of(s, kind, def);
-  const mps_status status = mpsi_selection_read(s->context, function, &selection, by, box);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_selection_read(s->context, function, &selection, by, box));
   if (*by != MPSI_SELECTED_IDS) return check_by_box(s, function, kind, def);
-  return kind->check_ids ? kind->check_ids(s, function, def, selection.id_count, selection.ids)
-                         : MPS_OK;
+  return check_ids(s, function, kind, def, &selection);
 }
 
 /* Replaces a box, or all, by the ids of the items in it. */
@@ -144,12 +159,12 @@ static mps_status list_items(mps_solver *s, const char *function, const mpsi_con
   const int dim = mps_particles_dim(s->particles);
   double x[3] = {0.0, 0.0, 0.0};
   int64_t count = 0, id;
-  for (int64_t k = 0; kind->item(s, def, k, x, &id); k++)
+  for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
     count += mpsi_selection_holds(box, dim, x);
   int64_t *ids = mpsi_alloc(s->context, count, sizeof *ids);
   if (!ids) return mpsi_fail_memory(s->context, function, (size_t)count * sizeof *ids);
   count = 0;
-  for (int64_t k = 0; kind->item(s, def, k, x, &id); k++)
+  for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
     if (mpsi_selection_holds(box, dim, x)) ids[count++] = id;
   *(int64_t **)place(kind, def, "ids") = ids;
   *(int64_t *)place(kind, def, "id_count") = count;
@@ -188,8 +203,7 @@ static mps_status check_choice(mps_solver *s, const char *function, const mpsi_c
   if (c->kept || c->by == MPSI_SELECTED_NONE) return MPS_OK;
   if (!kind->counts)
     return mpsi_selection_check_count(s->context, function, as_given, items, c->here);
-  const mps_status status = mpsi_domain_sum(s->domain, function, 2, found);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(s->domain, function, 2, found));
   if (mpsi_domain_many(s->domain) && c->by == MPSI_SELECTED_IDS && c->given > found[1])
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld, allowed are 1 to %lld particles", (long long)c->given,
@@ -246,8 +260,7 @@ static mps_status reserve(mps_solver *s, const char *function, mpsi_conditions *
     return mpsi_fail_memory(s->context, function, (size_t)room * sizeof *def);
   }
   for (int32_t k = 0; k < list->room; k++) def[k] = list->def[k], own[k] = list->own[k];
-  mpsi_free(s->context, list->def);
-  mpsi_free(s->context, list->own);
+  MPSI_FREE(s->context, list->def, list->own);
   list->def = def, list->own = own, list->room = room;
   return MPS_OK;
 }
@@ -287,8 +300,7 @@ static mps_status make(mps_solver *s, const char *function, const mpsi_condition
   const bool selects = status == MPS_OK && kind->selects && number >= kind->first;
   if (selects) status = check_selection(s, function, kind, &known, &c.by, &c.box);
   if (selects) as_given = selection_of(s, kind, &known);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "number", number);
   if (status == MPS_OK && mpsi_domain_many(s->domain)) give(kind, &known, &given);
   status = mpsi_domain_agree_given(s->domain, function, status, &given);
@@ -335,11 +347,10 @@ mps_status mps_solver_add(mps_solver *s, int32_t kind, const void *def, int32_t 
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->add;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   int32_t at = 0;
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = find_number(s, function, list, &at);
+  mps_status status = find_number(s, function, list, &at);
   status = put(s, function, list, status, at, def);
   mpsi_guard_end(&s->guard);
   if (status == MPS_OK && number) *number = at;
@@ -351,10 +362,9 @@ mps_status mps_solver_set(mps_solver *s, int32_t kind, int32_t number, const voi
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->set;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = check_number(s, function, list, number);
+  mps_status status = check_number(s, function, list, number);
   if (status == MPS_OK) status = reserve(s, function, list, number);
   status = put(s, function, list, status, number, def);
   mpsi_guard_end(&s->guard);
@@ -366,11 +376,10 @@ mps_status mps_solver_remove(mps_solver *s, int32_t kind, int32_t number) {
   mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->remove;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = mpsi_domain_agree_same(s->domain, function, check_number(s, function, list, number),
-                                  "number", number);
+  mps_status status = mpsi_domain_agree_same(
+      s->domain, function, check_number(s, function, list, number), "number", number);
   void *const former = number >= 0 && number < list->room ? list->own[number] : NULL;
   if (status == MPS_OK && list->kind->apply)
     status = list->kind->apply(s, function, number, NULL, NULL, former);
@@ -389,8 +398,7 @@ mps_status mps_solver_get(const mps_solver *s, int32_t kind, int32_t number, voi
   const mpsi_conditions *list = find_list(s, kind);
   if (!list) return fail_kind(s, __func__, kind);
   const char *function = list->kind->get;
-  const mps_status status = check_number(s, function, list, number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_number(s, function, list, number));
   union {
     double align;
     char bytes[MPSI_STRUCT_MOST];
@@ -430,8 +438,7 @@ mps_status mps_solver_get_reaction_sized(const mps_solver *s, int32_t number, mp
   const char *function = s->kind->name.get_reaction;
   mps_reaction reaction = {.count = 0};
   mps_status status = check_number(s, function, &s->conditions[MPSI_BOUNDARIES], number);
-  status = s->kind->get_reaction((void *)s, function, status, number, &reaction);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->get_reaction((void *)s, function, status, number, &reaction));
   return mpsi_out_write(s->context, function, out, size, &reaction, sizeof reaction);
 }
 
@@ -442,8 +449,7 @@ void mpsi_conditions_drop(mps_solver *s) {
       drop_own(s, list->kind, list->own[k]);
       if (list->def[k]) drop_def(s->context, list->kind, list->def[k]);
     }
-    mpsi_free(s->context, list->def);
-    mpsi_free(s->context, list->own);
+    MPSI_FREE(s->context, list->def, list->own);
     *list = (mpsi_conditions){.kind = list->kind};
   }
 }

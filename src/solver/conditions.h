@@ -6,8 +6,7 @@
  * their ids instead. What a solver does in its own way is in a table of functions; these get the
  * solver as `void *`, as those of mpsi_solver_kind do, and the kept definition, whose lists live as
  * long as the condition. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONDITIONS_H
-#define MPSI_CONDITIONS_H
+#pragma once
 
 #include "core/base/selection.h"
 #include "core/definition/definition.h"
@@ -25,6 +24,13 @@ typedef struct mpsi_condition_list {
 } mpsi_condition_list;
 
 enum { MPSI_CONDITION_MOST_LISTS = 2 };
+
+/* The members `kind` to `remove` of the conditions WHAT (BOUNDARY) of a solver. */
+#define MPSI_CONDITION_OF(SOLVER, solver, WHAT, what_)                                             \
+  .kind = MPS_DEF_##SOLVER##_##WHAT,                                                               \
+  .definition = &mpsi_definition_of_mps_##solver##_##what_##_def, .what = #what_,                  \
+  .add = "mps_" #solver "_add_" #what_, .set = "mps_" #solver "_set_" #what_,                      \
+  .get = "mps_" #solver "_get_" #what_, .remove = "mps_" #solver "_remove_" #what_
 
 /* `own`: what the solver makes of a definition, `size` zeroed bytes. Functions marked (*) may be
  * NULL. Those with a status return this rank's, but for `apply`. */
@@ -50,11 +56,12 @@ typedef struct mpsi_condition_kind {
   bool selects; /* by ids, a box or `all`; numbers from `first` on */
   /* Whether the solver keeps a selection by a box, or of all, as it is. */
   bool (*keeps)(const void *def, mpsi_selected by);
-  /* Place (m) and id of item k of those that can be selected; false: there is none. NULL where
-   * all else than ids is kept. */
+  /* Place (m) and id of item k of those that can be selected; false: there is none. NULL: the
+   * particles of the set. */
   bool (*item)(const void *solver, const void *def, int64_t k, double x[3], int64_t *id);
   const char *(*items)(const void *def); /* "particle" where NULL */
-  /* Errors in the listed ids that one rank alone can find. */
+  /* Errors in the listed ids that one rank alone can find. NULL: all must be of particles of the
+   * set, unless `some`. */
   mps_status (*check_ids)(void *solver, const char *function, const void *def, int64_t count,
                           const int64_t *ids);
   /* Whether this rank counts the item: ranks add up what they select. */
@@ -76,7 +83,15 @@ typedef struct mpsi_conditions {
   int32_t room;
 } mpsi_conditions;
 
+/* Functions of a solver for one of its lists: PREFIX_count, above the numbers of its conditions,
+ * and PREFIX_of, what it made of that of a number below, NULL where it is free. */
+#define MPSI_CONDITION_ACCESS(prefix, solver_type, list, type)                                     \
+  static inline int32_t prefix##_count(const solver_type *solver) {                                \
+    return solver->conditions[list].room;                                                          \
+  }                                                                                                \
+  static inline type *prefix##_of(const solver_type *solver, int32_t number) {                     \
+    return solver->conditions[list].own[number];                                                   \
+  }
+
 /* Frees all, which the solver needs no more. */
 void mpsi_conditions_drop(mps_solver *solver);
-
-#endif

@@ -1,7 +1,6 @@
 /* histories.h - the rows of a history (mps/history.h) as part of its solver's state, and its file.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_HISTORIES_H
-#define MPSI_HISTORIES_H
+#pragma once
 
 #include "solver_base.h"
 
@@ -52,5 +51,3 @@ mps_status mpsi_history_try_path(mps_context *context, const char *function, con
 /* Appends the rows that the file lacks. */
 mps_status mpsi_history_append(mps_history *history, const char *function);
 void mpsi_history_close_file(mps_history *history);
-
-#endif

@@ -1,6 +1,5 @@
 /* history.c - histories of a solver (mps/history.h): columns, rows, and their place in its state.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/context/retain.h"
 #include "domain/domain_internal.h"
 #include "histories.h"
 
@@ -83,9 +82,7 @@ static void end(mps_history *h) {
   mps_context *context = h->context;
   for (int64_t k = 0; h->column && k < h->width; k++)
     mpsi_release(h->column[k].release, h->column[k].user);
-  mpsi_free(context, h->column);
-  mpsi_free(context, h->names);
-  mpsi_free(context, h->row);
+  MPSI_FREE(context, h->column, h->names, h->row);
   mps_domain_destroy(&h->domain);
   mpsi_free(context, h);
   mpsi_context_release(context);
@@ -122,9 +119,8 @@ mps_status mps_history_create(mps_solver *s, const char *name, const char *const
   if (!s || !out) return mpsi_null(__func__, s ? "out" : "solver");
   *out = NULL;
   mps_history *made = NULL;
-  mps_status status = mpsi_guard_check_between(&s->guard, s->context, __func__);
-  if (status != MPS_OK) return status;
-  status = make(s, __func__, name, count, columns, units, &made);
+  MPSI_TRY(mpsi_guard_check_between(&s->guard, s->context, __func__));
+  mps_status status = make(s, __func__, name, count, columns, units, &made);
   status = mpsi_domain_agree_same(s->domain, __func__, status, "count", count);
   if (status != MPS_OK) {
     if (made) end(made);
@@ -180,9 +176,8 @@ mps_status mps_history_set_source(mps_history *h, const char *column, mps_histor
                                   mps_release_fn release) {
   if (!h) return mpsi_null(__func__, "history");
   int64_t k = -1;
-  mps_status status = check_free(h, __func__);
-  if (status == MPS_OK) status = check_column(h, __func__, column, 1, &k);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_free(h, __func__));
+  MPSI_TRY(check_column(h, __func__, column, 1, &k));
   const mpsi_history_column former = h->column[k];
   h->column[k].source = fn, h->column[k].user = user, h->column[k].release = release;
   mpsi_release(former.release, former.user);
@@ -285,8 +280,7 @@ int64_t mps_history_count(const mps_history *h) { return h ? h->rows : 0; }
 mps_status mps_history_view(const mps_history *h, const char *column, mps_view *out) {
   if (!h || !out) return mpsi_null(__func__, h ? "out" : "history");
   int64_t k = -1;
-  const mps_status status = check_column(h, __func__, column, 0, &k);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_column(h, __func__, column, 0, &k));
   *out = (mps_view){.data = h->row ? h->row + k : NULL,
                     .shape = {h->rows, 1, 1},
                     .stride = {h->width, 1, 1},
@@ -347,9 +341,7 @@ static void get_names(const void *history, void *values) {
   memcpy(values, ((const mps_history *)history)->names, (size_t)count_names(history));
 }
 
-static void keep_names(void *history, int64_t rows, const void *values) {
-  (void)history, (void)rows, (void)values;
-}
+static void keep_names(void *history, int64_t rows, const void *values) {}
 
 static bool same_names(const void *history, int64_t rows, const void *values) {
   return rows == count_names(history) &&
@@ -368,13 +360,11 @@ static void get_numbers(const void *history, void *values) {
 }
 
 static bool whole_rows(const void *history, int64_t numbers, const void *values) {
-  (void)values;
   return numbers % ((const mps_history *)history)->width == 0;
 }
 
 static bool reserve_numbers(void *history, int64_t numbers, const void *values) {
   mps_history *h = history;
-  (void)values;
   return reserve(h, numbers / h->width);
 }
 

@@ -139,8 +139,7 @@ mps_status mpsi_history_try_path(mps_context *context, const char *function, con
 
 static mps_status begin_file(mps_history *h, const char *function) {
   mpsi_history_file *f = &h->file;
-  mps_status status = replace(h, function, f->path, f->end);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(replace(h, function, f->path, f->end));
   f->fd = open(f->path, O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
   if (f->fd < 0) return mpsi_fail_io(h->context, function, "open", f->path, errno);
   f->rows = h->rows;
@@ -175,7 +174,6 @@ mps_status mpsi_history_append(mps_history *h, const char *function) {
 void mpsi_history_close_file(mps_history *h) {
   mpsi_history_file *f = &h->file;
   if (f->fd >= 0) close(f->fd);
-  mpsi_free(h->context, f->path);
-  mpsi_free(h->context, f->end);
+  MPSI_FREE(h->context, f->path, f->end);
   *f = (mpsi_history_file){.fd = -1};
 }

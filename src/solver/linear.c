@@ -41,8 +41,7 @@ static mps_status check(mps_solver *s, const char *function, int32_t equation,
 /* Status of all ranks, and whether all have such a solver. */
 static mps_status agree(mps_solver *s, const char *function, mps_status status, bool set,
                         const mps_linear_solver_def *def) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a linear solver", set);
   mpsi_give(&given, "having forget", def->forget != NULL);
   MPSI_GIVE(&given, def, least);
@@ -54,9 +53,8 @@ mps_status mps_solver_set_linear_solver(mps_solver *s, int32_t equation,
   if (!s) return mpsi_null(__func__, "solver");
   mps_linear_solver_def def = mps_linear_solver_defaults();
   mpsi_linear *linear = NULL;
-  mps_status status = mpsi_solver_enter(s, __func__);
-  if (status != MPS_OK) return status;
-  status = check(s, __func__, equation, user, &def);
+  MPSI_TRY(mpsi_solver_enter(s, __func__));
+  mps_status status = check(s, __func__, equation, user, &def);
   if (status == MPS_OK && user && !(linear = mpsi_alloc(s->context, 1, sizeof *linear)))
     status = mpsi_fail_memory(s->context, __func__, sizeof *linear);
   status = agree(s, __func__, status, user != NULL, &def);
@@ -76,8 +74,7 @@ void mpsi_linear_drop(mps_solver *s) {
   s->linear = NULL;
   if (!l) return;
   mpsi_release(l->def.release, l->def.user);
-  mpsi_free(s->context, l->x.item);
-  mpsi_free(s->context, l);
+  MPSI_FREE(s->context, l->x.item, l);
 }
 
 bool mpsi_linear_serves(const mps_solver *s, int64_t rows) {
@@ -120,14 +117,12 @@ mps_status mpsi_linear_hand(mps_solver *s, const char *function, mps_linear_matr
   const bool room = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
   l->valid = l->known = false;
   mps_status status = room ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
-  status = mpsi_domain_agree_max(s->domain, function, status, 1, &changed);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(s->domain, function, status, 1, &changed));
   a->struct_size = sizeof *a;
   a->change = changed != 0.0 ? MPS_LINEAR_CHANGE_PATTERN : MPS_LINEAR_CHANGE_VALUES;
   const mpsi_guard former = mpsi_guard_close(&s->guard, s->context, CALLBACK("matrix"));
   status = leave(s, function, former, l->def.matrix(l->def.user, a));
-  status = s->kind->agree(s, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->agree(s, function, status));
   l->valid = l->known = true;
   l->pattern = pattern, l->first = a->first, l->rows = a->rows;
   return MPS_OK;

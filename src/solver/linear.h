@@ -9,8 +9,7 @@
  *   }
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_SOLVER_LINEAR_H
-#define MPSI_SOLVER_LINEAR_H
+#pragma once
 
 #include "core/base/room.h"
 #include "solver_base.h"
@@ -43,5 +42,3 @@ mps_status mpsi_linear_check(mps_solver *solver, const char *function, double to
 /* Lets it discard data of former equations. This rank's status. */
 mps_status mpsi_linear_forget(mps_solver *solver, const char *function);
 void mpsi_linear_drop(mps_solver *solver); /* accepts that there is none */
-
-#endif

@@ -101,10 +101,9 @@ static mps_status march(mps_solver *s, const char *function, mpsi_march *m) {
 
 static mps_status go(mps_solver *s, const char *function, mpsi_march *m) {
   m->before = s->kind->steps(s);
-  mps_status status = s->kind->begin(s, function, m);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->begin(s, function, m));
   mpsi_guard_enter(&s->guard, s->context, function);
-  status = march(s, function, m);
+  mps_status status = march(s, function, m);
   mpsi_guard_end(&s->guard);
   return s->kind->end ? s->kind->end(s, function, m, status) : status;
 }
@@ -117,8 +116,7 @@ mps_status mps_solver_step(mps_solver *s, int64_t count) {
   if (count < 0)
     status = mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                        (long long)count);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "count", (double)count);
   status = agree_on_call(s, function, status, &given, count > 0);
   mpsi_march m = {.start = s->kind->time(s), .t_end = NAN, .total = count, .every = 1, .prompt = 1};
@@ -150,11 +148,9 @@ mps_status mps_solver_run(mps_solver *s, double t_end, int64_t every, mps_solver
                           void *user) {
   if (!s) return mpsi_null(__func__, "solver");
   const char *function = s->kind->name.run;
-  mps_status status = mpsi_solver_enter(s, function);
-  if (status != MPS_OK) return status;
-  status = check_run(s, function, t_end, every);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  MPSI_TRY(mpsi_solver_enter(s, function));
+  mps_status status = check_run(s, function, t_end, every);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "t_end", t_end);
   mpsi_give(&given, "every", (double)every);
   mpsi_give(&given, "having a callback", callback != NULL);

@@ -3,7 +3,6 @@
 #include "linear.h"
 #include "solver_base.h"
 #include "histories.h"
-#include "core/context/retain.h"
 #include "domain/domain_internal.h"
 #include "domain/moment.h"
 #include "io/checkpoint.h"
@@ -69,8 +68,7 @@ mps_status mps_solver_get_totals_sized(const mps_solver *s, mps_totals *out, siz
   if (!s) return mpsi_null(__func__, "solver");
   mps_totals totals = {.mass = 0.0};
   /* scratch and messages only: the state stays */
-  const mps_status status = s->kind->get_totals((void *)s, s->kind->name.get_totals, &totals);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(s->kind->get_totals((void *)s, s->kind->name.get_totals, &totals));
   return mpsi_out_write(s->context, s->kind->name.get_totals, out, size, &totals, sizeof totals);
 }
 
@@ -159,18 +157,16 @@ static mpsi_state_of former_state_of(mps_solver *s) {
 
 /* Before a former state returns. */
 static mps_status leave_present(mps_solver *s, const char *function) {
-  const mps_status status = s->kind->leave ? s->kind->leave(s, function) : MPS_OK;
-  return status == MPS_OK ? mpsi_linear_forget(s, function) : status;
+  MPSI_TRY(s->kind->leave ? s->kind->leave(s, function) : MPS_OK);
+  return mpsi_linear_forget(s, function);
 }
 
 mps_status mps_solver_rollback(mps_solver *s, const mps_snapshot *snapshot) {
   if (!s) return mpsi_null(__func__, "solver");
   const char *function = s->kind->name.rollback;
-  mps_status status = mpsi_solver_enter_to_change(s, function);
-  if (status != MPS_OK) return status;
-  status = leave_present(s, function);
-  status = mpsi_domain_agree_moment(s->domain, function, status, snapshot);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_solver_enter_to_change(s, function));
+  mps_status status = leave_present(s, function);
+  MPSI_TRY(mpsi_domain_agree_moment(s->domain, function, status, snapshot));
   const mpsi_state_of of = former_state_of(s);
   return returned(s, function, mpsi_state_rollback(&of, function, snapshot));
 }

@@ -7,8 +7,7 @@
  * `foo->base` is the base, and its members are those of `foo`. What a solver does in its own way is
  * in a table of functions, its mpsi_solver_kind; these get the solver as `void *`, which is the
  * pointer to its base and to itself. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_SOLVER_BASE_H
-#define MPSI_SOLVER_BASE_H
+#pragma once
 
 #include "core/context/guard.h"
 #include "core/internal.h"
@@ -163,5 +162,3 @@ mps_status mpsi_solver_check_cancel(mps_solver *solver, const char *function);
  */
 mps_status mpsi_solver_enter(mps_solver *solver, const char *function);
 mps_status mpsi_solver_enter_to_change(mps_solver *solver, const char *function);
-
-#endif

@@ -161,8 +161,7 @@ mps_status mps_absorber_get_reflection(const mps_absorber *a, double period, dou
   if (!a) return mpsi_null(__func__, "absorber");
   if (!reflection) return mpsi_fail(a->context, __func__, MPS_ERROR_ARGUMENT, "reflection is NULL");
   const double depth = a->def.depth, g = a->def.gravity;
-  const mps_status status = mpsi_waves_check_range(a->context, __func__, period, depth, g);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_waves_check_range(a->context, __func__, period, depth, g));
   const double omega = 2.0 * MPSI_WAVES_PI / period, y = omega * omega * depth / g;
   const double far = mpsi_waves_far(mpsi_waves_depths(y));
   const double complex rate = I * omega;

@@ -87,9 +87,8 @@ static mps_status complete(mps_waves *w) {
   for (int64_t n = 0; n < w->count; n++) {
     mpsi_wave *wave = &w->wave[n];
     const double f = (double)wave->bin / w->repeat;
-    const mps_status status = mpsi_waves_check_range(w->context, "mps_waves_create", 1.0 / f,
-                                                     w->def.depth, w->def.gravity);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_waves_check_range(w->context, "mps_waves_create", 1.0 / f, w->def.depth,
+                                    w->def.gravity));
     wave->omega = 2.0 * MPSI_WAVES_PI * f;
     const double y = wave->omega * wave->omega * w->def.depth / w->def.gravity;
     const double kd = mpsi_waves_depths(y);
@@ -102,8 +101,7 @@ static mps_status complete(mps_waves *w) {
 
 static mps_status make_regular(mps_waves *w) {
   w->period = w->repeat = w->def.period;
-  mps_status status = make_room(w, 1);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_room(w, 1));
   w->wave[0].bin = 1;
   w->wave[0].a = 0.5 * w->def.height;
   return complete(w);
@@ -131,8 +129,7 @@ static mps_status make_spectrum(mps_waves *w, const mps_waves_def *def) {
   int64_t first = 0;
   w->period = 1.0 / fp;
   w->repeat = isnan(def->repeat) ? USUAL_WAVES / fp : def->repeat;
-  mps_status status = make_band(w, fp, &first);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_band(w, fp, &first));
   double *s = mpsi_alloc(w->context, w->count, sizeof *s), sum = 0.0;
   if (!s) return mpsi_fail_memory(w->context, "mps_waves_create", (size_t)w->count * sizeof *s);
   for (int64_t n = 0; n < w->count; n++) {
@@ -140,7 +137,7 @@ static mps_status make_spectrum(mps_waves *w, const mps_waves_def *def) {
     s[n] = density(def, fp, (double)(first + n) / w->repeat) / w->repeat;
     sum += s[n];
   }
-  status = complete(w);
+  mps_status status = complete(w);
   if (status == MPS_OK && !(sum > 0.0 && isfinite(sum)))
     status = mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                        "density has a sum of %g m2 over the band, must be finite and > 0", sum);
@@ -189,8 +186,7 @@ static mps_status make_record(mps_waves *w, const mps_waves_def *def) {
   const double fp = isnan(def->period) ? record_peak(def, w->repeat) : 1.0 / def->period;
   int64_t first = 0;
   w->period = 1.0 / fp;
-  mps_status status = make_band(w, fp, &first);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_band(w, fp, &first));
   if (2 * (first + w->count - 1) >= n)
     return mpsi_fail(
         w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
@@ -199,7 +195,7 @@ static mps_status make_record(mps_waves *w, const mps_waves_def *def) {
         (long long)n, (double)(first + w->count - 1) / w->repeat,
         (long long)(2 * (first + w->count - 1)));
   for (int64_t k = 0; k < w->count; k++) w->wave[k].bin = first + k;
-  status = complete(w);
+  mps_status status = complete(w);
   for (int64_t k = 0; status == MPS_OK && k < w->count; k++)
     w->wave[k].a = fourier(def, w->repeat, first + k) * cexp(I * w->wave[k].k * def->position);
   return status;

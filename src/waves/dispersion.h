@@ -1,6 +1,5 @@
 /* dispersion.h - linear waves over a flat bed. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_WAVES_DISPERSION_H
-#define MPSI_WAVES_DISPERSION_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -19,5 +18,3 @@ double mpsi_waves_near(double y);
 /* Checks period, depth and gravity of the caller. */
 mps_status mpsi_waves_check_range(mps_context *context, const char *function, double period,
                                   double depth, double gravity);
-
-#endif

@@ -86,9 +86,8 @@ mps_status mps_overtopping_find_sized(mps_context *context, const mps_overtoppin
                      (long long)capacity);
   mps_overtopping_def d = mps_overtopping_defaults();
   mps_overtopping r = {.counted = 0.0};
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_overtopping_def, user_def, &d);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_overtopping_def, user_def, &d));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
   add_up(&d, !thin ? 0 : capacity < d.samples ? capacity : d.samples, thin, &r);
   return mpsi_out_write(context, __func__, out, size, &r, sizeof r);
 }

@@ -145,8 +145,7 @@ mps_status mps_waves_get_piston(const mps_waves *w, int64_t count, const double 
                                 double *displacement, double *velocity, double *acceleration,
                                 double *level) {
   if (!w) return mpsi_null(__func__, "waves");
-  const mps_status status = check_times(w, __func__, count, t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_times(w, __func__, count, t));
   double *const out[4] = {displacement, velocity, acceleration, level};
   for (int64_t k = 0; k < count; k++) {
     double motion[4];

@@ -92,10 +92,9 @@ mps_status mps_eurotop_evaluate_sized(mps_context *context, const mps_eurotop_de
                                       mps_eurotop *out, size_t size) {
   if (!context) return mpsi_null(__func__, "context");
   mps_eurotop_def d;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_def(context, &d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
+  MPSI_TRY(check_def(context, &d));
   mps_eurotop r = {.breaker = d.wall == MPS_EUROTOP_WALL_SLOPE ? breaker(&d) : NAN};
   int32_t ignored;
   r.low = wall_discharge(&d, -1.0, &ignored);
@@ -127,10 +126,9 @@ mps_status mps_eurotop_find_run_up_sized(mps_context *context, const mps_eurotop
                                          mps_eurotop_run_up *out, size_t size) {
   if (!context) return mpsi_null(__func__, "context");
   mps_eurotop_def d;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_run_up(context, __func__, &d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
+  MPSI_TRY(check_run_up(context, __func__, &d));
   int32_t ignored;
   mps_eurotop_run_up r = {.breaker = breaker(&d)};
   r.low = run_up(&d, -1.0, &ignored);

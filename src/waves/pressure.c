@@ -25,9 +25,7 @@ static double wave_number(double period, double depth, double gravity) {
 
 static mps_status check_sainflou(mps_context *context, const mps_sainflou_def *d) {
   const char *function = "mps_sainflou_evaluate_sized";
-  const mps_status status =
-      mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity));
   const double k = wave_number(d->period, d->depth, d->gravity);
   const double most = 0.142 * 2.0 * MPSI_WAVES_PI / k * tanh(k * d->depth);
   if (d->height > most)
@@ -54,10 +52,9 @@ mps_status mps_sainflou_evaluate_sized(mps_context *context, const mps_sainflou_
                                        mps_sainflou *out, size_t size) {
   if (!context) return mpsi_null(__func__, "context");
   mps_sainflou_def d;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_sainflou_def, user_def, &d);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_sainflou(context, &d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_sainflou_def, user_def, &d));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
+  MPSI_TRY(check_sainflou(context, &d));
   const double k = wave_number(d.period, d.depth, d.gravity), weight = d.density * d.gravity;
   mps_sainflou r;
   r.rise = 0.5 * k * d.height * d.height / tanh(k * d.depth);
@@ -71,13 +68,12 @@ mps_status mps_sainflou_evaluate_sized(mps_context *context, const mps_sainflou_
 /* ---- Goda ------------------------------------------------------------------------------------ */
 
 static mps_status check_goda(mps_context *context, const char *function, mps_goda_def *d) {
-  mps_status status = mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity));
   if (isnan(d->seaward)) d->seaward = d->depth;
   if (isnan(d->berm_depth)) d->berm_depth = d->depth;
   if (isnan(d->base)) d->base = d->depth;
   if (isnan(d->arm)) d->arm = 0.5 * d->width;
-  return status;
+  return MPS_OK;
 }
 
 static double impulsive_coefficient(const mps_goda_def *d, double L) {
@@ -114,10 +110,9 @@ mps_status mps_goda_evaluate_sized(mps_context *context, const mps_goda_def *use
                                    mps_goda *out, size_t size) {
   if (!context) return mpsi_null(__func__, "context");
   mps_goda_def d;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_goda_def, user_def, &d);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_goda(context, __func__, &d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_goda_def, user_def, &d));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
+  MPSI_TRY(check_goda(context, __func__, &d));
   mps_goda r;
   find_pressures(&d, &r);
   const double above_rest = fmin(r.reach, d.crest), h = d.base; /* trapezia above and below */

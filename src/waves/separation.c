@@ -75,9 +75,7 @@ static mps_status find_window(mps_context *context, analysis *a) {
                      d->lower, d->upper, span);
   for (int k = 0; k < 2; k++) {
     const double f = (double)(k ? a->first + a->bands - 1 : a->first) / span;
-    const mps_status status =
-        mpsi_waves_check_range(context, FUNCTION, 1.0 / f, d->depth, d->gravity);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_waves_check_range(context, FUNCTION, 1.0 / f, d->depth, d->gravity));
   }
   return MPS_OK;
 }
@@ -208,22 +206,19 @@ mps_status mps_separation_find_sized(mps_context *context, const mps_separation_
   mps_separation_def def = mps_separation_defaults();
   mps_separation result = {0};
   analysis a = {.d = &def};
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_separation_def, user_def, &def);
-  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
-  if (status == MPS_OK) status = check_arrays(context, &def);
-  if (status == MPS_OK) status = find_window(context, &a);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_separation_def, user_def, &def));
+  MPSI_TRY(mpsi_out_check(context, __func__, out, size));
+  MPSI_TRY(check_arrays(context, &def));
+  MPSI_TRY(find_window(context, &a));
   a.level = mpsi_alloc(context, a.count * def.gauges, sizeof *a.level);
   if (a.level) a.energy = mpsi_alloc(context, a.bands, sizeof *a.energy);
   if (!a.level || !a.energy) {
-    mpsi_free(context, a.level);
-    mpsi_free(context, a.energy);
+    MPSI_FREE(context, a.level, a.energy);
     return mpsi_fail_memory(context, __func__, (size_t)(a.count * def.gauges) * sizeof *a.level);
   }
   resample(&a);
   separate_bands(&a, &(rows){capacity, frequency, incident, reflected}, &result);
   if (count) *count = a.bands;
-  mpsi_free(context, a.level);
-  mpsi_free(context, a.energy);
+  MPSI_FREE(context, a.level, a.energy);
   return mpsi_out_write(context, __func__, out, size, &result, sizeof result);
 }

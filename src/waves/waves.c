@@ -1,6 +1,5 @@
 /* waves.c - the sea as an object: its definition, what is refused before it is made, its limits,
  * the signal of its piston. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/context/retain.h"
 #include "dispersion.h"
 #include "signal/signal_internal.h"
 #include "waves_private.h"
@@ -115,8 +114,7 @@ static mps_status examine(mps_waves *w) {
       r->stroke[0] = fmin(r->stroke[0], m[0]), r->stroke[1] = fmax(r->stroke[1], m[0]);
       r->speed = fmax(r->speed, fabs(m[1]));
       r->acceleration = fmax(r->acceleration, fabs(m[2]));
-      const mps_status status = check_motion(w, t + step * (double)k, m);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(check_motion(w, t + step * (double)k, m));
     }
   }
   return MPS_OK;
@@ -137,12 +135,7 @@ static void summarise(mps_waves *w) {
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static void release(mps_waves *w) {
-  mpsi_free(w->context, w->wave);
-  mpsi_free(w->context, w->push);
-  mpsi_free(w->context, w->bound);
-  mpsi_free(w->context, w);
-}
+static void release(mps_waves *w) { MPSI_FREE(w->context, w->wave, w->push, w->bound, w); }
 
 static mps_status make_second_order(mps_waves *w) {
   if (w->def.theory == MPS_WAVES_THEORY_LINEAR) return MPS_OK;
@@ -163,16 +156,15 @@ mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def,
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", user_def ? "out" : "def");
   *out = NULL;
   mps_waves_def def;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_waves_def, user_def, &def);
-  if (status == MPS_OK) status = check_record(context, &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_waves_def, user_def, &def));
+  MPSI_TRY(check_record(context, &def));
   mps_waves *w = mpsi_alloc(context, 1, sizeof *w);
   if (!w) return mpsi_fail_memory(context, __func__, sizeof *w);
   w->context = context;
   w->def = def;
   w->def.frequency = w->def.density = w->def.times = w->def.levels = NULL;
   atomic_init(&w->references, 1);
-  status = mpsi_waves_make_components(w, &def);
+  mps_status status = mpsi_waves_make_components(w, &def);
   if (status == MPS_OK) status = check_height(w);
   if (status == MPS_OK) w->ramp = isnan(def.ramp) ? 2.0 * w->period : def.ramp;
   if (status == MPS_OK) summarise(w);

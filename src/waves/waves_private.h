@@ -1,7 +1,6 @@
 /* waves_private.h - the members of a sea, for the files of this folder only.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_WAVES_PRIVATE_H
-#define MPSI_WAVES_PRIVATE_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -57,5 +56,3 @@ void mpsi_waves_move(const mps_waves *w, double t, const double complex *eta, do
 #define MPSI_WAVES_BLOCK 256
 void mpsi_waves_move_evenly(const mps_waves *w, double t, double step, int64_t count,
                             double (*motion)[3]);
-
-#endif

@@ -173,10 +173,8 @@ TEST(moduli_of_users_laws_are_checked) {
 
 /* Of the numbers that ranks compare, how many differ between two materials. */
 static void expect_other_constants(const mps_material *a, mps_material **b, int32_t differing) {
-  mpsi_given first, second;
+  mpsi_given first = MPSI_GIVEN, second = MPSI_GIVEN;
   int32_t other = 0;
-  mpsi_given_begin(&first);
-  mpsi_given_begin(&second);
   mpsi_material_give(&first, a);
   mpsi_material_give(&second, *b);
   assert_int_equal(first.count, second.count);

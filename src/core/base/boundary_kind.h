@@ -1,7 +1,6 @@
 /* boundary_kind.h - names of mps_boundary_kind, for the error of a solver without a kind.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_BOUNDARY_KIND_H
-#define MPSI_BOUNDARY_KIND_H
+#pragma once
 
 #include <mps/solver.h>
 
@@ -15,11 +14,3 @@ static inline const char *mpsi_boundary_kind_name(int32_t kind) {
   const char *name = mps_boundary_kind_name(kind);
   return name ? name + sizeof "MPS_BOUNDARY_" - 1 : "of no name";
 }
-
-/* Is `kind` one of a solver's, given as bits 1 << kind? Each solver lists its kinds, so that it
- * refuses one that is added for another. */
-static inline bool mpsi_boundary_kind_in(int32_t kind, uint32_t kinds) {
-  return kind >= 0 && kind < 32 && (kinds >> kind & 1);
-}
-
-#endif

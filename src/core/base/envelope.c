@@ -79,8 +79,6 @@ void mpsi_envelope_solve(const mpsi_envelope *e, double *x) {
 }
 
 void mpsi_envelope_drop(mps_context *context, mpsi_envelope *e) {
-  mpsi_free(context, e->first_room.item);
-  mpsi_free(context, e->start_room.item);
-  mpsi_free(context, e->value_room.item);
+  MPSI_FREE(context, e->first_room.item, e->start_room.item, e->value_room.item);
   *e = (mpsi_envelope){0};
 }

@@ -1,8 +1,7 @@
 /* envelope.h - a small symmetric matrix in envelope storage, each row from its first entry to the
  * diagonal, and its factors L D L^T in the same place: the equation of a coarse space.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ENVELOPE_H
-#define MPSI_ENVELOPE_H
+#pragma once
 
 #include "room.h"
 
@@ -31,5 +30,3 @@ static inline double *mpsi_envelope_at(const mpsi_envelope *e, int64_t i, int64_
 void mpsi_envelope_factor(mpsi_envelope *e);
 void mpsi_envelope_solve(const mpsi_envelope *e, double *x); /* in place */
 void mpsi_envelope_drop(mps_context *context, mpsi_envelope *e);
-
-#endif

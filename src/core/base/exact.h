@@ -2,8 +2,7 @@
  * ranks, the terms are added. A sum is a fixed-point number over the whole range of a double, in
  * limbs of 32 bits held in 64, so that carries wait, and so that sums of several ranks are added as
  * integers. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_EXACT_H
-#define MPSI_EXACT_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -24,5 +23,3 @@ void mpsi_exact_carry(mpsi_exact *sum);
 bool mpsi_exact_is_sum(const int64_t limb[MPSI_EXACT_LIMBS]);
 /* The double nearest to the sum. */
 double mpsi_exact_value(const mpsi_exact *sum);
-
-#endif

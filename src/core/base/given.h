@@ -1,7 +1,6 @@
 /* given.h - arguments of a caller as a list of named numbers: ranks compare theirs, and a message
  * names the number that differs. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_GIVEN_H
-#define MPSI_GIVEN_H
+#pragma once
 
 #include "core/definition/definition.h"
 #include "hash.h"
@@ -18,10 +17,7 @@ typedef struct mpsi_given {
   double value[MPSI_GIVEN_MOST]; /* NaN: unset */
 } mpsi_given;
 
-static inline void mpsi_given_begin(mpsi_given *list) {
-  list->count = 0;
-  list->rest = MPSI_HASH;
-}
+#define MPSI_GIVEN {.rest = MPSI_HASH} /* an empty list */
 
 /* All NaN are the same. */
 static inline uint64_t mpsi_hash_number(uint64_t hash, double number) {
@@ -44,10 +40,8 @@ static inline void mpsi_give_vector(mpsi_given *list, const char *name, int32_t 
   for (int32_t c = 0; c < count; c++) mpsi_give(list, name, values[c]);
 }
 
-/* A member of a definition by its own name; a vector of `count`. */
+/* A member of a definition by its own name. */
 #define MPSI_GIVE(list, def, member) mpsi_give(list, #member, (double)(def)->member)
-#define MPSI_GIVE_VECTOR(list, def, member, count)                                                 \
-  mpsi_give_vector(list, #member, count, (def)->member)
 
 /* What a definition's table says that ranks share. */
 static inline void mpsi_give_def(mpsi_given *list, const mpsi_definition *definition,
@@ -78,5 +72,3 @@ static inline uint64_t mpsi_given_hash(const mpsi_given *list) {
   for (int32_t k = 0; k < list->count; k++) hash = mpsi_hash_number(hash, list->value[k]);
   return hash;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* hash.h - a hash of bytes (FNV-1a), to compare arguments; not cryptographic.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_HASH_H
-#define MPSI_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,5 +13,3 @@ static inline uint64_t mpsi_hash(uint64_t hash, const void *data, size_t bytes) 
   for (size_t k = 0; k < bytes; k++) hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);
   return hash;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* nearest.h - the points of a fixed set that lie nearest to a place.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_NEAREST_H
-#define MPSI_NEAREST_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -26,5 +25,3 @@ void mpsi_nearest_build(mpsi_nearest *tree);
  * in `out`. Returns their number, at most the count. */
 int32_t mpsi_nearest_find(const mpsi_nearest *tree, const double *at, int32_t wanted,
                           mpsi_near *out);
-
-#endif

@@ -36,10 +36,11 @@ static mps_status check_corners(mps_context *context, const char *function, int6
     const double *a = corner(n, xy, k), *b = corner(n, xy, k + 1), *c = corner(n, xy, k + 2);
     const long long next = (k + 1) % n;
     if (a[0] == b[0] && a[1] == b[1])
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "vertices: corners %lld and %lld of the polygon coincide at (%g, %g) m (it is "
-                       "closed without repeating the first)",
-                       (long long)k, next, a[0], a[1]);
+      return mpsi_fail(
+          context, function, MPS_ERROR_ARGUMENT,
+          "vertices: corners %lld and %lld of the polygon coincide at (%g, %g) m (it is "
+          "closed without repeating the first)",
+          (long long)k, next, a[0], a[1]);
     if (turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0)
       return mpsi_fail(
           context, function, MPS_ERROR_ARGUMENT,
@@ -68,6 +69,6 @@ static mps_status check_edges(mps_context *context, const char *function, int64_
 
 mps_status mpsi_polygon_check(mps_context *context, const char *function, int64_t n,
                               const double *xy) {
-  const mps_status status = check_corners(context, function, n, xy);
-  return status == MPS_OK ? check_edges(context, function, n, xy) : status;
+  MPSI_TRY(check_corners(context, function, n, xy));
+  return check_edges(context, function, n, xy);
 }

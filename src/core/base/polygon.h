@@ -1,7 +1,6 @@
 /* polygon.h - the check of a polygon's corners that fills and rigid bodies share.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_POLYGON_H
-#define MPSI_POLYGON_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -9,5 +8,3 @@
  * polygon: no two edges intersect, except neighbours at their common corner. */
 mps_status mpsi_polygon_check(mps_context *context, const char *function, int64_t n,
                               const double *xy);
-
-#endif

@@ -1,8 +1,7 @@
 /* ranges.h - sane ranges of physical quantities, in one table: wide enough for every ground, fluid
  * and laboratory, and narrow enough that no product or quotient of a formula leaves a double.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_RANGES_H
-#define MPSI_RANGES_H
+#pragma once
 
 #include "core/definition/ends.h"
 #include "core/internal.h"
@@ -32,5 +31,3 @@ bool mpsi_in_range(mpsi_range range, double value);
 /* MPS_ERROR_ARGUMENT "<name> is <value> <unit>, must be <low> to <high>" for a value outside. */
 mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,
                             double value, mpsi_range range);
-
-#endif

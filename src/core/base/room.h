@@ -1,7 +1,6 @@
 /* room.h - arrays that grow and are refilled, such as a grid and its lists that follow the
  * particles. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ROOM_H
-#define MPSI_ROOM_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -18,5 +17,3 @@ bool mpsi_room_fit(mps_context *context, mpsi_room *room, int64_t count, size_t 
 
 /* The same, and what is there stays: for lists to which items are added. */
 bool mpsi_room_keep(mps_context *context, mpsi_room *room, int64_t count, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* room_array.h - arrays of a struct that grow: the memory of a member `name` is the member
  * name_room. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ROOM_ARRAY_H
-#define MPSI_ROOM_ARRAY_H
+#pragma once
 
 #include "room.h"
 
@@ -9,5 +8,3 @@
 bool mpsi_room_bind(mps_context *context, mpsi_room *room, void *array, int64_t count, size_t size);
 #define MPSI_ENSURE(context, owner, name, count)                                                   \
   mpsi_room_bind(context, &(owner)->name##_room, &(owner)->name, count, sizeof *(owner)->name)
-
-#endif

@@ -1,7 +1,6 @@
 /* selection.h - what a definition acts on, by one rule for all of them: a list of ids, or a box, or
  * all. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_SELECTION_H
-#define MPSI_SELECTION_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -44,5 +43,3 @@ bool mpsi_selection_holds(const mpsi_selection_box *box, int dim, const double *
 mps_status mpsi_selection_check_count(mps_context *context, const char *function,
                                       const mpsi_selection *selection, const char *things,
                                       int64_t count);
-
-#endif

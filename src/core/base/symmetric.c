@@ -2,7 +2,6 @@
 #include "symmetric.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 const int mpsi_symmetric_row[6] = {0, 1, 2, 0, 2, 1}, mpsi_symmetric_column[6] = {0, 1, 2, 1, 0, 2};

@@ -113,9 +113,8 @@ mps_status mpsi_text_load(mps_context *context, const char *function, const char
                           int64_t limit, mpsi_text *out) {
   char *data;
   int64_t size;
-  mps_status status = mpsi_file_read(context, function, path, limit, &data, &size);
-  if (status != MPS_OK) return status;
-  status = mpsi_text_wrap(context, function, path, data, (size_t)size, out);
+  MPSI_TRY(mpsi_file_read(context, function, path, limit, &data, &size));
+  mps_status status = mpsi_text_wrap(context, function, path, data, (size_t)size, out);
   if (status == MPS_OK)
     out->owned = data;
   else

@@ -1,8 +1,7 @@
 /* text.h - reading of text files: the file in memory, its lines and words, numbers in the same
  * notation everywhere, errors as "path:line: reason".
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_TEXT_H
-#define MPSI_TEXT_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -69,5 +68,3 @@ mpsi_quote mpsi_slice_quote(mpsi_slice slice);
 int64_t mpsi_text_scan(const mpsi_text *text, mpsi_slice slice, double *out);
 /* The whole word as a finite number, or an error that calls it `what`. */
 mps_status mpsi_text_number(const mpsi_text *text, mpsi_slice word, const char *what, double *out);
-
-#endif

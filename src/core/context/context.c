@@ -44,9 +44,8 @@ static mps_status create(const char *function, const mps_context_def *user_def, 
   if (!out) return mpsi_null(function, "out");
   *out = NULL;
   mps_context_def def;
-  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(NULL, function, mps_context_def, user_def, &def);
-  if (status == MPS_OK) status = check_def(&def, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(NULL, function, mps_context_def, user_def, &def));
+  MPSI_TRY(check_def(&def, function));
   if (!def.alloc) mpsi_use_system_memory(&def);
   const int32_t threads = mpsi_executor_threads(&def);
   size_t bytes = sizeof(mps_context) + mpsi_pool_bytes(threads);

@@ -1,7 +1,6 @@
 /* context_private.h - the members of a context, for the files of its errors, memory and threads
  * only. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONTEXT_PRIVATE_H
-#define MPSI_CONTEXT_PRIVATE_H
+#pragma once
 
 #include "core/internal.h"
 #include "pool.h"
@@ -34,5 +33,3 @@ int32_t mpsi_executor_threads(const mps_context_def *def);
 
 /* Tests the caller's executor: whether each unit runs once, with a valid worker number. */
 bool mpsi_executor_probe(mps_context *context);
-
-#endif

@@ -60,7 +60,6 @@ static void caller_for(mps_context *context, int64_t count, mps_context_task_fn 
 }
 
 static void count_run(void *data, int64_t index, int32_t worker) {
-  (void)worker;
   atomic_fetch_add(&((atomic_int *)data)[index], 1);
 }
 

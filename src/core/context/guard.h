@@ -9,8 +9,7 @@
  * A whole call that evaluates signals and hooks is guarded by its own name, from mpsi_guard_enter
  * to mpsi_guard_end; callbacks may be nested in it.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_GUARD_H
-#define MPSI_GUARD_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -40,5 +39,3 @@ mps_status mpsi_guard_check_between(const mpsi_guard *guard, mps_context *contex
 mpsi_guard mpsi_guard_close(mpsi_guard *guard, mps_context *context, const char *callback);
 /* Ends a guarded call that records its status itself. */
 void mpsi_guard_end(mpsi_guard *guard);
-
-#endif

@@ -1,8 +1,7 @@
 /* levels.h - which of the instruction sets that inner loops are compiled for (mps_add_levels in
  * src/CMakeLists.txt) this processor has, so that one binary package is as fast as a native build.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_LEVELS_H
-#define MPSI_LEVELS_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -58,5 +57,3 @@ static inline int32_t mpsi_level(int32_t wanted) {
       return NULL;                                                                                 \
     }                                                                                              \
   }
-
-#endif

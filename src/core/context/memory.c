@@ -6,14 +6,10 @@
 #include <string.h>
 
 static void *system_alloc(void *user, size_t size, size_t alignment) {
-  (void)user;
   return aligned_alloc(alignment, size); /* size is a multiple of alignment: see mpsi_alloc */
 }
 
-static void system_free(void *user, void *memory) {
-  (void)user;
-  free(memory);
-}
+static void system_free(void *user, void *memory) { free(memory); }
 
 void mpsi_use_system_memory(mps_context_def *def) {
   def->alloc = system_alloc;
@@ -34,6 +30,10 @@ void *mpsi_alloc(mps_context *context, int64_t count, size_t size) {
 
 void mpsi_free(mps_context *context, void *memory) {
   if (memory) context->def.free(context->def.memory_user, memory);
+}
+
+void mpsi_free_all(mps_context *context, void *const *memory, size_t count) {
+  for (size_t k = 0; k < count; k++) mpsi_free(context, memory[k]);
 }
 
 bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,

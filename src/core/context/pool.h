@@ -1,7 +1,6 @@
 /* pool.h - persistent threads: the executor MPS_CONTEXT_EXECUTOR_THREADS.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_POOL_H
-#define MPSI_POOL_H
+#pragma once
 
 #include <mps/context.h>
 
@@ -42,5 +41,3 @@ bool mpsi_pool_begin(mpsi_pool *pool, int32_t workers, void *member);
 void mpsi_pool_end(mpsi_pool *pool);
 /* Runs task(data, i, worker) for i in [0, count). */
 void mpsi_pool_for(mpsi_pool *pool, int64_t count, mps_context_task_fn task, void *data);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * X(struct, version of the first release, bytes where pointers have 64 bits)
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_RELEASED_SIZES_H
-#define MPSI_RELEASED_SIZES_H
+#pragma once
 
 /* clang-format off */
 #define MPSI_RELEASED_SIZES(X) \
@@ -68,5 +67,3 @@ enum {
   MPSI_RELEASED_SIZES(MPSI_RELEASED_ENTRY)
 #undef MPSI_RELEASED_ENTRY
 };
-
-#endif

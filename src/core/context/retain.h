@@ -1,8 +1,7 @@
 /* retain.h - reference counts of the immutable objects that solvers share with the caller. The
  * public destroy function releases. Thread safe.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_RETAIN_H
-#define MPSI_RETAIN_H
+#pragma once
 
 #include <mps/kernel.h>
 #include <mps/signal.h>
@@ -12,5 +11,3 @@ mps_kernel *mpsi_kernel_retain(mps_kernel *kernel);
  * of spacing `spacing` (m): Yoshida (A9). */
 double mpsi_kernel_density(const mps_kernel *kernel, double spacing);
 mps_signal *mpsi_signal_retain(mps_signal *signal);
-
-#endif

@@ -41,8 +41,7 @@ mps_status mpsi_out_check(mps_context *context, const char *function, const void
 
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size) {
-  const mps_status status = mpsi_out_check(context, function, out, size);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_out_check(context, function, out, size));
   memcpy(out, known, size < known_size ? size : known_size);
   if (size > known_size) memset((char *)out + known_size, 0xFF, size - known_size);
   return MPS_OK;

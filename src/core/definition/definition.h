@@ -56,8 +56,7 @@
  * the reverse, does not compile; nor does a rule of a member that is in no table.
  * SPDX-License-Identifier: BSD-3-Clause */
 /* clang-format on */
-#ifndef MPSI_DEFINITION_H
-#define MPSI_DEFINITION_H
+#pragma once
 
 #include <mps/base.h>
 
@@ -191,5 +190,3 @@ const mpsi_def_member *mpsi_member_find(const mpsi_definition *definition, const
 /* "height is -1 m, must be in ...": what a refusal of component `c` says. */
 void mpsi_member_refuse(const mpsi_def_member *member, const void *def, int32_t c,
                         char why[MPSI_WHY]);
-
-#endif

@@ -1,7 +1,6 @@
 /* ends.h - ends of the ranges of physical quantities, as the tables of definitions take them.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ENDS_H
-#define MPSI_ENDS_H
+#pragma once
 
 #define MPSI_FARTHEST 1e15 /* coordinates, either sign */
 #define MPSI_SPACINGS 1e-12, 1e12
@@ -20,5 +19,3 @@
 #define MPSI_BODY_FAR 1e9
 #define MPSI_BODY_LIGHT 1e-30
 #define MPSI_BODY_HEAVY 1e30
-
-#endif

@@ -1,7 +1,6 @@
 /* table.h - for the files of tables: what makes a definition of a table's lines (definition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DEFINITION_TABLE_H
-#define MPSI_DEFINITION_TABLE_H
+#pragma once
 
 #include "definition.h"
 
@@ -158,5 +157,3 @@ typedef void (*mpsi_any_function)(void);
   enum { T(MPSI_NUMBER, S) };                                                                      \
   static const mpsi_def_rule S##_rules[] = {R(MPSI_RULE, S)};                                      \
   MPSI_DEFINITION_OF(S, stem, sizeof S##_rules / sizeof *S##_rules, S##_rules)
-
-#endif

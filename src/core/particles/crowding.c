@@ -85,7 +85,6 @@ static void add_cell(const search *s, int64_t k, const int64_t cell[3], double *
 
 static void search_chunk(void *data, int64_t unit, int32_t worker) {
   const search *s = data;
-  (void)worker;
   chunk *out = &s->chunks[unit];
   const int64_t begin = s->from + unit * CHUNK;
   const int64_t end = begin + CHUNK < s->count ? begin + CHUNK : s->count;
@@ -178,8 +177,6 @@ mps_status mpsi_particles_check_crowding(mps_particles *p, const char *function,
     mpsi_parallel_for(p->context, chunks, search_chunk, &s);
     status = judge(&s, function, chunks);
   }
-  mpsi_free(p->context, s.head);
-  mpsi_free(p->context, s.next);
-  mpsi_free(p->context, s.chunks);
+  MPSI_FREE(p->context, s.head, s.next, s.chunks);
   return status;
 }

@@ -4,7 +4,6 @@
  * A part is a slab across the longest side of the fill: an interval of the columns of sites along
  * that axis, and of the two columns at its ends the first or the last ones in the fill's order, so
  * that parts differ by one particle at most. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/context/guard.h"
 #include "core/base/hash.h"
 #include "particles_private.h"
 

@@ -28,8 +28,7 @@ static const mpsi_holder *holder_in_the_way(const mps_particles *p, mpsi_use kin
 }
 
 mps_status mpsi_particles_check_hold(const mps_particles *p, const char *function, mpsi_use kind) {
-  const mps_status status = mpsi_particles_ready(p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_ready(p, function));
   const mpsi_holder *other = holder_in_the_way(p, kind);
   if (!other) return MPS_OK;
   return mpsi_fail(p->context, function, MPS_ERROR_STATE,
@@ -38,8 +37,7 @@ mps_status mpsi_particles_check_hold(const mps_particles *p, const char *functio
 }
 
 mps_status mpsi_particles_hold(mps_particles *p, const char *function, mpsi_holder *holder) {
-  const mps_status status = mpsi_particles_check_hold(p, function, holder->kind);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_check_hold(p, function, holder->kind));
   holder->next = p->holders;
   p->holders = holder;
   return MPS_OK;
@@ -63,8 +61,8 @@ mps_status mpsi_particles_outside_callbacks(const mps_particles *p, const char *
 }
 
 mps_status mpsi_particles_writable(const mps_particles *p, const char *function) {
-  const mps_status status = mpsi_particles_outside_callbacks(p, function);
-  return status == MPS_OK ? mpsi_particles_ready(p, function) : status;
+  MPSI_TRY(mpsi_particles_outside_callbacks(p, function));
+  return mpsi_particles_ready(p, function);
 }
 
 void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
@@ -121,8 +119,7 @@ static mps_status check_field(const mps_particles *p, const char *function,
   for (int32_t c = 0; c < field->components; c++) {
     const double *value = mpsi_field_column(field, c);
     for (int64_t k = 0; k < p->count; k++) {
-      const mps_status status = check_value(p, function, field, r, value[k], id[k]);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(check_value(p, function, field, r, value[k], id[k]));
     }
   }
   return MPS_OK;
@@ -130,14 +127,13 @@ static mps_status check_field(const mps_particles *p, const char *function,
 
 mps_status mpsi_particles_notify(mps_particles *p, const char *function, const char *field,
                                  const double *former) {
-  mps_status status = MPS_OK;
-  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+  for (mpsi_holder *h = p->holders; h; h = h->next)
     if (h->commit)
-      status = mpsi_fail_of(p->context,
+      MPSI_TRY(mpsi_fail_of(p->context,
                             h->commit(h->self, function, field,
                                       h->compares && h->compares(h->self, field) ? former : NULL),
-                            "particles");
-  return status;
+                            "particles"));
+  return MPS_OK;
 }
 
 /* ---- editing --------------------------------------------------------------------------------- */
@@ -168,9 +164,8 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_ed
   if (!particles) return mpsi_null(__func__, "particles");
   mps_context *context = particles->context;
   if (out) out->data = NULL;
-  mps_status status = mpsi_as(particles->context, __func__,
-                              mps_particles_view(particles, name, out ? &out->view : NULL));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_as(particles->context, __func__,
+                   mps_particles_view(particles, name, out ? &out->view : NULL)));
   mpsi_field *field = mpsi_field_find(particles, name);
   const char *reason = NULL;
   if (field->flags & MPS_VIEW_READONLY) reason = "is written by the library only";
@@ -182,7 +177,7 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_ed
     mpsi_fail_object(context, "field '%s'", name);
     return field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD;
   }
-  status = mpsi_particles_outside_callbacks(particles, __func__);
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
   if (status == MPS_OK) status = keep_former(particles, __func__, field);
   if (status != MPS_OK) {
     memset(out, 0, sizeof *out);
@@ -267,9 +262,8 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   if (!particles) return mpsi_null(__func__, "particles");
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mpsi_field shape;
-  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
-  if (status == MPS_OK) status = mpsi_field_look_up(particles, __func__, name, &shape);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_outside_callbacks(particles, __func__));
+  MPSI_TRY(mpsi_field_look_up(particles, __func__, name, &shape));
   if (shape.dtype.code != 2)
     return mpsi_fail(
         particles->context, __func__, MPS_ERROR_FIELD,
@@ -285,7 +279,7 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   const bool present = mpsi_field_find(particles, name) != NULL;
   if (present && shape.open) return mpsi_particles_ready(particles, __func__);
   const int32_t fields = particles->field_count;
-  status = check_field_value(particles, __func__, &shape, value);
+  mps_status status = check_field_value(particles, __func__, &shape, value);
   if (status == MPS_OK && !present)
     status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
   if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);

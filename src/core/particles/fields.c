@@ -120,8 +120,8 @@ mps_status mpsi_particles_committed(const mps_particles *p, const char *function
 }
 
 mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
-  const mps_status status = mpsi_particles_committed(p, function);
-  return status == MPS_OK ? mpsi_executor_check(p->context, function) : status;
+  MPSI_TRY(mpsi_particles_committed(p, function));
+  return mpsi_executor_check(p->context, function);
 }
 
 /* ---- adding ---------------------------------------------------------------------------------- */
@@ -135,8 +135,7 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   void *list = p->fields;
   if (!block ||
       !mpsi_grow(p->context, &list, p->field_count, p->field_count + 1, sizeof *p->fields)) {
-    mpsi_free(p->context, block);
-    mpsi_free(p->context, field);
+    MPSI_FREE(p->context, block, field);
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                      "could not allocate field '%s' of %lld particles", like->name,
                      (long long)p->capacity);
@@ -189,8 +188,7 @@ static mps_status describe_field(const mps_particles *p, const char *function, c
         .unit = row->unit, .meaning = row->meaning, .dtype = row->dtype, .components = expected};
     if (strcmp(name, "id") == 0 || strcmp(name, "material") == 0) out->flags = MPS_VIEW_READONLY;
   } else {
-    const mps_status status = describe_user_field(p, function, name, components, out);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(describe_user_field(p, function, name, components, out));
   }
   snprintf(out->name, sizeof out->name, "%s", name);
   return MPS_OK;
@@ -200,8 +198,7 @@ mps_status mps_particles_add_field(mps_particles *particles, const char *name, i
   if (!particles) return mpsi_null(__func__, "particles");
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mpsi_field field = {0};
-  const mps_status status = describe_field(particles, __func__, name, components, &field);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(describe_field(particles, __func__, name, components, &field));
   const mpsi_field *present = mpsi_field_find(particles, name);
   if (!present) return insert_field(particles, __func__, &field);
   if (present->components != field.components)
@@ -215,9 +212,7 @@ void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {
   while (particles->field_count > keep) {
     mpsi_field *field = particles->fields[--particles->field_count];
     particles->columns -= field->components;
-    mpsi_free(particles->context, field->block);
-    mpsi_free(particles->context, field->former);
-    mpsi_free(particles->context, field);
+    MPSI_FREE(particles->context, field->block, field->former, field);
   }
 }
 

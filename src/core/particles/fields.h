@@ -5,8 +5,7 @@
  * type: F64 or I64. components: a number, or one of the codes below for counts that depend on the
  * dimension of the set.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FIELDS_H
-#define MPSI_FIELDS_H
+#pragma once
 
 #include <mps/experimental/soil.h>
 #include <stdint.h>
@@ -160,5 +159,3 @@ static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {
   if (code == MPSI_PER_GRADIENT) return dim == 2 ? 5 : 9;
   return code;
 }
-
-#endif

@@ -195,9 +195,7 @@ static mps_status put_runs(mps_particles *p, filler by, mps_status status, mpsi_
     sites = former;
     if (added) *added = count;
   }
-  mpsi_free(context, runs->item);
-  mpsi_free(context, fresh.item);
-  mpsi_free(context, sites.item);
+  MPSI_FREE(context, runs->item, fresh.item, sites.item);
   return status;
 }
 
@@ -216,9 +214,8 @@ static mps_status read_box(const mps_particles *p, filler by, const double *lo, 
   *out = (site_box){.end = {1, 1, 1}};
   double sites = 1.0;
   for (int32_t c = 0; c < p->def.dim; c++) {
-    mps_status status = check_bound(p, function, "lo", c, lo[c]);
-    if (status == MPS_OK) status = check_bound(p, function, "hi", c, hi[c]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(check_bound(p, function, "lo", c, lo[c]));
+    MPSI_TRY(check_bound(p, function, "hi", c, hi[c]));
     if (!(lo[c] < hi[c]))
       return mpsi_fail(
           p->context, function, MPS_ERROR_ARGUMENT,
@@ -253,9 +250,7 @@ static mps_status append_wanted(const mps_particles *p, filler by, const site_bo
     int32_t wanted = 0;
     mpsi_guard guard = {0};
     mpsi_guard_enter(&guard, p->context, "the predicate of the fill");
-    const mps_status status =
-        mpsi_guard_leave(&guard, p->context, by.function, by.inside(by.user, x, &wanted));
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_guard_leave(&guard, p->context, by.function, by.inside(by.user, x, &wanted)));
     if (wanted) *complete = append_run(p->context, out, site);
   }
   return MPS_OK;
@@ -303,8 +298,7 @@ static mps_status fill_box(mps_particles *p, filler by, mps_status status, const
   site_box box;
   mpsi_site_runs runs = {0};
   bool complete = true;
-  const mps_status busy = mpsi_particles_outside_callbacks(p, function);
-  if (busy != MPS_OK) return busy;
+  MPSI_TRY(mpsi_particles_outside_callbacks(p, function));
   if (status == MPS_OK) status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, by, lo, hi, &box);
   if (status == MPS_OK) status = box_runs(p, by, &box, &runs, &complete);
@@ -386,8 +380,7 @@ mps_status mps_particles_fill_ball(mps_particles *particles, const double *centr
   int64_t made = 0;
   const filler by = {__func__, "centre, radius", in_ball, &b};
   const double before = runs_sites(&particles->sites);
-  const mps_status filled = fill_box(particles, by, status, lo, hi, &made);
-  if (filled != MPS_OK) return filled;
+  MPSI_TRY(fill_box(particles, by, status, lo, hi, &made));
   if (added) *added = made;
   warn_of_ball(particles, &b, radius, before == 0.0 ? (double)made : NAN);
   return MPS_OK;
@@ -468,8 +461,7 @@ static mps_status fill_shape(const mps_particles *p, const char *function, const
   for (int64_t k = 0; *complete && k < shape->n; k++)
     row_of[k] = first_site(p, 1, shape->xy[2 * k + 1]);
   *complete = *complete && polygon_runs(p, shape, row_of, sites, runs, &more);
-  mpsi_free(context, row_of);
-  mpsi_free(context, sites);
+  MPSI_FREE(context, row_of, sites);
   if (!more) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                    "xy: the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);
@@ -500,9 +492,8 @@ mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices
   const polygon shape = {.xy = xy, .n = vertices};
   mpsi_site_runs runs = {0};
   bool complete = true;
-  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_particles_check_free(particles, __func__);
+  MPSI_TRY(mpsi_particles_outside_callbacks(particles, __func__));
+  mps_status status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
   if (status == MPS_OK) status = fill_shape(particles, __func__, &shape, &runs, &complete);
   status =

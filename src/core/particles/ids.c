@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ids.h"
 
-#include <string.h>
-
 /* ---- the table ------------------------------------------------------------------------------- */
 
 /* Slots of a table for so many ids. */
@@ -90,9 +88,7 @@ bool mpsi_ids_reserve(mps_context *context, mpsi_ids *ids, int64_t former, int64
 }
 
 void mpsi_ids_free(mps_context *context, mpsi_ids *ids) {
-  mpsi_free(context, ids->index);
-  mpsi_free(context, ids->id);
-  mpsi_free(context, ids->places);
+  MPSI_FREE(context, ids->index, ids->id, ids->places);
   *ids = (mpsi_ids){.sparse = ids->sparse};
 }
 

@@ -5,8 +5,7 @@
  * The table has open addresses with linear probing; it is at most three quarters full, and a
  * removed id is closed by moving later ones back, so that no marks of removed ids remain.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IDS_H
-#define MPSI_IDS_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -36,5 +35,3 @@ void mpsi_ids_put(mpsi_ids *ids, int64_t id, int64_t index);
 void mpsi_ids_drop(mpsi_ids *ids, int64_t id);
 /* Sets exactly `count` ids, id[k] at index k, of `made` that were ever given. */
 void mpsi_ids_renew(mpsi_ids *ids, int64_t made, int64_t count, const int64_t *id);
-
-#endif

@@ -23,9 +23,7 @@ mps_status mps_kernel_create(mps_context *context, int32_t kind, double radius, 
         "kind is %d, allowed are 0 (re/r - 1), 1 and 2 (quadratic and cubic B-spline) and "
         "3 (smooth)",
         kind);
-  const mps_status status =
-      mpsi_check_range(context, __func__, "radius of influence", radius, MPSI_RANGE_SPACING);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_check_range(context, __func__, "radius of influence", radius, MPSI_RANGE_SPACING));
   mps_kernel *kernel = mpsi_alloc(context, 1, sizeof *kernel);
   if (!kernel) return mpsi_fail_memory(context, __func__, sizeof *kernel);
   kernel->context = mpsi_context_retain(context);

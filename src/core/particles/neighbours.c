@@ -7,8 +7,8 @@
  * Work is cut into blocks whose number depends on the particles only; each writes its own rows,
  * and rows are sorted, so the result is the same for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/internal.h"
-#include "core/definition/digits.h"
 
 #include <mps/experimental/neighbours.h>
 
@@ -77,7 +77,6 @@ static uint32_t cell_of(double x, double reference, double side) {
 }
 
 static void find_cells(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   build *b = data;
   const int32_t dim = b->owner->def.dim;
   uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0};
@@ -103,7 +102,6 @@ static void find_cells(void *data, int64_t block, int32_t worker) {
 }
 
 static void shift_cells(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   build *b = data;
   for (int64_t i = block_begin(b, block); i < block_end(b, block); i++)
     for (int32_t c = 0; c < b->owner->def.dim; c++) b->items[i].cell[c] -= b->low[0][c] - 1;
@@ -143,7 +141,6 @@ static uint32_t digit_of(const build *b, const cell_item *item) {
 }
 
 static void count_digits(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   uint32_t *count = b->owner->histogram + block * DIGITS;
   memset(count, 0, DIGITS * sizeof *count);
@@ -152,7 +149,6 @@ static void count_digits(void *data, int64_t block, int32_t worker) {
 }
 
 static void move_items(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   uint32_t *place = b->owner->histogram + block * DIGITS;
   for (int64_t i = block_begin(b, block); i < block_end(b, block); i++)
@@ -180,7 +176,6 @@ static void sort_items(build *b, const uint32_t *most) {
 }
 
 static void gather_positions(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   for (int32_t c = 0; c < b->owner->def.dim; c++)
     for (int64_t s = block_begin(b, block); s < block_end(b, block); s++)
@@ -202,14 +197,8 @@ MPSI_INLINE bool before(const cell_item *item, uint32_t x, uint32_t y, uint32_t 
 }
 
 static int64_t first_item(const build *b, uint32_t x, uint32_t y, uint32_t z) {
-  int64_t low = 0, high = b->n;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (before(&b->items[middle], x, y, z))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, b->n, middle, before(&b->items[middle], x, y, z));
   return low;
 }
 
@@ -284,7 +273,6 @@ MPSI_INLINE void pairs_body(const build *b, int32_t dim, bool half, int64_t bloc
 }
 
 static void find_pairs(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const build *b = data;
   const bool half = b->owner->def.half != 0;
   if (b->owner->def.dim == 2)
@@ -314,13 +302,11 @@ mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def 
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_neighbours_def known;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known));
   mps_neighbours *nb = mpsi_alloc(context, 1, sizeof *nb);
   void *offsets = mpsi_alloc(context, 1, sizeof(int64_t));
   if (!nb || !offsets) {
-    mpsi_free(context, nb);
-    mpsi_free(context, offsets);
+    MPSI_FREE(context, nb, offsets);
     return mpsi_fail_memory(context, __func__, sizeof *nb + sizeof(int64_t));
   }
   nb->context = mpsi_context_retain(context);
@@ -336,15 +322,8 @@ void mps_neighbours_destroy(mps_neighbours **neighbours) {
   mps_neighbours *nb = *neighbours;
   *neighbours = NULL;
   mps_context *context = nb->context;
-  mpsi_free(context, nb->lists.offsets);
-  mpsi_free(context, nb->lists.indices);
-  mpsi_free(context, nb->spare.offsets);
-  mpsi_free(context, nb->spare.indices);
-  mpsi_free(context, nb->items);
-  mpsi_free(context, nb->sorted);
-  mpsi_free(context, nb->x);
-  mpsi_free(context, nb->histogram);
-  mpsi_free(context, nb);
+  MPSI_FREE(context, nb->lists.offsets, nb->lists.indices, nb->spare.offsets, nb->spare.indices,
+            nb->items, nb->sorted, nb->x, nb->histogram, nb);
   mpsi_context_release(context);
 }
 

@@ -5,6 +5,7 @@
  * BSD-3-Clause */
 #include "particles_private.h"
 
+#include "core/base/order.h"
 #include "core/base/ranges.h"
 
 #include <stdlib.h>
@@ -15,16 +16,13 @@
 static void free_set(mps_particles *p) {
   mps_context *context = p->context;
   for (int32_t f = 0; f < p->field_count; f++) {
-    mpsi_free(context, p->fields[f]->former);
-    mpsi_free(context, p->fields[f]->block);
-    mpsi_free(context, p->fields[f]);
+    MPSI_FREE(context, p->fields[f]->former, p->fields[f]->block, p->fields[f]);
   }
   mpsi_free(context, p->fields);
   mpsi_ids_free(context, &p->ids);
   mpsi_free(context, p->sites.item);
   if (p->deal) p->deal->release(p->deal->self);
-  mpsi_free(context, p->deal);
-  mpsi_free(context, p);
+  MPSI_FREE(context, p->deal, p);
   mpsi_context_release(context);
 }
 
@@ -34,15 +32,14 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_particles_def known;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known));
   mps_particles *p = mpsi_alloc(context, 1, sizeof *p);
   if (!p) return mpsi_fail_memory(context, __func__, sizeof *p);
   p->context = mpsi_context_retain(context);
   p->def = known;
   p->epoch = 1;
   p->owned = true;
-  status = mpsi_as(context, __func__, mps_particles_add_field(p, "id", 0));
+  mps_status status = mpsi_as(context, __func__, mps_particles_add_field(p, "id", 0));
   if (status == MPS_OK)
     status = mpsi_as(context, __func__, mps_particles_add_field(p, "position", 0));
   if (status != MPS_OK) {
@@ -110,14 +107,12 @@ static void permute_chunk(void *data, int64_t unit, int32_t worker) {
   const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
   const double *from = (const double *)m->column[unit / m->chunks];
   double *to = (double *)m->sorted[unit / m->chunks];
-  (void)worker;
   for (int64_t k = begin; k < end; k++) memcpy(to + k, from + m->order[k], sizeof *to);
 }
 
 static void return_chunk(void *data, int64_t unit, int32_t worker) {
   const permutation *m = data;
   const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
-  (void)worker;
   memcpy(m->column[unit / m->chunks] + 8 * begin, m->sorted[unit / m->chunks] + 8 * begin,
          (size_t)(end - begin) * 8);
 }
@@ -142,7 +137,6 @@ typedef struct indexing {
 static void index_chunk(void *data, int64_t chunk, int32_t worker) {
   const indexing *i = data;
   const int64_t begin = chunk * PERMUTE_CHUNK;
-  (void)worker;
   for (int64_t k = begin; k < i->count && k < begin + PERMUTE_CHUNK; k++)
     mpsi_ids_put(i->ids, i->id[k], k);
 }
@@ -183,8 +177,7 @@ int64_t mpsi_particles_made(const mps_particles *p) { return p->next_id; }
 static mps_status check_select(const mps_particles *p, const char *function, const double *lo,
                                const double *hi, int64_t capacity, const int64_t *ids,
                                const int64_t *count) {
-  const mps_status status = mpsi_particles_committed(p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_committed(p, function));
   if (!lo || !hi || !count)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
                      !lo   ? "lo"
@@ -209,11 +202,6 @@ static bool in_box(const mps_particles *p, int64_t at, const double *lo, const d
   return true;
 }
 
-static int ascending(const void *left, const void *right) {
-  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-  return a < b ? -1 : a > b;
-}
-
 /* Of a set that has few of the ids: goes through the particles. */
 static mps_status select_few(const mps_particles *p, const char *function, const double *lo,
                              const double *hi, int64_t capacity, int64_t *ids, int64_t *count) {
@@ -225,7 +213,7 @@ static mps_status select_few(const mps_particles *p, const char *function, const
     return mpsi_fail_memory(p->context, function, (size_t)found * sizeof *list);
   for (int64_t k = 0, at = 0; list && k < p->count; k++)
     if (in_box(p, k, lo, hi)) list[at++] = id[k];
-  if (list && found > 0) qsort(list, (size_t)found, sizeof *list, ascending);
+  if (list && found > 0) qsort(list, (size_t)found, sizeof *list, mpsi_ascending);
   if (list && list != ids) {
     memcpy(ids, list, (size_t)capacity * sizeof *ids);
     mpsi_free(p->context, list);
@@ -238,8 +226,7 @@ mps_status mps_particles_select_box(const mps_particles *particles, const double
                                     const double *hi, int64_t capacity, int64_t *count,
                                     int64_t *ids) {
   if (!particles) return mpsi_null(__func__, "particles");
-  const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_select(particles, __func__, lo, hi, capacity, ids, count));
   if (particles->ids.sparse) return select_few(particles, __func__, lo, hi, capacity, ids, count);
   int64_t found = 0;
   for (int64_t id = 0; id < particles->next_id; id++) {

@@ -1,7 +1,6 @@
 /* particles_internal.h - the interface of a particle set for solvers, besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_PARTICLES_INTERNAL_H
-#define MPSI_PARTICLES_INTERNAL_H
+#pragma once
 
 #include "core/context/guard.h"
 #include "core/internal.h"
@@ -207,5 +206,3 @@ mps_context *mpsi_particles_context(const mps_particles *particles);
 /* MPS_ERROR_ARGUMENT when a caller's set is NULL or made from another context than `context`. */
 mps_status mpsi_particles_check_context(const mps_particles *particles, mps_context *context,
                                         const char *function);
-
-#endif

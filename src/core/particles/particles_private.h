@@ -1,7 +1,6 @@
 /* particles_private.h - the members of a particle set, for particles.c, edit.c, fields.c, fill.c
  * and population.c only. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_PARTICLES_PRIVATE_H
-#define MPSI_PARTICLES_PRIVATE_H
+#pragma once
 
 #include "ids.h"
 #include "particles_internal.h"
@@ -134,5 +133,3 @@ static inline int32_t mpsi_particles_solvers(const mps_particles *p) {
   for (const mpsi_holder *h = p->holders; h; h = h->next) count += h->kind != MPSI_USE_LOOK;
   return count;
 }
-
-#endif

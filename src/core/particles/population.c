@@ -22,8 +22,7 @@ static void clear_tail(mps_particles *p, int64_t count) {
 /* ---- coming ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
-  const mps_status status = mpsi_particles_writable(p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_writable(p, function));
   const char *holder = NULL;
   for (const mpsi_holder *h = p->holders; h && !holder; h = h->next)
     if (!h->insert && h->kind != MPSI_USE_LOOK) holder = h->name;
@@ -109,8 +108,7 @@ mps_status mpsi_particles_extend_part(mps_particles *p, const char *function, in
 /* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
 static mps_status extend(mps_particles *p, const char *function, int64_t count) {
   const int64_t first = p->count, next = p->next_id;
-  const mps_status status = mpsi_particles_extend_part(p, function, count, count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_extend_part(p, function, count, count));
   int64_t *id = p->fields[MPSI_FIELD_ID]->data;
   for (int64_t i = first; i < p->count; i++) id[i] = next + i - first;
   mpsi_particles_number(p, first);
@@ -194,9 +192,8 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
   if (!particles) return mpsi_null(__func__, "particles");
   const int32_t dim = particles->def.dim;
   const int64_t first = particles->count;
-  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_particles_check_free(particles, __func__);
+  MPSI_TRY(mpsi_particles_outside_callbacks(particles, __func__));
+  mps_status status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_positions(particles, __func__, count, positions);
   if (mpsi_particles_deals(particles))
     return append_part(particles, __func__, status, count, positions);
@@ -309,8 +306,7 @@ static mps_status check_holders(const mps_particles *p, const char *function, in
 
 static mps_status check_removal(const mps_particles *p, const char *function, int64_t count,
                                 const int64_t *ids, bool shared) {
-  const mps_status status = mpsi_particles_writable(p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_writable(p, function));
   if (count < 0 || (!shared && count > p->count))
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld, allowed are 0 to the set's %lld particles", (long long)count,
@@ -325,9 +321,8 @@ mps_status mps_particles_remove(mps_particles *particles, const int64_t *ids, in
   const mpsi_holder *shared = sharer(particles);
   int64_t known = 0, all = count;
   uint8_t *gone = NULL;
-  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
-  if (status != MPS_OK) return status;
-  status = check_removal(particles, __func__, count, ids, shared != NULL);
+  MPSI_TRY(mpsi_particles_outside_callbacks(particles, __func__));
+  mps_status status = check_removal(particles, __func__, count, ids, shared != NULL);
   if (status == MPS_OK && count == 0 && !shared) return MPS_OK;
   if (status == MPS_OK && !(gone = mpsi_alloc(context, particles->count, 1)))
     status = mpsi_fail_memory(context, __func__, (size_t)particles->count);

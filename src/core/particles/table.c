@@ -204,7 +204,6 @@ static bool interpolate(fit *f, const double *at, double *out, bool *outside) {
 /* ---- all particles --------------------------------------------------------------------------- */
 
 static void set_block(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   table *t = data;
   struct block *b = &t->blocks[block];
   const int64_t begin = block * BLOCK;
@@ -286,8 +285,7 @@ static mps_status check_points(const table *t, const double *positions) {
 static mps_status check_shape(const table *t, const char *field) {
   mpsi_field shape;
   if (!field) return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT, "field is NULL");
-  const mps_status status = mpsi_field_look_up(t->set, function, field, &shape);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_field_look_up(t->set, function, field, &shape));
   if (shape.dtype.code != 2 || shape.flags & MPS_VIEW_READONLY)
     return mpsi_fail(t->context, function, MPS_ERROR_FIELD, "field '%s' is %s", field,
                      shape.dtype.code != 2 ? "of int64, must be float64"
@@ -348,18 +346,14 @@ mps_status mps_particles_set_table(mps_particles *particles, const char *field, 
              .components = components,
              .values = values};
   int64_t beyond = 0;
-  mps_status status = mpsi_particles_writable(particles, function);
-  if (status == MPS_OK && def)
-    status = MPSI_DEF_READ(t.context, function, mps_table_def, def, &t.def);
-  if (status == MPS_OK) status = check_shape(&t, field);
-  if (status == MPS_OK) status = check_points(&t, positions);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_writable(particles, function));
+  if (def) MPSI_TRY(MPSI_DEF_READ(t.context, function, mps_table_def, def, &t.def));
+  MPSI_TRY(check_shape(&t, field));
+  MPSI_TRY(check_points(&t, positions));
   for (int32_t c = 0; c < t.tree.dim; c++)
     t.position[c] = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
-  status = read_table(&t, field, positions, &beyond);
-  mpsi_free(t.context, t.tree.order);
-  mpsi_free(t.context, t.out);
-  mpsi_free(t.context, t.blocks);
+  mps_status status = read_table(&t, field, positions, &beyond);
+  MPSI_FREE(t.context, t.tree.order, t.out, t.blocks);
   if (status != MPS_OK) return status;
   if (beyond > 0)
     mpsi_log(

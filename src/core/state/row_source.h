@@ -1,8 +1,7 @@
 /* row_source.h - the particles of a set as a file takes them: each component of each field as one
  * column, in the order of the whole set, which comes in pieces where it lies on several ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CORE_ROW_SOURCE_H
-#define MPSI_CORE_ROW_SOURCE_H
+#pragma once
 
 #include <mps/particles.h>
 
@@ -24,5 +23,3 @@ struct mpsi_row_source {
                  void *user);
   mps_status status;
 };
-
-#endif

@@ -4,7 +4,6 @@
 
 #include "core/particles/particles_internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Into the memory that `out` has. */
@@ -110,8 +109,7 @@ void mps_snapshot_destroy(mps_snapshot **snapshot) {
   mpsi_values_free(context, &old->state);
   mpsi_values_free(context, &old->fields);
   mpsi_state_forget(&old->identity);
-  mpsi_free(context, old->list);
-  mpsi_free(context, old);
+  MPSI_FREE(context, old->list, old);
   mpsi_context_release(context);
 }
 
@@ -214,8 +212,7 @@ static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapsh
     const mpsi_state_item *now = &s->item[k];
     const mpsi_value *then = value_of(from, s, k);
     if (now->optional) {
-      const mps_status status = then ? match_optional(w, now, then) : MPS_OK;
-      if (status != MPS_OK) return status;
+      MPSI_TRY(then ? match_optional(w, now, then) : MPS_OK);
       continue;
     }
     needed++;
@@ -225,8 +222,7 @@ static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapsh
       return mpsi_fail(w->of->context, w->function, w->status,
                        "%s has %s '%s', which this solver has", w->source,
                        then ? "another number of" : "no", now->name);
-    const mps_status status = now->agrees ? compare(w, now, then) : MPS_OK;
-    if (status != MPS_OK) return status;
+    MPSI_TRY(now->agrees ? compare(w, now, then) : MPS_OK);
     if (!mpsi_state_bounded(now, then))
       return mpsi_fail(w->of->context, w->function, MPS_ERROR_FORMAT,
                        "%s is malformed: its '%s' is beyond what a run can count", w->source,

@@ -28,8 +28,7 @@
  * A rollback has two phases: first everything is compared and all memory is allocated; then values
  * are written, which cannot fail. So an error changes nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_STATE_H
-#define MPSI_STATE_H
+#pragma once
 
 #include "core/base/exact.h"
 
@@ -245,5 +244,3 @@ mps_status mpsi_particles_prepare_state(mps_particles *particles, const char *fu
                                         const mps_snapshot *from, void **scratch);
 void mpsi_particles_drop_prepared(mps_particles *particles, void *scratch);
 void mpsi_particles_put_state(mps_particles *particles, const mps_snapshot *from, void *scratch);
-
-#endif

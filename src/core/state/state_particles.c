@@ -56,7 +56,6 @@ static void get_sites(const void *set, void *values) {
 static bool reserve_sites(void *set, int64_t rows, const void *values) {
   mps_particles *p = set;
   void *item = p->sites.item;
-  (void)values;
   if (rows <= p->sites.capacity) return true;
   if (!mpsi_grow(p->context, &item, p->sites.count, rows, sizeof *p->sites.item)) return false;
   p->sites.item = item;
@@ -205,10 +204,7 @@ void mpsi_particles_drop_prepared(mps_particles *p, void *scratch) {
   move *m = scratch;
   if (!m) return;
   for (int32_t f = 0; m->block && f < m->blocks; f++) mpsi_free(p->context, m->block[f]);
-  mpsi_free(p->context, m->block);
-  mpsi_free(p->context, m->from);
-  mpsi_free(p->context, m->column);
-  mpsi_free(p->context, m);
+  MPSI_FREE(p->context, m->block, m->from, m->column, m);
 }
 
 /* Larger memory for all fields. */
@@ -262,11 +258,10 @@ mps_status mpsi_particles_prepare_state(mps_particles *p, const char *function,
   *scratch = NULL;
   if (!id || id->type != MPSI_STATE_I64 || id->columns != 1)
     return mpsi_fail(p->context, function, MPS_ERROR_FORMAT, "the state has no ids of particles");
-  mps_status status = mpsi_particles_ready(p, function);
-  if (status == MPS_OK) status = check_particles(p, function, from, id->data);
-  if (status == MPS_OK) status = check_fields(p, function, from);
-  if (status == MPS_OK) status = add_missing(p, function, from);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_ready(p, function));
+  MPSI_TRY(check_particles(p, function, from, id->data));
+  MPSI_TRY(check_fields(p, function, from));
+  MPSI_TRY(add_missing(p, function, from));
   const bool same = same_order(p, from, id->data);
   if (!same) *scratch = new_move(p, from, id->data);
   if (same ? reserve_ids_to_come(p, from) : *scratch != NULL) return MPS_OK;

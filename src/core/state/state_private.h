@@ -1,7 +1,6 @@
 /* state_private.h - an item of the list of a solver's state, for the files that make and traverse
  * lists. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_STATE_PRIVATE_H
-#define MPSI_STATE_PRIVATE_H
+#pragma once
 
 #include "state.h"
 
@@ -50,5 +49,3 @@ void mpsi_state_read_item(const mpsi_state_item *from, void *to);
 bool mpsi_state_bounded(const mpsi_state_item *of, const mpsi_value *from);
 /* `from` NULL: an optional table without rows. */
 void mpsi_state_write_item(const mpsi_state_item *to, const mpsi_value *from);
-
-#endif

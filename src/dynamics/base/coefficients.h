@@ -1,7 +1,6 @@
 /* coefficients.h - what the forces need of the ground, particle by particle.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_COEFFICIENTS_H
-#define MPSI_DYNAMICS_COEFFICIENTS_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -16,5 +15,3 @@ typedef struct mpsi_dynamics_extremes {
 /* Coefficients of each particle, from its fields; returns whether one has changed. */
 bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
 void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes */
-
-#endif

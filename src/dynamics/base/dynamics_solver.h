@@ -1,7 +1,6 @@
 /* dynamics_solver.h - the explicit MPS solver, put together from its parts: each has a header of
  * its own. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_DYNAMICS_SOLVER_H
-#define MPSI_DYNAMICS_DYNAMICS_SOLVER_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "core/context/guard.h"
@@ -90,20 +89,5 @@ struct mps_dynamics {
   const mpsi_dynamics_keeper *keeper; /* life/state.c */
 };
 
-/* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
-static inline int32_t mpsi_dynamics_boundary_count(const mps_dynamics *dynamics) {
-  return dynamics->conditions[MPSI_BOUNDARIES].room;
-}
-static inline mpsi_dynamics_boundary *mpsi_dynamics_boundary_of(const mps_dynamics *dynamics,
-                                                                int32_t number) {
-  return dynamics->conditions[MPSI_BOUNDARIES].own[number];
-}
-static inline int32_t mpsi_dynamics_load_count(const mps_dynamics *dynamics) {
-  return dynamics->conditions[MPSI_LOADS].room;
-}
-static inline mpsi_dynamics_load *mpsi_dynamics_load_of(const mps_dynamics *dynamics,
-                                                        int32_t number) {
-  return dynamics->conditions[MPSI_LOADS].own[number];
-}
-
-#endif
+MPSI_CONDITION_ACCESS(mpsi_dynamics_boundary, mps_dynamics, MPSI_BOUNDARIES, mpsi_dynamics_boundary)
+MPSI_CONDITION_ACCESS(mpsi_dynamics_load, mps_dynamics, MPSI_LOADS, mpsi_dynamics_load)

@@ -1,7 +1,6 @@
 /* present.h - the present state as every room reads it: time, velocity, mass.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_PRESENT_H
-#define MPSI_DYNAMICS_PRESENT_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -25,5 +24,3 @@ mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *funct
 
 double mpsi_dynamics_time(const void *dynamics); /* s */
 int64_t mpsi_dynamics_steps(const void *dynamics);
-
-#endif

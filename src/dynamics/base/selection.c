@@ -6,28 +6,6 @@
 
 #include <stdlib.h>
 
-bool mpsi_dynamics_item(const void *solver, const void *def, int64_t k, double x[3], int64_t *id) {
-  const mps_dynamics *dynamics = solver;
-  (void)def;
-  if (k >= dynamics->count) return false;
-  for (int c = 0; c < 2; c++) x[c] = mpsi_dynamics_column(dynamics, "position", c)[k];
-  *id = mpsi_particles_integers(dynamics->particles, "id")[k];
-  return true;
-}
-
-mps_status mpsi_dynamics_check_ids(void *solver, const char *function, const void *def,
-                                   int64_t count, const int64_t *ids) {
-  const mps_dynamics *dynamics = solver;
-  (void)def;
-  if (mpsi_domain_many(dynamics->domain)) return MPS_OK; /* they may be of another rank */
-  for (int64_t k = 0; k < count; k++)
-    if (mps_particles_index(dynamics->particles, ids[k]) < 0)
-      return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: the set has no such particle", (long long)k,
-                       (long long)ids[k]);
-  return MPS_OK;
-}
-
 bool mpsi_dynamics_counts(const void *solver, int64_t id) {
   const mps_dynamics *dynamics = solver;
   const int64_t i = mps_particles_index(dynamics->particles, id);

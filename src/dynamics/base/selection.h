@@ -1,7 +1,6 @@
 /* selection.h - the particles that a boundary or load is on, for its numbered condition
  * (solver/conditions.h). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_SELECTION_H
-#define MPSI_DYNAMICS_SELECTION_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -17,10 +16,7 @@ typedef struct mpsi_dynamics_part {
   const double *factor;
 } mpsi_dynamics_part;
 
-/* Members of mpsi_condition_kind. */
-bool mpsi_dynamics_item(const void *dynamics, const void *def, int64_t k, double x[3], int64_t *id);
-mps_status mpsi_dynamics_check_ids(void *dynamics, const char *function, const void *def,
-                                   int64_t count, const int64_t *ids);
+/* A member of mpsi_condition_kind. */
 bool mpsi_dynamics_counts(const void *dynamics, int64_t id);
 
 /* The particles of `ids`, which become those of this rank, each once. */
@@ -30,5 +26,3 @@ mps_status mpsi_dynamics_make_part(mps_dynamics *dynamics, const char *function,
 int64_t mpsi_dynamics_counted(const mps_dynamics *dynamics, const mpsi_dynamics_part *part);
 /* Finds its particles in the present set. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
-
-#endif

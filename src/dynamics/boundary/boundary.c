@@ -14,7 +14,6 @@
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
   mps_dynamics *dynamics = solver;
   const mps_dynamics_boundary_def *def = known;
-  (void)number;
   if (def->dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation), 0 for "
@@ -26,7 +25,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
   mps_dynamics_boundary_def *def = known;
   mpsi_dynamics_boundary *b = own;
-  (void)number;
   b->def = def;
   b->kind = def->kind;
   b->dofs = def->dofs;
@@ -49,9 +47,7 @@ static void drop(void *solver, void *own) {
 typedef mpsi_dynamics_lists lists;
 
 void mpsi_dynamics_free_lists(mps_dynamics *dynamics, lists *l) {
-  mpsi_free(dynamics->context, l->bound);
-  mpsi_free(dynamics->context, l->dashpot);
-  mpsi_free(dynamics->context, l->owner);
+  MPSI_FREE(dynamics->context, l->bound, l->dashpot, l->owner);
   *l = (lists){0};
 }
 
@@ -174,9 +170,8 @@ mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *funct
  */
 static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32_t changed,
                              lists *out) {
-  const mps_status status = mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
-                                                        dynamics->column_dashpots, out);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
+                                       dynamics->column_dashpots, out));
   find_owners(dynamics, out->owner);
   list_bounds(dynamics, out->owner, changed, out);
   list_dashpots(dynamics, out->owner, out);
@@ -205,8 +200,7 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed, bool ot
     const mpsi_dynamics_bound *q = &l->bound[k];
     if (q->boundary == changed) velocity[q->component][q->particle] = q->before;
   }
-  mpsi_free(dynamics->context, dynamics->bound);
-  mpsi_free(dynamics->context, dynamics->dashpot);
+  MPSI_FREE(dynamics->context, dynamics->bound, dynamics->dashpot);
   dynamics->bound = l->bound;
   dynamics->bounds = l->bounds;
   dynamics->dashpot = l->dashpot;
@@ -230,8 +224,7 @@ static mps_status evaluate(mps_dynamics *dynamics, const char *function, int32_t
   for (int c = 0; c < 2; c++) {
     mpsi_signal_motion at;
     const mpsi_signal_use use = {dynamics->context, function, "boundary", number, c};
-    const mps_status status = mpsi_signal_evaluate(b->part.signal[c], use, t, &at);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_signal_evaluate(b->part.signal[c], use, t, &at));
     b->reach[c] = b->part.factor[c] * at.u;
     b->speed[c] = b->part.factor[c] * at.v;
   }
@@ -248,9 +241,7 @@ mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *fun
 mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function) {
   const double now = mpsi_dynamics_time(dynamics);
   for (int32_t k = 0; k < mpsi_dynamics_boundary_count(dynamics); k++) {
-    const mps_status status =
-        evaluate(dynamics, function, k, mpsi_dynamics_boundary_of(dynamics, k), now);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(evaluate(dynamics, function, k, mpsi_dynamics_boundary_of(dynamics, k), now));
   }
   const mpsi_dynamics_state *s = &dynamics->state;
   const double *const displacement[3] = {s->dx, s->dy, s->th};
@@ -277,7 +268,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
   const mpsi_dynamics_boundary *before = former;
   void **const slot = &dynamics->conditions[MPSI_BOUNDARIES].own[number];
   lists l = {0};
-  (void)def;
   if (now && before) {
     memcpy(now->pushed, before->pushed, sizeof now->pushed);
     memcpy(now->impulse, before->impulse, sizeof now->impulse);
@@ -301,21 +291,13 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
 }
 
 const mpsi_condition_kind mpsi_dynamics_boundaries = {
-    .kind = MPS_DEF_DYNAMICS_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_dynamics_boundary_def,
-    .what = "boundary",
-    .add = "mps_dynamics_add_boundary",
-    .set = "mps_dynamics_set_boundary",
-    .get = "mps_dynamics_get_boundary",
-    .remove = "mps_dynamics_remove_boundary",
+    MPSI_CONDITION_OF(DYNAMICS, dynamics, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"ids", "id_count", 1}},
     .most = INT32_MAX - 8,
     .size = sizeof(mpsi_dynamics_boundary),
     .check = check,
-    .item = mpsi_dynamics_item,
     .selects = true,
-    .check_ids = mpsi_dynamics_check_ids,
     .counts = mpsi_dynamics_counts,
     .make = make,
     .apply = apply,
@@ -325,8 +307,7 @@ const mpsi_condition_kind mpsi_dynamics_boundaries = {
 mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_status status,
                                       int32_t number, mps_reaction *out) {
   mps_dynamics *dynamics = solver;
-  status = mpsi_domain_agree_same(dynamics->domain, function, status, "number", number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_same(dynamics->domain, function, status, "number", number));
   const mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, number);
   const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;
   mpsi_exact sum[7];
@@ -335,9 +316,8 @@ mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_st
   memcpy(sum, b->pushed, sizeof b->pushed);
   memcpy(sum + 3, b->impulse, sizeof b->impulse);
   sum[6] = b->work;
-  status = mpsi_domain_sum_exact(dynamics->domain, function, 7, sum);
-  if (status == MPS_OK) status = mpsi_domain_sum(dynamics->domain, function, 1, &count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum_exact(dynamics->domain, function, 7, sum));
+  MPSI_TRY(mpsi_domain_sum(dynamics->domain, function, 1, &count));
   for (int k = 0; k < 7; k++) value[k] = mpsi_exact_value(&sum[k]);
   *out = (mps_reaction){
       .force = {value[0] * rate, value[1] * rate, 0.0},
@@ -351,7 +331,5 @@ mps_status mpsi_dynamics_get_reaction(void *solver, const char *function, mps_st
 }
 
 void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics) {
-  mpsi_free(dynamics->context, dynamics->bound);
-  mpsi_free(dynamics->context, dynamics->dashpot);
-  mpsi_free(dynamics->context, dynamics->column_dashpot);
+  MPSI_FREE(dynamics->context, dynamics->bound, dynamics->dashpot, dynamics->column_dashpot);
 }

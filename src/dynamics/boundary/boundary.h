@@ -1,7 +1,6 @@
 /* boundary.h - boundaries: definitions, lists of prescribed degrees of freedom and dashpots,
  * reactions. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_BOUNDARY_H
-#define MPSI_DYNAMICS_BOUNDARY_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "dynamics/base/selection.h"
@@ -76,5 +75,3 @@ void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 extern const mpsi_condition_kind mpsi_dynamics_boundaries;
 mps_status mpsi_dynamics_get_reaction(void *dynamics, const char *function, mps_status status,
                                       int32_t number, mps_reaction *out);
-
-#endif

@@ -51,8 +51,7 @@ mps_status mpsi_dynamics_evaluate_signals(mps_dynamics *dynamics, const char *fu
 /* Signal values of a step, compared between ranks: functions of the caller may differ. */
 mps_status mpsi_dynamics_agree_signals(mps_dynamics *dynamics, const char *function,
                                        mps_status status, int32_t count, double *values) {
-  mpsi_given list;
-  mpsi_given_begin(&list);
+  mpsi_given list = MPSI_GIVEN;
   for (int32_t k = 0; status == MPS_OK && k < mpsi_dynamics_boundary_count(dynamics); k++) {
     const mpsi_dynamics_boundary *b = mpsi_dynamics_boundary_of(dynamics, k);
     if (!b) continue;

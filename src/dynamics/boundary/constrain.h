@@ -1,7 +1,6 @@
 /* constrain.h - dashpots and prescribed degrees of freedom around a step.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_CONSTRAIN_H
-#define MPSI_DYNAMICS_CONSTRAIN_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -21,5 +20,3 @@ void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);
 void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick);
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output);
 void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output);
-
-#endif

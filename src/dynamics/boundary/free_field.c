@@ -44,8 +44,7 @@ static mps_status copy_fields(mps_particles *particles, const edge *e, int64_t f
                               double shift) {
   for (int32_t f = 0; f < mps_particles_field_count(particles); f++) {
     mps_particles_field_info info;
-    const mps_status status = mps_particles_get_field_info(particles, f, &info);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mps_particles_get_field_info(particles, f, &info));
     if (strcmp(info.name, "id") == 0 || strcmp(info.name, "position") == 0) continue;
     for (int32_t c = 0; c < info.components; c++) {
       double *value = mpsi_particles_column(particles, info.name, c);

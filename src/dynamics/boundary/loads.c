@@ -12,7 +12,6 @@
 /* ---- definitions ----------------------------------------------------------------------------- */
 
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
-  (void)number, (void)known;
   return mpsi_particles_committed(((mps_dynamics *)solver)->particles, function);
 }
 
@@ -22,7 +21,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   mpsi_dynamics_load *load = own;
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def->area) ? spacing * dynamics->def.measure : def->area;
-  (void)number;
   load->kind = def->kind;
   for (int c = 0; c < 2; c++) {
     load->amount[c] =
@@ -31,15 +29,13 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   }
   load->part.signal = def->signal;
   load->part.factor = def->factor;
-  const mps_status status = mpsi_dynamics_reserve_forces(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_reserve_forces(dynamics, function));
   return mpsi_dynamics_make_part(dynamics, function, (int64_t *)def->ids, &def->id_count,
                                  &load->part);
 }
 
 static mps_status apply(void *solver, const char *function, int32_t number, void *def, void *own,
                         void *former) {
-  (void)def, (void)function, (void)number, (void)own, (void)former;
   ((mps_dynamics *)solver)->forces_stale = true;
   return MPS_OK;
 }
@@ -49,21 +45,13 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_dynamics_loads = {
-    .kind = MPS_DEF_DYNAMICS_LOAD,
-    .definition = &mpsi_definition_of_mps_dynamics_load_def,
-    .what = "load",
-    .add = "mps_dynamics_add_load",
-    .set = "mps_dynamics_set_load",
-    .get = "mps_dynamics_get_load",
-    .remove = "mps_dynamics_remove_load",
+    MPSI_CONDITION_OF(DYNAMICS, dynamics, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}},
     .most = INT32_MAX - 8,
     .size = sizeof(mpsi_dynamics_load),
     .check = check,
-    .item = mpsi_dynamics_item,
     .selects = true,
-    .check_ids = mpsi_dynamics_check_ids,
     .counts = mpsi_dynamics_counts,
     .make = make,
     .apply = apply,
@@ -94,8 +82,7 @@ mps_status mpsi_dynamics_evaluate_loads(mps_dynamics *dynamics, const char *func
       double factor;
       if (!load->part.signal[c]) continue;
       const mpsi_signal_use use = {dynamics->context, function, "load", k, c};
-      const mps_status status = mpsi_signal_factor(load->part.signal[c], use, now, &factor);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(load->part.signal[c], use, now, &factor));
       const double value = load->part.factor[c] * factor;
       if (value != load->now[c]) dynamics->forces_stale = true;
       load->now[c] = value;

@@ -1,7 +1,6 @@
 /* loads.h - loads: definitions, and the forces of a step.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_LOADS_H
-#define MPSI_DYNAMICS_LOADS_H
+#pragma once
 
 #include "dynamics/base/selection.h"
 #include "dynamics/step/kernels.h"
@@ -35,5 +34,3 @@ void mpsi_dynamics_apply_forces(mps_dynamics *dynamics, const mpsi_dynamics_forc
 void mpsi_dynamics_free_loads(mps_dynamics *dynamics);
 
 extern const mpsi_condition_kind mpsi_dynamics_loads;
-
-#endif

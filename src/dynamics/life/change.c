@@ -11,8 +11,7 @@
 void mpsi_dynamics_drop_change(mps_dynamics *dynamics) {
   mpsi_dynamics_change *c = dynamics->change;
   if (!c) return;
-  void *parts[] = {c->now, c->force, c->before, c->drag};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(dynamics->context, parts[k]);
+  MPSI_FREE(dynamics->context, c->now, c->force, c->before, c->drag);
   mpsi_dynamics_free_lists(dynamics, &c->lists);
   mpsi_dynamics_free_structure(dynamics, &c->structure);
   mpsi_free(dynamics->context, c);
@@ -222,8 +221,7 @@ mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const
     status = mpsi_fail_memory(context, function, (size_t)f.count * 3);
   if (status == MPS_OK)
     status = check_boundaries(dynamics, function, from, source, disagreement, &t);
-  mpsi_free(context, t.index_of);
-  mpsi_free(context, t.taken);
+  MPSI_FREE(context, t.index_of, t.taken);
   if (status != MPS_OK) mpsi_dynamics_drop_change(dynamics);
   return status;
 }

@@ -1,7 +1,6 @@
 /* change.h - a new structure for other particles: after a removal, or of a state to restore.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_CHANGE_H
-#define MPSI_DYNAMICS_CHANGE_H
+#pragma once
 
 #include "dynamics/boundary/boundary.h"
 #include "dynamics/pairs/structure.h"
@@ -28,5 +27,3 @@ extern const struct mpsi_dynamics_keeper mpsi_dynamics_keep;
 /* Structure of a former state (core/state.h). */
 mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
                                        const char *source, mps_status disagreement);
-
-#endif

@@ -166,9 +166,8 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   if (status == MPS_OK && (dynamics->def.gravity[0] != 0.0 || dynamics->def.gravity[1] != 0.0))
     status = mpsi_dynamics_reserve_forces(dynamics, function);
   if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
-  status = mpsi_domain_agree(dynamics->domain, function, status);
-  if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
-  return status;
+  MPSI_TRY(mpsi_domain_agree(dynamics->domain, function, status));
+  return mpsi_dynamics_begin(dynamics, function, 0.0);
 }
 static void destroy(void *solver) {
   mps_dynamics *dynamics = solver;
@@ -180,9 +179,8 @@ static void destroy(void *solver) {
   mpsi_halo_destroy(context, &dynamics->halo);
   mpsi_dynamics_free_boundaries(dynamics);
   mpsi_dynamics_free_loads(dynamics);
-  void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
-                   dynamics->before, dynamics->drag,    dynamics->part};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, dynamics->slab, dynamics->scratch, dynamics->bad, dynamics->before,
+            dynamics->drag, dynamics->part);
   mps_kernel_destroy(&dynamics->kernel);
   mps_material_destroy(&dynamics->def.material);
 }
@@ -261,9 +259,9 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_status status = mpsi_particles_check_context(particles, context, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_dynamics_def, user_def, &def);
+  MPSI_TRY(mpsi_particles_check_context(particles, context, __func__));
+  mps_status status =
+      MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_dynamics_def, user_def, &def);
   if (mpsi_domain_check(context, __func__, def.domain) != MPS_OK) return MPS_ERROR_ARGUMENT;
   if (def.kernel) def.radius_ratio = mps_dynamics_defaults().radius_ratio; /* not read */
   const bool bounded = isnan(def.divergence);
@@ -326,4 +324,3 @@ mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
 }
 
 /* ---- questions ------------------------------------------------------------------------------- */
-

@@ -121,8 +121,7 @@ static mps_status take_fields(mps_dynamics *dynamics, const char *function, mps_
     }
     field->rows = n;
   }
-  mpsi_free(context, at);
-  mpsi_free(context, column);
+  MPSI_FREE(context, at, column);
   if (status == MPS_OK) values->particles = n;
   return status;
 }
@@ -146,11 +145,8 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
                                      mps_snapshot *values) {
   mps_dynamics *dynamics = solver;
   mps_domain *domain = dynamics->domain;
-  const int32_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
+  const int32_t rank = mps_domain_rank(domain);
   if (!mpsi_domain_many(domain)) return status;
-  int64_t *rows = NULL;
-  if (status == MPS_OK && !(rows = mpsi_alloc(dynamics->context, ranks, sizeof *rows)))
-    status = mpsi_fail_memory(dynamics->context, function, (size_t)ranks * 8);
   if (status == MPS_OK) status = take_fields(dynamics, function, values);
   status = mpsi_domain_agree_moment(domain, function, status, values);
   for (int32_t k = 0; status == MPS_OK && k < values->state.count; k++) {
@@ -165,13 +161,10 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
       *kept = part_of(dynamics, value->name)->count;
     }
     if (how != ROWS) continue;
-    for (int32_t r = 0; r < ranks; r++) rows[r] = r == rank ? body_rows(dynamics, value) : 0;
-    status = mpsi_domain_sum(domain, function, ranks, rows);
-    int64_t before[2] = {0, 0};
-    for (int32_t r = 0; r < ranks; r++) before[0] += r < rank ? rows[r] : 0, before[1] += rows[r];
+    int64_t before[2];
+    status = mpsi_domain_count(domain, function, body_rows(dynamics, value), &before[0], &before[1]);
     if (status == MPS_OK) status = take_rows(dynamics, function, value, before);
     status = mpsi_domain_agree(domain, function, status);
   }
-  mpsi_free(dynamics->context, rows);
   return status;
 }

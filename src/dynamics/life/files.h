@@ -1,7 +1,6 @@
 /* files.h - checkpoints of several ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_FILES_H
-#define MPSI_DYNAMICS_FILES_H
+#pragma once
 
 #include "core/state/state.h"
 
@@ -12,5 +11,3 @@ mps_status mpsi_dynamics_save_partitions(mps_dynamics *dynamics, const mpsi_stat
                                          const mps_checkpoint *info);
 mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_status status,
                                      mps_snapshot *values);
-
-#endif

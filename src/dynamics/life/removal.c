@@ -63,8 +63,7 @@ static mps_status prepare(mps_dynamics *dynamics, const char *function, int64_t 
   } else {
     mpsi_free(context, now);
   }
-  mpsi_free(context, x);
-  mpsi_free(context, side);
+  MPSI_FREE(context, x, side);
   return status;
 }
 

@@ -203,8 +203,8 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* A state is kept not of a run that has diverged, and of a set without an open edit. */
 mps_status mpsi_dynamics_settle(void *solver, const char *function) {
   const mps_dynamics *dynamics = solver;
-  const mps_status status = mpsi_dynamics_check_diverged(dynamics, function);
-  return status == MPS_OK ? mpsi_particles_ready(dynamics->particles, function) : status;
+  MPSI_TRY(mpsi_dynamics_check_diverged(dynamics, function));
+  return mpsi_particles_ready(dynamics->particles, function);
 }
 
 static mps_status take_in(void *solver, const char *function, mps_status status) {

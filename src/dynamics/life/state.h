@@ -1,7 +1,6 @@
 /* state.h - the state of explicit dynamics, for the driver of all solvers (solver/solver_base.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_STATE_H
-#define MPSI_DYNAMICS_STATE_H
+#pragma once
 
 #include "core/state/state.h"
 
@@ -12,5 +11,3 @@ mps_status mpsi_dynamics_settle(void *dynamics, const char *function);
 mps_status mpsi_dynamics_returned(void *dynamics, const char *function);
 mps_status mpsi_dynamics_save(void *dynamics, const mpsi_state_of *of, const char *function,
                               const char *path, const mps_checkpoint *info);
-
-#endif

@@ -64,9 +64,7 @@ static mps_status compare_dt(mps_dynamics *dynamics, const char *function, doubl
   const bool euler = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER;
   if (!euler && dt <= mpsi_dynamics_limit(dynamics)) return MPS_OK;
   mps_dynamics_linear_limit limit;
-  const mps_status status =
-      mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit)));
   if (euler && limit.dt == 0.0)
     mpsi_log(dynamics->context, MPS_CONTEXT_LOG_WARNING,
              "Euler without damping has no stable time step: the motion grows at any dt");
@@ -85,9 +83,7 @@ static mps_status compare_dt(mps_dynamics *dynamics, const char *function, doubl
 /* Chooses dt from the limit. */
 static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
   mps_dynamics_linear_limit limit;
-  const mps_status status =
-      mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit)));
   if (!(limit.dt > 0.0))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                      "dynamics: Euler without damping has no stable time step to choose: give dt");

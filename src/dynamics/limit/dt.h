@@ -1,7 +1,6 @@
 /* dt.h - the length of the time step.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_DT_H
-#define MPSI_DYNAMICS_DT_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -12,5 +11,3 @@ double mpsi_dynamics_limit(const void *dynamics); /* limit.c */
 double mpsi_dynamics_dt(void *dynamics, const char *function);
 mps_status mpsi_dynamics_check_dt(void *dynamics, const char *function, double dt);
 mps_status mpsi_dynamics_use_dt(void *dynamics, const char *function, double dt);
-
-#endif

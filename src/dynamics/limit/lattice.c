@@ -7,7 +7,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "lattice.h"
 #include "dynamics/base/dynamics_solver.h"
-#include "core/definition/digits.h"
 
 #include <mps/experimental/dynamics_predict.h>
 
@@ -105,8 +104,7 @@ mps_status mps_dynamics_predict_sized(mps_context *context,
   static const char *const function = "mps_dynamics_predict";
   if (!context) return mpsi_null(__func__, "context");
   mps_dynamics_predict_def def;
-  mps_status status = MPSI_DEF_READ(context, function, mps_dynamics_predict_def, user_def, &def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(context, function, mps_dynamics_predict_def, user_def, &def));
   const double pi = 3.14159265358979323846, h = def.damping;
   const double omega2 = mpsi_dynamics_lattice_omega2(
       NULL, def.spacing, def.radius_ratio, def.shear_velocity, def.pressure_velocity, 1.0);

@@ -1,7 +1,6 @@
 /* lattice.h - the stability limit on the infinite lattice.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_LATTICE_H
-#define MPSI_DYNAMICS_LATTICE_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -15,5 +14,3 @@ double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta);
 /* Bound of the limit (s) from the infinite lattice of the stiffest and lightest material in the
  * set. */
 double mpsi_dynamics_lattice_bound(const mps_dynamics *dynamics);
-
-#endif

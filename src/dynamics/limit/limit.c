@@ -181,8 +181,7 @@ static mps_status uneven_limit(operator_data *op, double *basis, const range *r,
   op->dt = low;
   for (int round = 0; round < 20; round++) {
     ritz top;
-    const mps_status status = lanczos(op, UNEVEN_BOUND, basis, &top);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(lanczos(op, UNEVEN_BOUND, basis, &top));
     *iterations += top.iterations;
     const double ratio = 4.0 / top.value;
     if (round > 0 && top.value != last_value)
@@ -258,8 +257,7 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
       .weight = memory + 4 * n + 4 * (dynamics->count + dynamics->ghosts),
       .of = (tridiagonal *)(memory + 4 * n + 5 * (dynamics->count + dynamics->ghosts))};
   ritz top;
-  const mps_status status = lanczos(&op, LANCZOS_BOUND, memory, &top);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(lanczos(&op, LANCZOS_BOUND, memory, &top));
   const range r = dynamics->extremes;
   *out = (mps_dynamics_linear_limit){.dt = INFINITY, .iterations = top.iterations};
   if (!(top.value > 0.0)) { /* no forces: only alpha is left */

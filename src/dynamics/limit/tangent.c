@@ -93,7 +93,6 @@ static void block_pairs(const tangent *t, const mpsi_dynamics_block *block, bool
 }
 
 static void shear_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const tangent *t = data;
   const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];
   const int64_t n = t->dynamics->count, begin = block->begin;
@@ -110,7 +109,6 @@ static void shear_block(void *data, int64_t b, int32_t worker) {
 }
 
 static void pressure_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const tangent *t = data;
   const mpsi_dynamics_state *state = &t->dynamics->state;
   const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];
@@ -136,9 +134,8 @@ mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *funct
     column[2][k] = sqrt(2.0 * state->ith[k]) * x[2 * n + k];
   }
   if (dynamics->halo) {
-    mps_status status = mpsi_halo_begin(dynamics->halo, function, 3, column);
-    if (status == MPS_OK) status = mpsi_halo_end(dynamics->halo, function, column);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_halo_begin(dynamics->halo, function, 3, column));
+    MPSI_TRY(mpsi_halo_end(dynamics->halo, function, column));
   }
   tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * m, .weight = weight};
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks + dynamics->mesh.ghosts, shear_block,

@@ -1,7 +1,6 @@
 /* tangent.h - the tangent at the reference state, as an operator.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_TANGENT_H
-#define MPSI_DYNAMICS_TANGENT_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -13,5 +12,3 @@
 mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *function,
                                        const double *weight, const double *x, double *y,
                                        double *work);
-
-#endif

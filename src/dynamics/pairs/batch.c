@@ -68,8 +68,7 @@ mps_status mpsi_dynamics_source_open(mpsi_dynamics_source *s) {
 }
 
 void mpsi_dynamics_source_close(mpsi_dynamics_source *s) {
-  mpsi_free(s->context, s->piece);
-  mpsi_free(s->context, s->taken);
+  MPSI_FREE(s->context, s->piece, s->taken);
   s->piece = NULL, s->taken = NULL;
 }
 
@@ -133,8 +132,7 @@ static void select_near(const mpsi_dynamics_source *s, int64_t own, const piece 
 }
 
 static void free_selection(const mpsi_dynamics_source *s, selection *out) {
-  mpsi_free(s->context, out->number);
-  mpsi_free(s->context, out->x);
+  MPSI_FREE(s->context, out->number, out->x);
   *out = (selection){0};
 }
 
@@ -164,8 +162,7 @@ static mps_status make_selection(const mpsi_dynamics_source *s, selection *out) 
   }
   const mps_status status =
       ok ? MPS_OK : mpsi_fail_memory(s->context, s->function, (size_t)out->count * 24);
-  mpsi_free(s->context, batch);
-  mpsi_free(s->context, near);
+  MPSI_FREE(s->context, batch, near);
   return status;
 }
 
@@ -220,7 +217,6 @@ mps_status mpsi_dynamics_source_pairs(mpsi_dynamics_source *s, int64_t blocks, c
       if (*end[e] >= 0) *end[e] = (int32_t)near.number[*end[e]];
   }
   free_selection(s, &near);
-  mpsi_free(s->context, side);
-  mpsi_free(s->context, keep);
+  MPSI_FREE(s->context, side, keep);
   return status;
 }

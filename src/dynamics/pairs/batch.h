@@ -2,8 +2,7 @@
  * released before the next, so that memory holds the arranged pairs, and not all neighbour lists
  * besides.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_BATCH_H
-#define MPSI_DYNAMICS_BATCH_H
+#pragma once
 
 #include "layout.h"
 
@@ -54,5 +53,3 @@ mps_status mpsi_dynamics_source_pairs(mpsi_dynamics_source *source, int64_t bloc
 /* Whether all offsets are whole multiples of `spacing`, exactly: those of a lattice are rounded to
  * that when pairs are made. */
 bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);
-
-#endif

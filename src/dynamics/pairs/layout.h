@@ -1,7 +1,6 @@
 /* layout.h - order of the particles in memory, and the search for their pairs.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_LAYOUT_H
-#define MPSI_DYNAMICS_LAYOUT_H
+#pragma once
 
 #include "mesh.h"
 
@@ -44,5 +43,3 @@ mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function
 /* For each particle of a column (index as sorted) the edge particle of the same row, else -1. */
 mps_status mpsi_dynamics_layout_edges(mps_context *context, const char *function,
                                       const mpsi_dynamics_geometry *geometry, int64_t *edge);
-
-#endif

@@ -117,7 +117,6 @@ static void count_block(const arrange *work, int64_t b) {
 
 /* Sorts the entries of one block and marks its runs. */
 static void arrange_block(void *data, int64_t number, int32_t worker) {
-  (void)worker;
   arrange *work = data;
   entry *e = work->entry + work->first[number];
   const int64_t n = work->first[number + 1] - work->first[number];
@@ -142,7 +141,6 @@ static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r
 
 /* Copies the marked entries of one block into the run and scattered lists. */
 static void write_block(void *data, int64_t number, int32_t worker) {
-  (void)worker;
   arrange *work = data;
   batch *out = work->batch;
   mpsi_dynamics_scattered *list = &out->scattered;
@@ -318,16 +316,14 @@ static bool arrange_batch(arrange *work) {
 }
 
 static void free_work(arrange *work) {
-  void *parts[] = {work->pair, work->entry, work->first, work->next};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(work->context, parts[k]);
+  MPSI_FREE(work->context, work->pair, work->entry, work->first, work->next);
   work->pair = NULL, work->entry = NULL, work->first = work->next = NULL;
 }
 
 static void free_batch(mps_context *context, batch *part) {
   mpsi_dynamics_scattered *list = &part->scattered;
-  void *parts[] = {part->run, list->i,   list->j,  list->ti, list->tj,
-                   list->r0x, list->r0y, list->kf, list->kc};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, part->run, list->i, list->j, list->ti, list->tj, list->r0x, list->r0y,
+            list->kf, list->kc);
   *part = (batch){0};
 }
 
@@ -389,8 +385,7 @@ mps_status mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *me
 
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh) {
   mpsi_dynamics_scattered *list = &mesh->scattered;
-  void *parts[] = {mesh->block, mesh->run, mesh->turn, list->i,  list->j, list->ti,
-                   list->tj,    list->r0x, list->r0y,  list->kf, list->kc};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, mesh->block, mesh->run, mesh->turn, list->i, list->j, list->ti, list->tj,
+            list->r0x, list->r0y, list->kf, list->kc);
   *mesh = (mpsi_dynamics_mesh){0};
 }

@@ -7,8 +7,7 @@
  * its particles and writes only to its own, so blocks are free of conflicts, and a particle's sum
  * has one fixed order whatever the number of threads. A pair inside a block is computed once.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_MESH_H
-#define MPSI_DYNAMICS_MESH_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -98,5 +97,3 @@ mps_status mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *me
                                     struct mpsi_dynamics_source *source, int64_t *own,
                                     bool *lattice);
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh);
-
-#endif

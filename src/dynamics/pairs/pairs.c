@@ -134,8 +134,7 @@ static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, const uint8_t
     if (status == MPS_OK) status = body_pairs(g, &points, keep, offset, index, list, function);
   }
   mps_neighbours_destroy(&lists);
-  mpsi_free(context, points.x);
-  mpsi_free(context, points.from);
+  MPSI_FREE(context, points.x, points.from);
   return status;
 }
 

@@ -189,8 +189,7 @@ mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *func
 void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *s) {
   mpsi_dynamics_mesh_free(dynamics->context, &s->mesh);
   mpsi_halo_destroy(dynamics->context, &s->halo);
-  void *parts[] = {s->slab, s->scratch, s->bad, s->part, s->column_dashpot};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(dynamics->context, parts[k]);
+  MPSI_FREE(dynamics->context, s->slab, s->scratch, s->bad, s->part, s->column_dashpot);
   *s = (mpsi_dynamics_structure){0};
 }
 

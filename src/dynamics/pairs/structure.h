@@ -1,7 +1,6 @@
 /* structure.h - order, pairs, mesh and arrays of the set's particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_STRUCTURE_H
-#define MPSI_DYNAMICS_STRUCTURE_H
+#pragma once
 
 #include "domain/halo.h"
 #include "dynamics/boundary/boundary.h"
@@ -52,5 +51,3 @@ mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics, const char *funct
 mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynamics);
 mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
                                   mpsi_dynamics_structure *out);
-
-#endif

@@ -14,6 +14,7 @@
  * Finally blocks have local numbers, ascending as in the whole body, with a gap where they are not
  * neighbours in the whole body: no run of pairs crosses a gap.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/particles/particles_internal.h"
 #include "deal.h"
 #include "dynamics/base/dynamics_solver.h"
@@ -104,14 +105,8 @@ static mps_status list_items(dealing *d) {
 /* Own ones before (key, id). */
 static int64_t count_below(const dealing *d, int64_t key, int64_t id) {
   const item at = {.key = key, .id = id};
-  int64_t low = 0, high = d->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (compare(&d->item[middle], &at) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, d->count, middle, compare(&d->item[middle], &at) < 0);
   return low;
 }
 
@@ -125,8 +120,7 @@ static mps_status bisect(dealing *d, bool ids, int64_t *least, int64_t *below, i
       const int64_t middle = least[c] + (out[c] - least[c]) / 2;
       below[c] = ids ? count_below(d, d->key[c], middle + 1) : count_below(d, middle + 1, 0);
     }
-    const mps_status status = mpsi_domain_sum(d->domain, d->function, cuts, below);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_domain_sum(d->domain, d->function, cuts, below));
     for (int32_t c = 0; c < cuts; c++) {
       const int64_t middle = least[c] + (out[c] - least[c]) / 2;
       if (least[c] == out[c]) continue;
@@ -250,8 +244,7 @@ static mps_status exchange_pieces(dealing *d) {
   status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, d->ranks, message, &d->box);
-  mpsi_free(context, own);
-  mpsi_free(context, message);
+  MPSI_FREE(context, own, message);
   return status;
 }
 
@@ -324,8 +317,7 @@ static mps_status request(dealing *d, mpsi_mailbox *box) {
   status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, box);
-  mpsi_free(context, list);
-  mpsi_free(context, message);
+  MPSI_FREE(context, list, message);
   return status;
 }
 
@@ -383,8 +375,7 @@ static mps_status bring_near(dealing *d, mpsi_mailbox *out) {
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, out);
   mpsi_domain_free_mail(&requests);
-  void *parts[] = {near, found, message};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, near, found, message);
   return status;
 }
 
@@ -493,7 +484,6 @@ mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
   if (status == MPS_OK) status = number(&d, &near, out); /* settled by the caller */
   mpsi_domain_free_mail(&near);
   mpsi_domain_free_mail(&d.box);
-  void *parts[] = {d.item, d.key, d.requested};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, d.item, d.key, d.requested);
   return status;
 }

@@ -1,7 +1,6 @@
 /* deal.h - the halo of a rank for a set that ranks have in parts.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_DEAL_H
-#define MPSI_DYNAMICS_DEAL_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -22,5 +21,3 @@ typedef struct mpsi_dynamics_window {
 
 mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
                               mpsi_dynamics_window *out);
-
-#endif

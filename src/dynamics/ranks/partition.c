@@ -8,6 +8,7 @@
  * step is enough: displacements and rotations of ghosts. Pairs are arranged in blocks by their
  * numbers in the whole body, and every sum has the same terms in the same order on every rank.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/order.h"
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "partition.h"
@@ -45,11 +46,9 @@ typedef struct plan {
 
 static void free_plan(plan *p) {
   mps_context *context = p->dynamics->context;
-  void *parts[] = {p->block,      p->order,       p->x,         p->y,
-                   p->side,       p->near,        p->present,   p->ghost,
-                   p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin,
-                   p->cut.end,    p->cut.slot,    p->cut.local, p->cut.wanted};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, p->block, p->order, p->x, p->y, p->side, p->near, p->present, p->ghost,
+            p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin, p->cut.end, p->cut.slot,
+            p->cut.local, p->cut.wanted);
 }
 
 static mps_status refused(const plan *p, int64_t bytes) {
@@ -96,11 +95,6 @@ static int64_t cell_of(const cells *c, double x, double y) {
          (int64_t)floor((x - c->lo[0]) / c->width + 1.0);
 }
 
-static int compare(const void *left, const void *right) {
-  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-  return a < b ? -1 : a > b;
-}
-
 static bool begin_cells(const plan *p, cells *c) {
   const double period = isnan(p->dynamics->def.period_x) ? 0.0 : p->dynamics->def.period_x;
   double low = INFINITY;
@@ -121,21 +115,15 @@ static void take_cells(const plan *p, const uint8_t *marked, cells *c) {
       const int64_t cell = cell_of(c, p->x[k] + (copy == 2 ? -period : copy * period), p->y[k]);
       if (c->count == 0 || c->taken[c->count - 1] != cell) c->taken[c->count++] = cell;
     }
-  qsort(c->taken, (size_t)c->count, sizeof *c->taken, compare);
+  qsort(c->taken, (size_t)c->count, sizeof *c->taken, mpsi_ascending);
 }
 
 /* Is a cell, or one around it, in the list? */
 static bool any_taken(const cells *c, int64_t cell) {
   for (int64_t row = -1; row <= 1; row++) {
     const int64_t first = cell + row * c->columns - 1;
-    int64_t low = 0, high = c->count;
-    while (low < high) {
-      const int64_t middle = (low + high) / 2;
-      if (c->taken[middle] < first)
-        low = middle + 1;
-      else
-        high = middle;
-    }
+    int64_t low;
+    MPSI_BISECT(low, c->count, middle, c->taken[middle] < first);
     if (low < c->count && c->taken[low] <= first + 2) return true;
   }
   return false;
@@ -160,8 +148,7 @@ static mps_status find_near(plan *p) {
       p->near[p->nears++] = k;
       p->near_body += k < p->body;
     }
-  mpsi_free(context, c.taken);
-  mpsi_free(context, marked);
+  MPSI_FREE(context, c.taken, marked);
   return good ? MPS_OK : refused(p, p->count * 8);
 }
 
@@ -183,8 +170,7 @@ static mps_status find_edges(plan *p, int64_t *edge) {
   if (status == MPS_OK) status = mpsi_dynamics_layout_edges(context, p->function, &g, edge);
   for (int64_t k = 0; status == MPS_OK && k < p->nears; k++)
     if (edge[k] >= 0) edge[k] = p->near[edge[k]];
-  mpsi_free(context, at);
-  mpsi_free(context, side);
+  MPSI_FREE(context, at, side);
   return status;
 }
 
@@ -374,8 +360,7 @@ static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
 /* Have all ranks the same arguments? */
 static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mps_status status) {
   const mps_dynamics_def *d = &dynamics->def;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_dynamics_def, d);
   mpsi_give(&given, "divergence", dynamics->limits.bounded ? NAN : d->divergence);
   mpsi_give(&given, "the radius of the kernel", dynamics->radius);
@@ -451,8 +436,7 @@ mps_status mpsi_dynamics_take_partition(mps_dynamics *dynamics, const char *func
   plan p = {.dynamics = dynamics, .function = function};
   mps_domain *domain = dynamics->domain;
   *out = (mpsi_dynamics_structure){0};
-  status = compare_ranks(dynamics, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(compare_ranks(dynamics, function, status));
   const bool parts = mpsi_particles_deal(dynamics->particles) != NULL;
   status = parts ? plan_parts(&p, backup) : plan_whole(&p);
   if (status == MPS_OK) status = make_structure(&p, out);
@@ -496,7 +480,6 @@ mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *f
                                 .alpha = {-most[4], most[3]},
                                 .beta = {-most[6], most[5]}};
   mpsi_dynamics_choose_damping(dynamics);
-  status = mpsi_halo_begin(dynamics->halo, function, 3, column);
-  if (status == MPS_OK) status = mpsi_halo_end(dynamics->halo, function, column);
-  return status;
+  MPSI_TRY(mpsi_halo_begin(dynamics->halo, function, 3, column));
+  return mpsi_halo_end(dynamics->halo, function, column);
 }

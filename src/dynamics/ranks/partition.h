@@ -1,7 +1,6 @@
 /* partition.h - the part of one rank in a body that lies on several; all functions are collective.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_PARTITION_H
-#define MPSI_DYNAMICS_PARTITION_H
+#pragma once
 
 #include "core/particles/particles_internal.h"
 #include "dynamics/pairs/structure.h"
@@ -18,5 +17,3 @@ mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *functi
 /* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */
 mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *function,
                                            mps_status status);
-
-#endif

@@ -1,7 +1,6 @@
 /* begin.h - the initial state, and what the fields show of the present one.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_BEGIN_H
-#define MPSI_DYNAMICS_BEGIN_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -14,5 +13,3 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 
 /* Brings position, velocity, spin and reaction up to date. */
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
-
-#endif

@@ -31,7 +31,6 @@ static void kinetic_of_block(void *data, int64_t b, int32_t worker) {
   const double rate = 1.0 / dynamics->lag;
   const int64_t end = block->end < dynamics->body ? block->end : dynamics->body;
   double sum = 0.0;
-  (void)worker;
   for (int c = 0; c < 3; c++) /* ith is 3/(rho D^2), of half the moment of inertia */
     for (int64_t k = block->begin; k < end; k++) {
       const double speed = verlet ? (now[c][k] - old[c][k]) * rate : v[c][k];
@@ -94,8 +93,7 @@ mps_status mpsi_dynamics_save_before(mps_dynamics *dynamics, const char *functio
   if (isinf(dynamics->def.divergence)) return MPS_OK;
   if (b->accepts) {
     double kinetic, strain;
-    const mps_status found = mpsi_dynamics_energies(dynamics, function, &kinetic, &strain);
-    if (found != MPS_OK) return found;
+    MPSI_TRY(mpsi_dynamics_energies(dynamics, function, &kinetic, &strain));
     b->accepted = fmax(kinetic + strain, 0.0);
     b->accepts = false;
   }

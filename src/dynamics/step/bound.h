@@ -1,7 +1,6 @@
 /* bound.h - what energy allows the body, and the state before a step that may have to be undone.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_BOUND_H
-#define MPSI_DYNAMICS_BOUND_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -45,5 +44,3 @@ mps_status mpsi_dynamics_find_excess(mps_dynamics *dynamics, const char *functio
 /* After the last step has diverged on some rank: restores the state before it, or where that was
  * not saved, leaves the one after it, and the run has diverged. Collective. */
 mps_status mpsi_dynamics_undo(mps_dynamics *dynamics, const char *function, mps_status status);
-
-#endif

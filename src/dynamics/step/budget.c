@@ -71,7 +71,6 @@ static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_bloc
 }
 
 static void energy_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const mps_dynamics *dynamics = data;
   const mpsi_dynamics_state *s = &dynamics->state;
   const mpsi_dynamics_block *block = &dynamics->mesh.block[b];
@@ -98,13 +97,12 @@ static void energy_block(void *data, int64_t b, int32_t worker) {
 mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, double *kinetic,
                                   double *strain) {
   const int64_t blocks = dynamics->mesh.blocks;
-  mps_status status = mpsi_dynamics_bring_motion(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_bring_motion(dynamics, function));
   mpsi_parallel_for(dynamics->context, blocks + dynamics->mesh.ghosts, first_pass, dynamics);
   mpsi_parallel_for(dynamics->context, blocks, energy_block, dynamics);
   mpsi_exact sum[2] = {{{0}}, {{0}}};
   for (int64_t k = 0; k < 2 * blocks; k++) mpsi_exact_add(&sum[k % 2], dynamics->part[k]);
-  status = mpsi_domain_sum_exact(dynamics->domain, function, 2, sum);
+  mps_status status = mpsi_domain_sum_exact(dynamics->domain, function, 2, sum);
   *kinetic = mpsi_exact_value(&sum[0]);
   *strain = mpsi_exact_value(&sum[1]);
   return status;
@@ -121,7 +119,6 @@ void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block) {
 
 /* The works of one block's particles in the step that has ended, J. */
 static void work_block(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   const mpsi_dynamics_account *account = data;
   mps_dynamics *dynamics = account->dynamics;
   const mpsi_dynamics_block *b = &dynamics->mesh.block[block];
@@ -222,8 +219,7 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
 mps_status mpsi_dynamics_get_totals(void *solver, const char *function, mps_totals *out) {
   mps_dynamics *dynamics = solver;
   mps_totals t;
-  const mps_status status = find_totals(dynamics, function, &t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_totals(dynamics, function, &t));
   const mpsi_dynamics_works *w = &dynamics->works;
   const double start = dynamics->begun ? w->start : t.kinetic + t.strain;
   const double rest =

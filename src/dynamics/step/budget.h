@@ -1,7 +1,6 @@
 /* budget.h - energies and momenta, and the works of a step.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_BUDGET_H
-#define MPSI_DYNAMICS_BUDGET_H
+#pragma once
 
 #include "core/base/exact.h"
 #include "dynamics/boundary/loads.h"
@@ -32,5 +31,3 @@ mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, 
                                   double *strain);
 
 mps_status mpsi_dynamics_get_totals(void *dynamics, const char *function, mps_totals *out);
-
-#endif

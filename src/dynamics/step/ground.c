@@ -203,8 +203,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
   double *kept = status == MPS_OK ? keep_velocities(dynamics, __func__, &status) : NULL;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
@@ -262,7 +261,6 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   static const char *const fabric[] = {"reference", "free_field"};
   mps_dynamics *dynamics = self;
   const char *which = NULL;
-  (void)former;
   mps_status status = MPS_OK;
   dynamics->limits.changed = true;
   const bool of_ground = ONE_OF(field, ground, &which), of_motion = ONE_OF(field, motion, &which);

@@ -1,7 +1,6 @@
 /* ground.h - what the body is made of, and fields that the caller edits.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_GROUND_H
-#define MPSI_DYNAMICS_GROUND_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -24,5 +23,3 @@ mps_status mpsi_dynamics_reread_ground(mps_dynamics *dynamics, const char *funct
 /* Before a query of the state: both. */
 mps_status mpsi_dynamics_read_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status);
-
-#endif

@@ -1,7 +1,6 @@
 /* kernels.h - the inner loops of a time step, compiled for several instruction sets.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_KERNELS_H
-#define MPSI_DYNAMICS_KERNELS_H
+#pragma once
 
 #include "dynamics/pairs/mesh.h"
 
@@ -78,5 +77,3 @@ typedef struct mpsi_dynamics_kernels {
 
 /* The loops of an x86-64 level, as given by mpsi_context_level. */
 const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level);
-
-#endif

@@ -9,7 +9,6 @@
 #include "dynamics/step/step.h"
 
 #include <float.h>
-#include <string.h>
 
 #define PROMPT_WORK 5000000 /* particle-steps between calls of the cancel hook: some 0.1 s */
 
@@ -26,8 +25,7 @@ static mps_status prepare_run(mps_dynamics *dynamics, const char *function) {
  */
 static mps_status take_motion(mps_dynamics *dynamics, const char *function, double length) {
   if (!dynamics->begins) return MPS_OK;
-  const mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_look_ahead(dynamics, function, length));
   return mpsi_dynamics_begin(dynamics, function, mpsi_dynamics_time(dynamics));
 }
 
@@ -39,11 +37,9 @@ mps_status mpsi_dynamics_check_diverged(const mps_dynamics *dynamics, const char
 }
 
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
-  mps_status status = mpsi_guard_check(&dynamics->guard, dynamics->context, function);
-  if (status != MPS_OK) return status;
-  status = mpsi_dynamics_check_diverged(dynamics, function);
-  if (status == MPS_OK) status = prepare_run(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_guard_check(&dynamics->guard, dynamics->context, function));
+  MPSI_TRY(mpsi_dynamics_check_diverged(dynamics, function));
+  MPSI_TRY(prepare_run(dynamics, function));
   return mpsi_dynamics_choose_dt(dynamics, function);
 }
 
@@ -68,8 +64,7 @@ static double divide(const mps_dynamics *dynamics, double start, double t_end, i
 
 /* Equal steps to the end of a run, and about a hundred reports. */
 static mps_status plan_run(const mps_dynamics *dynamics, const char *function, mpsi_march *m) {
-  const mps_status status = mpsi_march_check(m, dynamics->context, function, dynamics->dt);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_march_check(m, dynamics->context, function, dynamics->dt));
   m->length = divide(dynamics, m->start, m->t_end, &m->total);
   const int64_t part = m->total / 100 > 0 ? m->total / 100 : 1;
   if (part < m->prompt) m->prompt = part;
@@ -96,7 +91,6 @@ mps_status mpsi_dynamics_begin_march(void *solver, const char *function, mpsi_ma
 
 /* As many as are left to the next callback. */
 int64_t mpsi_dynamics_batch(const void *solver, const mpsi_march *m, int64_t most) {
-  (void)solver;
   const int64_t n = m->every - m->done % m->every;
   return mpsi_march_is_run(m) && n < most ? n : most;
 }
@@ -119,7 +113,6 @@ mps_status mpsi_dynamics_advance_march(void *solver, const char *function, mpsi_
 mps_status mpsi_dynamics_end_march(void *solver, const char *function, const mpsi_march *m,
                                    mps_status status) {
   mps_dynamics *dynamics = solver;
-  (void)function;
   if (status == MPS_OK || dynamics->steps > m->before) mpsi_dynamics_publish(dynamics);
   return status;
 }

@@ -1,7 +1,6 @@
 /* run.h - steps and runs, for the loop of all solvers.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_RUN_H
-#define MPSI_DYNAMICS_RUN_H
+#pragma once
 
 #include "solver/solver_base.h"
 
@@ -19,5 +18,3 @@ mps_status mpsi_dynamics_advance_march(void *dynamics, const char *function, mps
                                        int64_t count);
 mps_status mpsi_dynamics_end_march(void *dynamics, const char *function, const mpsi_march *march,
                                    mps_status status);
-
-#endif

@@ -177,7 +177,6 @@ static void check_block_speeds(void *data, int64_t b, int32_t worker) {
   const bool verlet = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_VERLET;
   const double *const now[3] = {s->dx, s->dy, s->th}, *const old[3] = {s->ox, s->oy, s->oth};
   const double *const v[3] = {s->vx, s->vy, s->vth};
-  (void)worker;
   dynamics->bad[b] = 0;
   for (int c = 0; c < 3; c++) {
     const double most = c == 2 ? MPSI_DYNAMICS_FASTEST / dynamics->spacing : MPSI_DYNAMICS_FASTEST;
@@ -242,8 +241,7 @@ static void fit_history(mps_dynamics *dynamics) {
 static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   double kinetic, strain;
   if (dynamics->begun) return MPS_OK;
-  const mps_status status = mpsi_dynamics_energies(dynamics, function, &kinetic, &strain);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_energies(dynamics, function, &kinetic, &strain));
   dynamics->works.start = kinetic + strain;
   dynamics->begun = true;
   return MPS_OK;
@@ -301,8 +299,7 @@ static mps_status agree_on_step(mps_dynamics *dynamics, const char *function, mp
 static mps_status agree_on_last(mps_dynamics *dynamics, const char *function, int level) {
   const bool looks = isinf(dynamics->def.divergence);
   double any[2] = {level, level < MPSI_DYNAMICS_DIVERGED && !looks && too_fast(dynamics)};
-  const mps_status status = mpsi_domain_agree_max(dynamics->domain, function, MPS_OK, 2, any);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(dynamics->domain, function, MPS_OK, 2, any));
   if (note_level(dynamics, any[0])) return report_divergence(dynamics, function);
   return any[1] != 0.0 ? report_speed(dynamics, function) : MPS_OK;
 }
@@ -318,8 +315,7 @@ static mps_status pass_blocks(work *w, const char *function) {
   if (status != MPS_OK) return status;
   pass_turns(w, 0, mesh->interior);
   if (!dynamics->halo) return MPS_OK;
-  status = mpsi_halo_end(dynamics->halo, function, column);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_halo_end(dynamics->halo, function, column));
   dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
                                                   dynamics->count + dynamics->ghosts);
   pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
@@ -397,8 +393,8 @@ static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function,
       length == dynamics->length
           ? dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length
           : now + length;
-  const mps_status status = mpsi_dynamics_evaluate_signals(dynamics, function, now, then);
-  return status == MPS_OK ? mpsi_dynamics_evaluate_loads(dynamics, function, now) : status;
+  MPSI_TRY(mpsi_dynamics_evaluate_signals(dynamics, function, now, then));
+  return mpsi_dynamics_evaluate_loads(dynamics, function, now);
 }
 
 mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length) {
@@ -428,12 +424,11 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
             .grain = blocks > 0 ? (blocks + units - 1) / units : 1};
   if (count == 0) return MPS_OK;
-  mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
-  if (status == MPS_OK) status = mpsi_dynamics_save_before(dynamics, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_dynamics_look_ahead(dynamics, function, length));
+  MPSI_TRY(mpsi_dynamics_save_before(dynamics, function));
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
-  status = begin_budget(dynamics, function);
+  mps_status status = begin_budget(dynamics, function);
   if (status != MPS_OK) return status;
   int level = MPSI_DYNAMICS_CALM; /* of the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
@@ -445,8 +440,7 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     if (status != MPS_OK) return status;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
-    status = take_step(&w, function, output && k == count - 1, &level);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(take_step(&w, function, output && k == count - 1, &level));
   }
   status = agree_on_last(dynamics, function, level);
   return status == MPS_ERROR_DIVERGED ? end_diverged(&w, function, status) : status;

@@ -1,7 +1,6 @@
 /* step.h - the step: forces, loads, dashpots, prescribed degrees of freedom, budget.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_DYNAMICS_STEP_H
-#define MPSI_DYNAMICS_STEP_H
+#pragma once
 
 #include <mps/dynamics.h>
 
@@ -14,5 +13,3 @@ mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function
  * signal the step is not made. */
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
                                  double length, bool output);
-
-#endif

@@ -50,7 +50,6 @@ typedef struct work {
 } work;
 
 static void unit_of_work(void *data, int64_t unit, int32_t worker) {
-  (void)worker;
   const work *w = data;
   const int64_t begin = unit * w->chunk, end = begin + w->chunk;
   w->task(w->fluid, begin, end < w->items ? end : w->items, unit);

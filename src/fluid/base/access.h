@@ -1,7 +1,6 @@
 /* access.h - checks of what a caller asks, loops over chunks of particles, kinetic energy.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_ACCESS_H
-#define MPSI_FLUID_ACCESS_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -22,5 +21,3 @@ mps_status mpsi_fluid_closed(void *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
 /* Checks `dt` (s; NaN: chosen by the library). */
 mps_status mpsi_fluid_check_dt(void *fluid, const char *function, double dt);
-
-#endif

@@ -2,8 +2,7 @@
  * of its own. Indices below `count` are particles, those from `count` on are ghosts. A step works
  * on copies of positions and velocities and writes the particles' fields only on success.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_FLOW_SOLVER_H
-#define MPSI_FLUID_FLOW_SOLVER_H
+#pragma once
 
 #include "body/body_internal.h"
 #include "core/base/exact.h"
@@ -141,9 +140,9 @@ struct mps_fluid {
   mpsi_fluid_stage stage;
   mpsi_fluid_classical classical;
   mpsi_fluid_outside outside;
-  mpsi_fluid_change change;    /* of the set, that is under way; energy_before is that of before */
-  bool stale;                  /* the cloud is not that of the fields */
-  bool edited;                 /* the caller has written fields, which ranks have not compared */
+  mpsi_fluid_change change; /* of the set, that is under way; energy_before is that of before */
+  bool stale;               /* the cloud is not that of the fields */
+  bool edited;              /* the caller has written fields, which ranks have not compared */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   uint32_t warned; /* logged already: mpsi_fluid_warning, bits */
   mps_fluid_report report, before;     /* before: as the step being made began */
@@ -234,12 +233,4 @@ static inline bool mpsi_fluid_beside(const mpsi_fluid_body *body, const double *
          x[1] > body->low[1] - reach && x[1] < body->high[1] + reach;
 }
 
-/* Load of a number below the count; NULL where it is free. */
-static inline int32_t mpsi_fluid_load_count(const mps_fluid *f) {
-  return f->conditions[MPSI_LOADS].room;
-}
-static inline mpsi_fluid_given *mpsi_fluid_load_of(const mps_fluid *f, int32_t number) {
-  return f->conditions[MPSI_LOADS].own[number];
-}
-
-#endif
+MPSI_CONDITION_ACCESS(mpsi_fluid_load, mps_fluid, MPSI_LOADS, mpsi_fluid_given)

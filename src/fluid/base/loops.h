@@ -2,8 +2,7 @@
  * (loops.c); dispatch.c chooses. Lists of neighbours are filled up to whole vectors with the
  * particle itself at weight 0, so that the loops have no remainders.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_LOOPS_H
-#define MPSI_FLUID_LOOPS_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -47,5 +46,3 @@ struct mpsi_fluid_loops {
 
 /* dispatch.c: the loops of an x86-64 level; 0: the best that processor and build have. */
 const mpsi_fluid_loops *mpsi_fluid_choose_loops(int32_t level);
-
-#endif

@@ -340,8 +340,7 @@ void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mps_fluid_contact_def *def, const mps_body *body) {
   if (!f->partition) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "number", number);
   MPSI_GIVE_DEF(&given, mps_fluid_contact_def, def);
   if (status == MPS_OK) mpsi_body_give(&given, body);
@@ -421,7 +420,6 @@ void mpsi_fluid_drop_leaving(mps_fluid *f) {
 /* The water presses on faces, not by particles. */
 static mps_status list_particles(void *owner, mps_contact *contact, const mpsi_contact_list *out,
                                  int64_t *count) {
-  (void)owner, (void)out, (void)count;
   return mpsi_fail(contact->context, "mps_contact_get_particles", MPS_ERROR_UNSUPPORTED,
                    "contact is that of a fluid, whose pressure on a body belongs to no particles: "
                    "mps_contact_get_reaction gives it by parts");
@@ -467,9 +465,9 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
   mps_fluid_contact_def def = mps_fluid_contact_defaults();
   mps_contact *contact = NULL;
   int32_t b = 0;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  mps_status status =
+      MPSI_DEF_READ_OR_DEFAULTS(f->context, __func__, mps_fluid_contact_def, user, &def);
   if (status == MPS_OK) status = check_body(f, __func__, body);
   if (status == MPS_OK) status = find_room(f, __func__, body, &b);
   if (status == MPS_OK && def.mover == MPS_CONTACT_MOVER_SOLVER)

@@ -1,7 +1,6 @@
 /* bodies.h - rigid bodies, whose faces are walls.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_BODIES_H
-#define MPSI_FLUID_BODIES_H
+#pragma once
 
 #include "body/body_internal.h"
 #include "fluid/boundary/wall.h"
@@ -58,5 +57,3 @@ int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool
                        const double *x, double *distance);
 /* Whether x is inside a body other than number `besides` - 1. */
 bool mpsi_fluid_inside_body(const mps_fluid *fluid, int besides, const double *x);
-
-#endif

@@ -16,7 +16,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   mps_fluid *f = solver;
   const mps_fluid_boundary_def *d = known;
   const double length = hypot(d->normal[0], d->normal[1]);
-  (void)number;
   if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
@@ -63,8 +62,7 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   }
   for (int b = 0; b < f->boundaries; b++) {
     if (b == number || !f->wall[b].line) continue;
-    const mps_status status = mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line));
   }
   for (int b = 0; b < f->boundaries; b++) {
     const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
@@ -139,7 +137,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_fluid *f = solver;
   mpsi_fluid_wall *now = own, *place = &f->wall[number];
-  (void)def;
   const mps_status status =
       mpsi_domain_agree_same(f->domain, function, MPS_OK, "the signal's present displacement",
                              now ? now->origin : 0.0); /* of functions of the caller */
@@ -163,13 +160,7 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_fluid_boundaries = {
-    .kind = MPS_DEF_FLUID_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_fluid_boundary_def,
-    .what = "boundary",
-    .add = "mps_fluid_add_boundary",
-    .set = "mps_fluid_set_boundary",
-    .get = "mps_fluid_get_boundary",
-    .remove = "mps_fluid_remove_boundary",
+    MPSI_CONDITION_OF(FLUID, fluid, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"nodes", "node_count", 3}, {"corners", "corner_count", 3}},
     .most = MPS_FLUID_MAX_BOUNDARIES,

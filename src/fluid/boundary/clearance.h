@@ -1,7 +1,6 @@
 /* clearance.h - distance of bodies from polylines: see clearance.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_CLEARANCE_H
-#define MPSI_FLUID_CLEARANCE_H
+#pragma once
 
 #include "fluid/boundary/polyline.h"
 
@@ -15,5 +14,3 @@ mps_status mpsi_fluid_check_bodies(mps_fluid *fluid, const char *function,
 /* Before weights of a larger radius (m) are used, those of rock: MPS_ERROR_ARGUMENT where a body or
  * a plane wall is closer than that to a polyline or its corners. */
 mps_status mpsi_fluid_check_reach(mps_fluid *fluid, const char *function, double reach);
-
-#endif

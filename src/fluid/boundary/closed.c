@@ -193,7 +193,6 @@ static void sum_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 }
 
 static void shift_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++)
     if (f->state[i] != MPSI_FLUID_APART) f->system.right[i] -= f->system.mean;
 }
@@ -218,7 +217,6 @@ static void find_least(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 }
 
 static void shift_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) f->system.x[i] += f->system.mean;
 }
 

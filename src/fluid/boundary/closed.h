@@ -1,7 +1,6 @@
 /* closed.h - fluid without a free surface.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_CLOSED_H
-#define MPSI_FLUID_CLOSED_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -11,5 +10,3 @@ mps_status mpsi_fluid_check_space(mps_fluid *fluid, const char *function);
  */
 void mpsi_fluid_balance(mps_fluid *fluid);
 void mpsi_fluid_set_level(mps_fluid *fluid);
-
-#endif

@@ -229,8 +229,7 @@ static mps_status make_segments(mps_fluid *f, const char *function, int32_t numb
     s->infinite[0] = !line->closed && k == 0;
     s->infinite[1] = !line->closed && k + 1 == line->count;
     place_segment(s, xy + 3 * k, xy + 3 * k + 3);
-    const mps_status status = mpsi_fluid_make_motion(f, function, &s->wall, 0, NULL);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_fluid_make_motion(f, function, &s->wall, 0, NULL));
   }
   find_angles(line);
   return MPS_OK;

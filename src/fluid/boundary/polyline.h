@@ -1,8 +1,7 @@
 /* polyline.h - boundaries of several straight segments with corners between them; see polyline.c
  * for their geometry and mirrors.c for the images of particles in them.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_POLYLINE_H
-#define MPSI_FLUID_POLYLINE_H
+#pragma once
 
 #include "fluid/ranks/partition.h"
 
@@ -115,5 +114,3 @@ static inline void mpsi_fluid_reflect_back(const mpsi_fluid_path *path, double *
   const double x = v[0], *M = path->M;
   v[0] = M[0] * x + M[2] * v[1], v[1] = M[1] * x + M[3] * v[1];
 }
-
-#endif

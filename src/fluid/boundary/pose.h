@@ -1,7 +1,6 @@
 /* pose.h - corners of a body in the fluid, and how they move.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_POSE_H
-#define MPSI_FLUID_POSE_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -17,5 +16,3 @@ static inline void mpsi_fluid_corner_at(const mps_body *body, const mpsi_fluid_p
 static inline void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x) {
   mpsi_fluid_corner_at(body->body, next ? &body->next : &body->pose, k, x);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* sight.h - visibility of neighbours past walls that end.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_SIGHT_H
-#define MPSI_FLUID_SIGHT_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -22,5 +21,3 @@ double mpsi_fluid_past_corner(const mps_fluid *fluid, int64_t i, int64_t ghost);
 bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
 /* Whether a face other than `wall` (-1: none) is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
-
-#endif

@@ -1,7 +1,6 @@
 /* slots.h - the numbers of boundaries, bodies and their faces.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_SLOTS_H
-#define MPSI_FLUID_SLOTS_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -15,5 +14,3 @@ bool mpsi_fluid_make_body(mps_fluid *fluid, int32_t number);
 /* Boundaries and bodies without members at the end of the lists, and `faces` walls from `first` on,
  * leave them. */
 void mpsi_fluid_drop_slots(mps_fluid *fluid, int first, int faces);
-
-#endif

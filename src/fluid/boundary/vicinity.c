@@ -128,10 +128,8 @@ void mpsi_fluid_forget_segments(mps_fluid *f) {
 void mpsi_fluid_drop_lines(mps_fluid *f) {
   mpsi_fluid_lines *l = f->lines;
   if (!l) return;
-  void *const parts[] = {l->box_room.item,   l->near_room.item,  l->first_room.item,
-                         l->chunk_room.item, l->start_room.item, l->window_room.item,
-                         l->all_room.item};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(f->context, parts[k]);
+  MPSI_FREE(f->context, l->box_room.item, l->near_room.item, l->first_room.item, l->chunk_room.item,
+            l->start_room.item, l->window_room.item, l->all_room.item);
   mpsi_free(f->context, l);
   f->lines = NULL;
 }

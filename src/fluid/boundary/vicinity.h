@@ -1,7 +1,6 @@
 /* vicinity.h - the segments of polylines near a place: see vicinity.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_VICINITY_H
-#define MPSI_FLUID_VICINITY_H
+#pragma once
 
 #include "fluid/boundary/polyline.h"
 
@@ -33,5 +32,3 @@ double mpsi_fluid_before_listed(const mps_fluid *fluid, const mpsi_fluid_listed 
 const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *fluid, const mpsi_fluid_listed *list,
                                              const mpsi_fluid_segment *except, const double *a,
                                              const double *b, double *share);
-
-#endif

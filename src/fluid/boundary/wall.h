@@ -1,8 +1,7 @@
 /* wall.h - a wall: a boundary of the caller, the face of a body, or the segment of a polyline; its
  * place and motion.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_WALL_H
-#define MPSI_FLUID_WALL_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -80,5 +79,3 @@ void mpsi_fluid_drop_wall(mps_fluid *fluid, mpsi_fluid_wall *wall);
 void mpsi_fluid_mirror_point(const mps_fluid *fluid, mpsi_fluid_flips flips,
                              double *x); /* at these walls */
 double mpsi_fluid_between(const mpsi_fluid_wall *wall, const double *values, double along);
-
-#endif

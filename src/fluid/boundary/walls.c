@@ -89,8 +89,7 @@ void mpsi_fluid_add_impulses(mps_fluid *f) {
 mps_status mps_fluid_set_boundary_motion(mps_fluid *f, int32_t number,
                                          const double *displacement_of, const double *velocity) {
   if (!f) return mpsi_null(__func__, "fluid");
-  const mps_status status = mpsi_fluid_free(f, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_free(f, __func__));
   if (MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "number: boundary %d is a polyline, which does not move", number);
@@ -288,7 +287,6 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
 
 /* A load acts on an image as on its parent, so that water under a load exerts it on the wall. */
 static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     double v[2], kick[2] = {0.0, 0.0};
@@ -324,7 +322,6 @@ static double late_share(const mps_fluid *f, int64_t i) {
 }
 
 static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};

@@ -1,7 +1,6 @@
 /* walls.h - positions and motions of all walls, and the images of particles in them (ghosts).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_WALLS_H
-#define MPSI_FLUID_WALLS_H
+#pragma once
 
 #include "solver/conditions.h"
 
@@ -23,5 +22,3 @@ void mpsi_fluid_press_ghosts(
     mps_fluid *fluid); /* their pressure offsets, by walls' new velocities */
 
 extern const mpsi_condition_kind mpsi_fluid_boundaries; /* boundaries.c */
-
-#endif

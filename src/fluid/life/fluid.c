@@ -105,10 +105,9 @@ static mps_status add_fields(mps_particles *particles) {
   static const char *const names[] = {"velocity",         "pressure",
                                       "reduced_pressure", "reduced_pressure_old",
                                       "free_surface",     "surface_rise"};
-  mps_status status = MPS_OK;
-  for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
-    status = mps_particles_add_field(particles, names[k], 0);
-  return status;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    MPSI_TRY(mps_particles_add_field(particles, names[k], 0));
+  return MPS_OK;
 }
 
 static void destroy(void *solver) {
@@ -119,28 +118,13 @@ static void destroy(void *solver) {
   mpsi_fluid_drop_exchange(f);
   mpsi_fluid_partition_destroy(f);
   mpsi_fluid_coarse_drop(f);
-  void *const parts[] = {f->slab,
-                         f->local,
-                         f->state,
-                         f->cloud,
-                         f->index_room.item,
-                         f->w_room.item,
-                         f->crowd_room.item,
-                         f->fit_room.item,
-                         f->lower_col_room.item,
-                         f->lower_room.item,
-                         f->near_wall_room.item,
-                         f->segment_room.item,
-                         f->path_room.item,
-                         f->box_room.item,
-                         f->near_line_room.item,
-                         f->wedge_room.item,
-                         f->clip_room.item};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, f->slab, f->local, f->state, f->cloud, f->index_room.item, f->w_room.item,
+            f->crowd_room.item, f->fit_room.item, f->lower_col_room.item, f->lower_room.item,
+            f->near_wall_room.item, f->segment_room.item, f->path_room.item, f->box_room.item,
+            f->near_line_room.item, f->wedge_room.item, f->clip_room.item);
   for (int b = f->bodies - 1; b >= 0; b--) mpsi_fluid_drop_body(f, &f->body[b]);
   for (int b = 0; b < f->walls; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
-  mpsi_free(context, f->wall_room.item);
-  mpsi_free(context, f->body_room.item);
+  MPSI_FREE(context, f->wall_room.item, f->body_room.item);
   mpsi_fluid_drop_lines(f);
   mpsi_fluid_drop_rocks(f);
   mps_kernel_destroy(&f->def.kernel);
@@ -156,15 +140,13 @@ static mps_status agree(void *solver, const char *function, mps_status status) {
 }
 
 static mps_status use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   ((mps_fluid *)solver)->def.dt = dt;
   return MPS_OK;
 }
 
 static mps_status get_totals(void *solver, const char *function, mps_totals *out) {
   const mps_fluid *f = solver;
-  const mps_status status = mpsi_particles_committed(f->particles, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_committed(f->particles, function));
   const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
@@ -231,11 +213,10 @@ static mps_status start(mps_fluid *f, const char *function) {
   mps_status status = mpsi_fluid_partition_create(f, function);
   if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
+  MPSI_TRY(mpsi_fluid_look(f, function));
+  MPSI_TRY(mpsi_fluid_sort(f, function));
+  MPSI_TRY(mpsi_fluid_look(f, function));
   f->unknown = 1;
   mpsi_fluid_find_speed(f);
   double kinetic;
@@ -246,9 +227,8 @@ static mps_status start(mps_fluid *f, const char *function) {
 /* Have all ranks the same fluid? */
 static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
                                  mps_particles *particles) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpsi_domain_many(d->domain)) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_fluid_def, d);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_agree_particles(d->domain, function, status, particles)
@@ -261,9 +241,8 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_fluid_def def = mps_fluid_defaults();
-  mps_status status = mpsi_particles_check_context(particles, context, __func__);
-  if (status != MPS_OK) return status;
-  status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_fluid_def, user_def, &def);
+  MPSI_TRY(mpsi_particles_check_context(particles, context, __func__));
+  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   const double l0 = mps_particles_spacing(particles);
   if (status == MPS_OK) status = read_kernel(context, &def, l0);

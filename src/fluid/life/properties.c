@@ -2,8 +2,6 @@
  * the set's field. The fluid is one material, incompressible: a bulk modulus has no part in it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "properties.h"
-#include "fluid/base/access.h"
-#include "fluid/ranks/partition.h"
 
 #include "core/definition/digits.h"
 #include "core/particles/particles_internal.h"

@@ -1,7 +1,6 @@
 /* properties.h - density and viscosity from the set and a material.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PROPERTIES_H
-#define MPSI_FLUID_PROPERTIES_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -10,5 +9,3 @@ mps_status mpsi_fluid_check_viscosity(mps_context *context, const char *function
  * material. */
 mps_status mpsi_fluid_read_material(mps_context *context, const char *function,
                                     const mps_particles *particles, mps_fluid_def *def);
-
-#endif

@@ -116,7 +116,6 @@ static void list_state(mpsi_state *s, void *solver) {
 
 /* Of a file: positions must be finite. */
 static bool fits(void *solver, mps_snapshot *values, const char **what) {
-  (void)solver;
   const char *const names[] = {"position", "velocity", "reduced_pressure", "reduced_pressure_old"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     const mpsi_value *value = mpsi_values_find(&values->fields, names[k]);

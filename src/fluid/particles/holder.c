@@ -28,14 +28,10 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
   if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count, room_for_ghosts(count))) {
-    mpsi_free(f->context, block);
-    mpsi_free(f->context, local);
-    mpsi_free(f->context, state);
+    MPSI_FREE(f->context, block, local, state);
     return false;
   }
-  mpsi_free(f->context, f->slab);
-  mpsi_free(f->context, f->local);
-  mpsi_free(f->context, f->state);
+  MPSI_FREE(f->context, f->slab, f->local, f->state);
   f->slab = block, f->local = local, f->state = state;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
   f->pressure = s->right; /* of a solution, whose right side is of no more use */
@@ -87,7 +83,6 @@ static mps_status check_places(mps_fluid *f, const char *function, int64_t first
 mps_status mpsi_fluid_commit(void *self, const char *function, const char *field,
                              const double *former) {
   mps_fluid *f = self;
-  (void)former;
   const mps_status status = mpsi_fluid_ready(f, function);
   if (status == MPS_OK) f->edited = f->renewed = true;
   if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
@@ -122,9 +117,7 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
 
 mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   mps_fluid *f = self;
-  (void)ids;
-  const mps_status status = mpsi_fluid_ready(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_ready(f, function));
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "all %lld particles are to be removed, a fluid needs one",

@@ -1,8 +1,7 @@
 /* holder.h - the fluid as a holder of its particle set (mpsi_holder): particles edited, added and
  * removed between steps, and those that have left through an open side.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_HOLDER_H
-#define MPSI_FLUID_HOLDER_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -23,5 +22,3 @@ mps_status mpsi_fluid_commit(void *fluid, const char *function, const char *fiel
 mps_status mpsi_fluid_insert(void *fluid, const char *function, int64_t first, int64_t count);
 mps_status mpsi_fluid_remove(void *fluid, const char *function, int64_t count, const int64_t *ids);
 void mpsi_fluid_renew(void *fluid);
-
-#endif

@@ -10,6 +10,7 @@
  * Damping, -r z^2 u, z from 0 to 1 along a zone, makes waves fade without a reflection of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loads.h"
+#include "core/base/order.h"
 #include "fluid/base/access.h"
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -23,7 +24,6 @@
 static mps_status check(void *solver, const char *function, int32_t number, const void *known) {
   const mps_fluid *f = solver;
   const mps_fluid_load_def *d = known;
-  (void)number;
   if (d->kind == MPS_FLUID_LOAD_PRESSURE && f->classical.gamma > 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_UNSUPPORTED,
@@ -38,27 +38,18 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 }
 
 /* The particles of a box are those that are in it in each step. */
-static bool keeps(const void *def, mpsi_selected by) {
-  (void)def, (void)by;
-  return true;
-}
+static bool keeps(const void *def, mpsi_selected by) { return true; }
 
 static bool counts(const void *solver, int64_t id) {
   return mps_particles_index(((const mps_fluid *)solver)->particles, id) >= 0;
-}
-
-static int ascending(const void *a, const void *b) {
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-  return (x > y) - (x < y);
 }
 
 static mps_status make(void *solver, const char *function, int32_t number, void *known, void *own) {
   const mps_fluid_load_def *def = known;
   mpsi_fluid_given *g = own;
   const double scalar = def->kind == MPS_FLUID_LOAD_PRESSURE ? def->pressure : def->rate;
-  (void)solver, (void)function, (void)number;
   g->def = def;
-  if (def->ids) qsort((void *)def->ids, (size_t)def->id_count, sizeof *def->ids, ascending);
+  if (def->ids) qsort((void *)def->ids, (size_t)def->id_count, sizeof *def->ids, mpsi_ascending);
   for (int c = 0; c < 2; c++) {
     g->lower[c] = isnan(def->lower[c]) ? -INFINITY : def->lower[c];
     g->upper[c] = isnan(def->upper[c]) ? INFINITY : def->upper[c];
@@ -68,13 +59,7 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
 }
 
 const mpsi_condition_kind mpsi_fluid_loads = {
-    .kind = MPS_DEF_FLUID_LOAD,
-    .definition = &mpsi_definition_of_mps_fluid_load_def,
-    .what = "load",
-    .add = "mps_fluid_add_load",
-    .set = "mps_fluid_set_load",
-    .get = "mps_fluid_get_load",
-    .remove = "mps_fluid_remove_load",
+    MPSI_CONDITION_OF(FLUID, fluid, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}},
     .most = MOST_LOADS,
@@ -91,7 +76,8 @@ const mpsi_condition_kind mpsi_fluid_loads = {
 
 static bool chosen(const mps_fluid *f, const mpsi_fluid_given *g, const int64_t *id, int64_t i) {
   if (g->def->ids)
-    return bsearch(&id[i], g->def->ids, (size_t)g->def->id_count, sizeof *id, ascending) != NULL;
+    return bsearch(&id[i], g->def->ids, (size_t)g->def->id_count, sizeof *id, mpsi_ascending) !=
+           NULL;
   for (int c = 0; c < 2; c++)
     if (!(f->x[c][i] >= g->lower[c] && f->x[c][i] <= g->upper[c])) return false;
   return true;
@@ -151,8 +137,7 @@ static mps_status evaluate_signals(mps_fluid *f, const char *function, double t,
       const mps_signal *signal = driven ? g->def->signal[c] : NULL;
       double factor;
       const mpsi_signal_use use = {f->context, function, "load", k, c};
-      const mps_status status = mpsi_signal_factor(signal, use, t, &factor);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(signal, use, t, &factor));
       g->now[c] = g->def->factor[c] * factor;
     }
   }

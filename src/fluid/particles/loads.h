@@ -1,7 +1,6 @@
 /* loads.h - forces on particles and pressures on the surface.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_LOADS_H
-#define MPSI_FLUID_LOADS_H
+#pragma once
 
 #include "solver/conditions.h"
 
@@ -20,5 +19,3 @@ mps_status mpsi_fluid_find_loads(mps_fluid *fluid, const char *function, double 
 double mpsi_fluid_work_of_loads(const mps_fluid *fluid); /* J, of the step being made */
 
 extern const mpsi_condition_kind mpsi_fluid_loads;
-
-#endif

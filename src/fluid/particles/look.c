@@ -14,7 +14,6 @@ static double *column(const mps_fluid *f, const char *name, int32_t component) {
 }
 
 static void load_part(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   for (int c = 0; c < 2; c++) {
     memcpy(f->x[c] + begin, column(f, "position", c) + begin, bytes);

@@ -1,7 +1,6 @@
 /* look.h - copies of the particles, their order and neighbours, as a step and a reading begin with.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_LOOK_H
-#define MPSI_FLUID_LOOK_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -19,5 +18,3 @@ mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_show_surface(mps_fluid *fluid, mps_status status);
 /* Sorts the particles by position. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
-
-#endif

@@ -226,7 +226,6 @@ static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
 
 /* Particles near the surface, and the surface's mean direction there. */
 static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double reach2 = ZONE * ZONE * f->l0 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     if (!f->zone[i]) continue;
@@ -274,7 +273,6 @@ static double depth_below(const mps_fluid *f, int64_t i, const double *e, double
 
 /* Surface terms of the second row. */
 static void find_depths(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_local *local = &f->local[i];
     if (!f->zone[i] || f->state[i] != MPSI_FLUID_INSIDE) continue;

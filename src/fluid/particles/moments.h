@@ -1,7 +1,6 @@
 /* moments.h - sums over the neighbours: density, moments, velocity gradient, free surface.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_MOMENTS_H
-#define MPSI_FLUID_MOMENTS_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -34,5 +33,3 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
 double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
-
-#endif

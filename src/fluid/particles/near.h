@@ -1,7 +1,6 @@
 /* near.h - neighbour lists and their weights.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_NEAR_H
-#define MPSI_FLUID_NEAR_H
+#pragma once
 
 #include "fluid/particles/moments.h"
 
@@ -27,5 +26,3 @@ mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re, double water);
 /* Room for a sorted cloud of so many: five values of 4 bytes each lie in lower_room. */
 int64_t mpsi_fluid_sorted_room(int64_t all);
 mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
-
-#endif

@@ -230,7 +230,6 @@ mps_status mpsi_fluid_weigh_flow(mps_fluid *f, const char *function) {
 }
 
 static void exchange_weights(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)begin, (void)end;
   if (!mpsi_fluid_near_rock(f, chunk)) return;
   int64_t first;
   const int64_t count = stretch(f, chunk, &first);

@@ -1,7 +1,6 @@
 /* pores.h - what rock is to particles and pairs: see pores.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PORES_H
-#define MPSI_FLUID_PORES_H
+#pragma once
 
 #include "fluid/base/loops.h"
 #include "fluid/particles/rock.h"
@@ -62,5 +61,3 @@ void mpsi_fluid_sum_pores(const mps_fluid *fluid, int64_t i, mpsi_fluid_sums *su
  * weights are then those (true), or w. */
 mps_status mpsi_fluid_weigh_flow(mps_fluid *fluid, const char *function);
 void mpsi_fluid_use_flow(mps_fluid *fluid, bool flow);
-
-#endif

@@ -90,9 +90,8 @@ static void drop_if_none(mps_fluid *f) {
 /* Status of all ranks, and a check that all have the same rock of this number. */
 static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status status,
                                 int32_t number, const mps_fluid_rock_def *def) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!f->partition) return status;
-  mpsi_given_begin(&given);
   mpsi_give(&given, "the number of the rock", number);
   MPSI_GIVE_DEF(&given, mps_fluid_rock_def, def);
   if (status == MPS_OK)
@@ -104,8 +103,7 @@ static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status s
 static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_rock_def *user,
                             mps_fluid_rock_def *def) {
   if (!user) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  const mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_rock_def, user, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ(f->context, function, mps_fluid_rock_def, user, def));
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED, "rock with the classical scheme");
   const mps_status wrong = check(f, def);
@@ -118,9 +116,8 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   mps_fluid_rock_def def = mps_fluid_rock_defaults();
   double *xy = NULL;
   int32_t k = -1;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = read_rock(f, __func__, user, &def);
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  mps_status status = read_rock(f, __func__, user, &def);
   if (status == MPS_OK) {
     const size_t size = 2 * (size_t)def.corner_count * sizeof *xy;
     xy = mpsi_alloc(f->context, 2 * def.corner_count, sizeof *xy);
@@ -150,11 +147,9 @@ static mps_status check_rock(mps_fluid *f, const char *function, int32_t number)
 
 mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->domain, __func__, check_rock(f, __func__, number), "number",
-                                  number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  MPSI_TRY(mpsi_domain_agree_same(f->domain, __func__, check_rock(f, __func__, number), "number",
+                                  number));
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};
   drop_if_none(f);
@@ -167,13 +162,8 @@ void mpsi_fluid_drop_rocks(mps_fluid *f) {
   mpsi_fluid_rocks *rocks = f->rocks;
   if (!rocks) return;
   for (int32_t k = 0; k < rocks->room; k++) mpsi_free(f->context, rocks->rock[k].xy);
-  mpsi_free(f->context, rocks->rock);
-  mpsi_free(f->context, rocks->part_room.item);
-  mpsi_free(f->context, rocks->flow_room.item);
-  mpsi_free(f->context, rocks->free_room.item);
-  mpsi_free(f->context, rocks->region_room.item);
-  mpsi_free(f->context, rocks->start_room.item);
-  mpsi_free(f->context, rocks);
+  MPSI_FREE(f->context, rocks->rock, rocks->part_room.item, rocks->flow_room.item,
+            rocks->free_room.item, rocks->region_room.item, rocks->start_room.item, rocks);
   f->rocks = NULL;
 }
 

@@ -1,6 +1,5 @@
 /* rock.h - permeable regions: see rock.c. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_ROCK_H
-#define MPSI_FLUID_ROCK_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -33,5 +32,3 @@ void mpsi_fluid_drop_rocks(mps_fluid *fluid);
 /* Least porosity of all regions, 1 without any. */
 double mpsi_fluid_least_porosity(const mps_fluid *fluid);
 void mpsi_fluid_list_rocks(mpsi_state *state, const mps_fluid *fluid);
-
-#endif

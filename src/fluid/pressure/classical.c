@@ -24,8 +24,7 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (!f) return mpsi_null(__func__, "fluid");
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->domain, __func__, status, "gamma", gamma);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_same(f->domain, __func__, status, "gamma", gamma));
   if (!(gamma > 0.0 && gamma <= 1.0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %s, must be in (0, 1]",
                      mpsi_outside(gamma, 0.0, 1.0).text);
@@ -53,7 +52,6 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
 /* ---- before the pressure --------------------------------------------------------------------- */
 
 static void fall(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++)
     for (int c = 0; c < 2; c++) {
       f->u[c][i] -= f->dt * f->g * f->up[c];
@@ -63,7 +61,6 @@ static void fall(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 /* The weights of the pairs in place of the smooth ones; n. */
 static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double least = 0.05 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     double n = 0.0;
@@ -84,10 +81,9 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
   f->stage = MPSI_FLUID_MOVED; /* walls are at their positions of the end of the step */
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_agree_same(f, function, status);
-  if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree_same(f, function, status));
+  MPSI_TRY(mpsi_fluid_find_neighbours(f, function));
+  MPSI_TRY(mpsi_fluid_find_halo(f, function));
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
   mpsi_fluid_send_moments(f);
   mpsi_fluid_count(f);
@@ -95,7 +91,6 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
 }
 
 void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const mpsi_fluid_classical *c = &f->classical;
   const double *p = mpsi_particles_column(f->particles, "pressure", 0);
   const double size = c->lambda * c->n_wide / 4.0 * c->gamma * f->def.density / (f->dt * f->dt);
@@ -113,7 +108,6 @@ void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t
 
 /* q of a pressure that is not below 0. */
 void mpsi_fluid_classical_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     f->pressure[i] = fmax(f->system.x[i], 0.0);
     f->q[i] = f->pressure[i] + mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
@@ -123,7 +117,6 @@ void mpsi_fluid_classical_solution(mps_fluid *f, int64_t begin, int64_t end, int
 /* ---- after it -------------------------------------------------------------------------------- */
 
 void mpsi_fluid_classical_accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double factor = f->dt / f->def.density * 2.0 / f->classical.n0, reach = NEAR * f->l0;
   for (int64_t i = begin; i < end; i++) {
     double least = f->pressure[i], sum[2] = {0.0, 0.0};

@@ -1,7 +1,6 @@
 /* classical.h - the classical scheme's own parts.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_CLASSICAL_H
-#define MPSI_FLUID_CLASSICAL_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -14,5 +13,3 @@ mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function, mps
 void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
-
-#endif

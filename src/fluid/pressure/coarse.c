@@ -77,7 +77,6 @@ static void tile_block(mps_fluid *f, int64_t begin, int64_t end, int64_t block) 
 }
 
 static void number_ghosts(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) f->coarse->of[f->count + g] = f->coarse->of[f->parent[g]];
 }
 
@@ -175,7 +174,6 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
 }
 
 static void add_rows(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
   const mpsi_fluid_coarse_at *at = c->at + b * c->room;
@@ -287,8 +285,7 @@ static mps_status make_matrix(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (!mpsi_envelope_make(f->context, e))
     status = mpsi_fail_memory(f->context, function, (size_t)e->entries * sizeof *e->value);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
   mpsi_fluid_units(f, c->block, add_rows, f);
   const int64_t low = c->own[first_block(f)], high = c->own[end_block(f)];
   send_values(f, e->entries, e->value, low < e->rows ? e->start[low] : e->entries,
@@ -346,7 +343,6 @@ void mpsi_fluid_coarse_solve(mps_fluid *f) {
 }
 
 static void sum_residual(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
   const int64_t end = (b + 1) * c->block < f->count ? (b + 1) * c->block : f->count;
@@ -357,7 +353,6 @@ static void sum_residual(void *data, int64_t b, int32_t worker) {
 }
 
 static void correct(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   mps_fluid *f = data;
   const mpsi_fluid_coarse *c = f->coarse;
   const int64_t end = (b + 1) * c->block < f->count ? (b + 1) * c->block : f->count;
@@ -392,10 +387,9 @@ bool mpsi_fluid_coarse_create(mps_fluid *f) {
 void mpsi_fluid_coarse_drop(mps_fluid *f) {
   mpsi_fluid_coarse *c = f->coarse;
   if (!c) return;
-  mpsi_room *const rooms[] = {&c->block_room, &c->of_room,   &c->map_room,
-                              &c->list_room,  &c->at_room,   &c->entry_room,
-                              &c->slot_room,  &c->part_room, &c->value_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(f->context, rooms[k]->item);
+  MPSI_FREE(f->context, c->block_room.item, c->of_room.item, c->map_room.item, c->list_room.item,
+            c->at_room.item, c->entry_room.item, c->slot_room.item, c->part_room.item,
+            c->value_room.item);
   mpsi_envelope_drop(f->context, &c->matrix);
   mpsi_free(f->context, c);
   f->coarse = NULL;

@@ -13,8 +13,7 @@
  * the order of the slots, on every rank, which all solve the coarse equation. So the bits are those
  * of any
  * number of threads and ranks. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_COARSE_H
-#define MPSI_FLUID_COARSE_H
+#pragma once
 
 #include "core/base/envelope.h"
 #include "fluid/base/flow_solver.h"
@@ -74,5 +73,3 @@ double mpsi_fluid_coarse_start(mps_fluid *fluid);
 bool mpsi_fluid_coarse_create(mps_fluid *fluid); /* false: no memory */
 void mpsi_fluid_coarse_drop(mps_fluid *fluid);
 int64_t mpsi_fluid_coarse_bytes(const mps_fluid *fluid);
-
-#endif

@@ -10,9 +10,8 @@
 #include <string.h>
 
 void mpsi_fluid_free_outside(mps_fluid *f) {
-  mpsi_room *const rooms[] = {&f->outside.start_room, &f->outside.column_room,
-                              &f->outside.value_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(f->context, rooms[k]->item);
+  MPSI_FREE(f->context, f->outside.start_room.item, f->outside.column_room.item,
+            f->outside.value_room.item);
 }
 
 bool mpsi_fluid_solved_outside(const mps_fluid *f) {
@@ -47,7 +46,6 @@ static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *
 /* The rows of a chunk one after the other, in the memory behind its pairs and diagonals; start[i +
  * 1] receives the length of row i. */
 static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const mpsi_fluid_outside *o = &f->outside;
   int64_t at = mpsi_fluid_pairs(f, begin) - mpsi_fluid_pairs(f, f->own[0]) + begin - f->own[0];
   for (int64_t i = begin; i < end; i++) {
@@ -92,8 +90,7 @@ static void close_gaps(mps_fluid *f) {
 
 mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   const mpsi_fluid_outside *o = &f->outside;
-  const mps_status status = mpsi_fluid_agree(f, function, make_room(f, function));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, make_room(f, function)));
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   close_gaps(f);
   mps_linear_matrix matrix = {.all = f->count,
@@ -123,19 +120,15 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
   mpsi_fluid_system *s = &f->system;
   const int64_t own = f->own[0];
   double rr = 0.0, bb = 0.0;
-  mps_status status =
-      mpsi_linear_solve(&f->base, function, f->def.tolerance, s->right + own, s->x + own);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_solve(&f->base, function, f->def.tolerance, s->right + own, s->x + own));
   mpsi_fluid_send_halo(f, 1, &s->x);
   for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);
   mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
-  status = mpsi_fluid_lost(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_lost(f, function));
   for (int64_t k = 0; k < (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK; k++)
     rr += s->sums[2 * k], bb += s->sums[2 * k + 1];
-  status = mpsi_linear_check(&f->base, function, f->def.tolerance, 0.0, rr, bb);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_check(&f->base, function, f->def.tolerance, 0.0, rr, bb));
   f->report.iterations = f->linear->result.iterations;
   f->report.all_iterations += f->report.iterations;
   return MPS_OK;

@@ -1,7 +1,6 @@
 /* outside.h - the pressure equation for a linear solver of the caller.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_OUTSIDE_H
-#define MPSI_FLUID_OUTSIDE_H
+#pragma once
 
 #include "core/base/room.h"
 
@@ -18,5 +17,3 @@ bool mpsi_fluid_solved_outside(const mps_fluid *fluid);
 mps_status mpsi_fluid_hand_matrix(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_outside(mps_fluid *fluid, const char *function);
 void mpsi_fluid_free_outside(mps_fluid *fluid);
-
-#endif

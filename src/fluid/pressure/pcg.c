@@ -95,7 +95,6 @@ typedef struct factor_pass {
 } factor_pass;
 
 static void factor_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   factor_pass *p = data;
   mps_fluid *f = p->fluid;
   mpsi_fluid_system *s = &f->system;
@@ -177,7 +176,6 @@ static int64_t end_of(const iteration *it, int64_t b) {
 }
 
 static void start_block(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   const int64_t first = b * it->blocks.size, end = end_of(it, b);
@@ -187,7 +185,6 @@ static void start_block(void *data, int64_t b, int32_t worker) {
 }
 
 static void descend(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   if (f->coarse->used)
@@ -198,14 +195,12 @@ static void descend(void *data, int64_t b, int32_t worker) {
 }
 
 static void rise(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   f->system.sums[2 * b + 1] = f->loops->rise(f, b * it->blocks.size, end_of(it, b), b * it->room);
 }
 
 static void norm(void *data, int64_t b, int32_t worker) {
-  (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   f->system.sums[2 * b + 1] =

@@ -1,12 +1,9 @@
 /* pcg.h - conjugate gradients, preconditioned, with a coarse space.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PCG_H
-#define MPSI_FLUID_PCG_H
+#pragma once
 
 #include <mps/fluid.h>
 
 /* Solves for system.x, starting from what it holds; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
 int64_t mpsi_fluid_pcg(mps_fluid *fluid);
-
-#endif

@@ -70,7 +70,6 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 /* The right side, with the walls' accelerations. */
 static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double rho = f->def.density, dt = f->dt, share = step_share(f);
   for (int64_t i = begin; i < end; i++) {
     f->system.right[i] = 0.0;
@@ -98,7 +97,6 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 /* No suction beyond that of the surface: where p would be below 0 it is 0. Isolated particles have
  * p = 0. */
 static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
     const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;
@@ -110,20 +108,19 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
 
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
-  mps_status status = mpsi_fluid_weigh_flow(f, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_weigh_flow(f, function));
   mpsi_fluid_use_flow(f, true);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
   const bool outside = mpsi_fluid_solved_outside(f);
-  status = outside ? mpsi_fluid_hand_matrix(f, function) : mpsi_fluid_factor(f, function);
+  mps_status status =
+      outside ? mpsi_fluid_hand_matrix(f, function) : mpsi_fluid_factor(f, function);
   mpsi_fluid_use_flow(f, false);
   return status;
 }
 
 static mps_status solve_inside(mps_fluid *f, const char *function) {
   const int64_t iterations = mpsi_fluid_pcg(f);
-  const mps_status lost = mpsi_fluid_lost(f, function);
-  if (lost != MPS_OK) return lost;
+  MPSI_TRY(mpsi_fluid_lost(f, function));
   if (iterations < 0)
     return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
                      "step %lld, t = %g s: the pressure has not converged to %g in %d iterations; "
@@ -138,8 +135,7 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
   mps_status status = MPS_OK;
   if (!classical) {
-    status = mpsi_fluid_check_space(f, function);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_fluid_check_space(f, function));
     mpsi_fluid_press_ghosts(f);
     mpsi_fluid_use_flow(f, true);
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);

@@ -1,7 +1,6 @@
 /* pressure.h - rows of the pressure equation, and its solution.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PRESSURE_H
-#define MPSI_FLUID_PRESSURE_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -20,5 +19,3 @@ typedef struct mpsi_fluid_system {
 
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
-
-#endif

@@ -48,8 +48,7 @@ mps_status mpsi_fluid_partition_create(mps_fluid *f, const char *function) {
 
 static void drop_link(mps_fluid *f, link *l) {
   mpsi_halo_destroy(f->context, &l->halo);
-  mpsi_free(f->context, l->guest);
-  mpsi_free(f->context, l->in);
+  MPSI_FREE(f->context, l->guest, l->in);
   *l = (link){0};
 }
 
@@ -58,8 +57,7 @@ static void forget(mps_fluid *f) {
   drop_link(f, &s->all);
   drop_link(f, &s->near);
   drop_link(f, &s->back);
-  mpsi_free(f->context, s->is_guest);
-  mpsi_free(f->context, s->mark);
+  MPSI_FREE(f->context, s->is_guest, s->mark);
   s->is_guest = NULL, s->mark = NULL;
   s->count = -1;
 }
@@ -84,7 +82,6 @@ mps_status mpsi_fluid_agree_max(mps_fluid *f, const char *function, mps_status s
 
 /* Values that all ranks must agree on: motions of walls and bodies, and loads, in the step. */
 static void give_state(const mps_fluid *f, mpsi_given *list) {
-  mpsi_given_begin(list);
   mpsi_give(list, "the number of particles", (double)f->count);
   mpsi_give(list, "dt", f->dt);
   mpsi_give(list, "time", f->time);
@@ -104,7 +101,7 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
 }
 
 mps_status mpsi_fluid_agree_same(mps_fluid *f, const char *function, mps_status status) {
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   double edited = f->edited;
   if (!f->partition) return status;
   give_state(f, &list);
@@ -193,8 +190,7 @@ static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t
   const mpsi_halo_def def = {
       .guests = count, .rank = g.rank, .index = g.index, .columns = MPSI_FLUID_SHARED};
   if (status == MPS_OK) status = mpsi_halo_create(f->partition->domain, function, &def, &l->halo);
-  mpsi_free(f->context, g.rank);
-  mpsi_free(f->context, g.index);
+  MPSI_FREE(f->context, g.rank, g.index);
   return status;
 }
 
@@ -250,15 +246,13 @@ static mps_status request_items(mps_fluid *f, const char *function, mpsi_mailbox
   }
   status = mpsi_fluid_agree(f, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(s->domain, function, count, message, box);
-  mpsi_free(f->context, message);
-  mpsi_free(f->context, words);
+  MPSI_FREE(f->context, message, words);
   return status;
 }
 
 /* Its guests are the guests of `near` elsewhere that are this rank's particles. */
 static void list_requested(const mps_fluid *f, const void *from, guests *g) {
   const mpsi_mailbox *box = from;
-  (void)f;
   for (int32_t m = 0; m < box->count; m++) {
     const int64_t *words = box->mail[m].data;
     for (int64_t k = 1; k < box->mail[m].bytes / 8; k++)
@@ -269,10 +263,9 @@ static void list_requested(const mps_fluid *f, const void *from, guests *g) {
 static mps_status join_back(mps_fluid *f, const char *function) {
   mpsi_mailbox box = {.context = f->context};
   int64_t count = 0;
-  mps_status status = request_items(f, function, &box);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(request_items(f, function, &box));
   for (int32_t m = 0; m < box.count; m++) count += box.mail[m].bytes / 8 - 1;
-  status = make_link(f, function, &f->partition->back, count, list_requested, &box);
+  mps_status status = make_link(f, function, &f->partition->back, count, list_requested, &box);
   mpsi_domain_free_mail(&box);
   return status;
 }
@@ -293,9 +286,8 @@ static mps_status begin_anew(mps_fluid *f, const char *function) {
   mps_status status = s->is_guest && s->mark
                           ? MPS_OK
                           : mpsi_fail_memory(f->context, function, (size_t)f->count * 9);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status == MPS_OK) status = join(f, function, &s->all, is_foreign);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
+  MPSI_TRY(join(f, function, &s->all, is_foreign));
   s->count = f->count;
   s->epoch = mps_particles_epoch(f->particles) + 1; /* another one */
   return MPS_OK;
@@ -307,7 +299,6 @@ typedef struct search {
 } search;
 
 static void find_guests(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
   search *s = data;
   mps_fluid *f = s->fluid;
   const int64_t end = (chunk + 1) * MPSI_FLUID_CHUNK;

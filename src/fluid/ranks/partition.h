@@ -12,8 +12,7 @@
  *
  * Without a domain of several ranks these functions do nothing, and all particles are own ones.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PARTITION_H
-#define MPSI_FLUID_PARTITION_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -62,5 +61,3 @@ void mpsi_fluid_send_moments(mps_fluid *fluid);
 void mpsi_fluid_send_flux(mps_fluid *fluid);
 /* fluid->local of all particles, as far as levels and loads use it. */
 void mpsi_fluid_send_local(mps_fluid *fluid);
-
-#endif

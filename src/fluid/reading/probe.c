@@ -196,8 +196,7 @@ static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char 
   const double step = pitch(f, w);
   const bool ends = f->faces || f->segments > 0;
   int64_t low, high, near;
-  const mps_status status = gather(f, w, function, &near);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(gather(f, w, function, &near));
   wetted_range(f, w, near, &low, &high);
   fit *sum = NULL;
   if (high > low) {
@@ -253,8 +252,7 @@ static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall 
     w->load = (mpsi_fluid_load){0};
     if (has_images(f) && w->images == 0) continue; /* far from the water */
     resultant r = {w, pitch(f, w) * f->def.measure};
-    const mps_status status = for_points(f, w, function, add_force, &r);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(for_points(f, w, function, add_force, &r));
     for (int c = 0; c < 2; c++) all->force[c] += w->load.force[c];
     all->moment += w->load.moment, all->wetted += w->load.wetted;
   }
@@ -285,7 +283,6 @@ static mps_status check_wall(const mps_fluid *f, const char *function, int32_t n
 mps_status mpsi_fluid_get_reaction(void *solver, const char *function, mps_status status,
                                    int32_t number, mps_reaction *out) {
   const mps_fluid *f = solver;
-  (void)function;
   if (status != MPS_OK) return status;
   const mpsi_fluid_wall *w = &f->wall[number];
   mps_reaction reaction = {.count = w->load.wetted,
@@ -306,9 +303,8 @@ static mps_status check_pressure(mps_fluid *f, const char *function) {
   if (f->stage == MPSI_FLUID_BEGUN)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "the open step's pressure has not been solved");
-  const mps_status status =
-      mpsi_fluid_agree(f, function, mpsi_particles_committed(f->particles, function));
-  return status == MPS_OK ? mpsi_fluid_refresh(f, function) : status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, mpsi_particles_committed(f->particles, function)));
+  return mpsi_fluid_refresh(f, function);
 }
 
 /* ---- pressures ------------------------------------------------------------------------------- */
@@ -329,24 +325,22 @@ static void list_point(void *user, const double *x, double p) {
 static mps_status list_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                               listing *list) {
   if (!w->line) return for_points(f, w, function, list_point, list);
-  mps_status status = MPS_OK;
-  for (int64_t k = 0; k < w->line->count && status == MPS_OK; k++)
-    status = for_points(f, &w->line->segment[k].wall, function, list_point, list);
-  return status;
+  for (int64_t k = 0; k < w->line->count; k++)
+    MPSI_TRY(for_points(f, &w->line->segment[k].wall, function, list_point, list));
+  return MPS_OK;
 }
 
 mps_status mps_fluid_get_boundary_points(const mps_fluid *handle, int32_t number, int64_t capacity,
                                          int64_t *count, double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = check_wall(f, __func__, number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_wall(f, __func__, number));
   if (!count) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is NULL");
   if (capacity < 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                      (long long)capacity);
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
-  status = check_pressure(f, __func__);
+  mps_status status = check_pressure(f, __func__);
   if (status == MPS_OK) status = list_points(f, __func__, &f->wall[number], &list);
   status = mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
   if (status == MPS_OK) *count = list.count;
@@ -439,8 +433,7 @@ static mps_status find_pressures(mps_fluid *f, const char *function, const place
   for (int64_t k = 0; k < count; k++) {
     double off;
     const mpsi_fluid_wall *w = find_place(f, of, x + 3 * k, &off);
-    const mps_status status = w == last ? MPS_OK : gather(f, w, function, &near);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(w == last ? MPS_OK : gather(f, w, function, &near));
     last = w;
     pressure[k] = pressure_at(f, w, near, x + 3 * k);
   }
@@ -452,8 +445,7 @@ static mps_status get_pressures(mps_fluid *f, const char *function, mps_status s
                                 const place_of *of, int64_t count, const double *x,
                                 double *pressure) {
   if (status == MPS_OK) status = check_points(f, function, of, count, x, pressure);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
   status = check_pressure(f, function);
   if (status == MPS_OK) status = find_pressures(f, function, of, count, x, pressure);
   return mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, function, status));
@@ -519,10 +511,8 @@ mps_status mps_fluid_get_levels(const mps_fluid *handle, int64_t count, const do
     if (!isfinite(station[k]))
       return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                        "station %lld is %g m, must be finite", (long long)k, station[k]);
-  mps_status status =
-      mpsi_fluid_agree(f, __func__, mpsi_particles_committed(f->particles, __func__));
-  if (status == MPS_OK) status = mpsi_fluid_ensure_surface(f, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, __func__, mpsi_particles_committed(f->particles, __func__)));
+  MPSI_TRY(mpsi_fluid_ensure_surface(f, __func__));
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
   const double *rise = mpsi_particles_column(f->particles, "surface_rise", 0);

@@ -1,7 +1,6 @@
 /* afloat.h - floating bodies, solved with the pressure.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_AFLOAT_H
-#define MPSI_FLUID_AFLOAT_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -9,5 +8,3 @@
 
 bool mpsi_fluid_any_afloat(const mps_fluid *fluid);
 mps_status mpsi_fluid_solve_afloat(mps_fluid *fluid, const char *function);
-
-#endif

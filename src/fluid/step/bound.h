@@ -1,6 +1,5 @@
 /* bound.h - what energy allows the water. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_BOUND_H
-#define MPSI_FLUID_BOUND_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -9,5 +8,3 @@ void mpsi_fluid_begin_bound(mps_fluid *f);
 /* After the particles of a step have moved and the walls have their loads: MPS_ERROR_DIVERGED where
  * they have more kinetic energy than they can have. */
 mps_status mpsi_fluid_check_bound(mps_fluid *f, const char *function);
-
-#endif

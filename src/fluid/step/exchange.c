@@ -52,8 +52,7 @@ mps_status mpsi_fluid_begin_exchange(mps_fluid *f, const char *function) {
 }
 
 void mpsi_fluid_drop_exchange(mps_fluid *f) {
-  mpsi_free(f->context, f->exchange.rows.item);
-  mpsi_free(f->context, f->exchange.sums.item);
+  MPSI_FREE(f->context, f->exchange.rows.item, f->exchange.sums.item);
 }
 
 /* ---- in the loops over particles ------------------------------------------------------------- */

@@ -1,8 +1,7 @@
 /* exchange.h - exchange of momentum between water and walls besides the pressure: see exchange.c.
  * The loops over particles add to their chunk's sums.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_EXCHANGE_H
-#define MPSI_FLUID_EXCHANGE_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -25,5 +24,3 @@ mps_status mpsi_fluid_begin_exchange(mps_fluid *fluid, const char *function);
 void mpsi_fluid_end_exchange(mps_fluid *fluid);
 void mpsi_fluid_book_momentum(mps_fluid *fluid);
 void mpsi_fluid_drop_exchange(mps_fluid *fluid);
-
-#endif

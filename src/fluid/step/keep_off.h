@@ -1,7 +1,6 @@
 /* keep_off.h - particles that have passed a polyline go back to the fluid's side.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_KEEP_OFF_H
-#define MPSI_FLUID_KEEP_OFF_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -10,5 +9,3 @@
 /* Takes particle i, which has moved to x with the velocity u, back to the fluid's side
  * of polylines; whether it had to. */
 bool mpsi_fluid_keep_off_lines(const mps_fluid *fluid, int64_t i, double *x, double *u);
-
-#endif

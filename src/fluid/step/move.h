@@ -1,7 +1,6 @@
 /* move.h - pressure gradient, velocities, positions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_MOVE_H
-#define MPSI_FLUID_MOVE_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -11,5 +10,3 @@ void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid, double *way);
 
 #define MPSI_FLUID_OFF_WALL 0.1 /* l0: no particle comes closer to a wall */
-
-#endif

@@ -125,7 +125,6 @@ static void mirror_in_lines(const mps_fluid *f, int64_t ghost, double *G) {
 
 /* G of an image: R G R^T, R the reflections at its walls. */
 static void mirror_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     double G[4];

@@ -1,7 +1,6 @@
 /* smooth.h - smoothing of rough velocities between pairs of particles, see smooth.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_SMOOTH_H
-#define MPSI_FLUID_SMOOTH_H
+#pragma once
 
 #include "fluid/base/flow_solver.h"
 
@@ -14,5 +13,3 @@ void mpsi_fluid_prepare_smoothing(mps_fluid *f);
 /* du: change of particle i's velocity (m/s) by smoothing and viscosity; what walls exchange with it
  * goes to the sums of its chunk. */
 void mpsi_fluid_smooth(const mps_fluid *f, int64_t chunk, int64_t i, double *du);
-
-#endif

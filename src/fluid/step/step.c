@@ -73,8 +73,7 @@ static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i, doub
 
 /* Loads and the caller's forces on particles, over the step, before the pressure solution. */
 static mps_status add_loads(mps_fluid *f, const char *function) {
-  const mps_status status = mpsi_fluid_find_loads(f, function, f->time);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_find_loads(f, function, f->time));
   f->load_time = f->time;
   f->driven = f->push[0] != NULL;
   for (int c = 0; f->driven && c < 2; c++)
@@ -115,8 +114,7 @@ static void abandon(mps_fluid *f) {
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mps_status status = mpsi_particles_ready(f->particles, function);
   if (status == MPS_OK) status = mpsi_fluid_look_ahead(f, function, dt);
-  status = mpsi_fluid_agree(f, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_agree(f, function, status));
   f->stage = MPSI_FLUID_BEGUN;
   f->dt = dt;
   note_state(f);
@@ -147,12 +145,11 @@ static mps_status finish(mps_fluid *f, const char *function) {
   double way;
   const int64_t bad = mpsi_fluid_advance(f, &way);
   mpsi_fluid_end_exchange(f);
-  const mps_status lost = mpsi_fluid_lost(f, function);
-  if (lost != MPS_OK) return lost;
+  MPSI_TRY(mpsi_fluid_lost(f, function));
   if (bad >= 0) return went_wrong(f, function, bad, way);
   f->stage = MPSI_FLUID_MOVED;
-  const mps_status loaded = mpsi_fluid_load_walls(f, function);
-  return loaded == MPS_OK ? mpsi_fluid_check_bound(f, function) : loaded;
+  MPSI_TRY(mpsi_fluid_load_walls(f, function));
+  return mpsi_fluid_check_bound(f, function);
 }
 
 /* After all parts: keeps the new state and sorts it now and then. */
@@ -211,10 +208,7 @@ static double dt_of(const mps_fluid *f) {
   return isnan(f->def.dt) ? mpsi_fluid_limit(f) : f->def.dt;
 }
 
-double mpsi_fluid_dt(void *solver, const char *function) {
-  (void)function;
-  return dt_of(solver);
-}
+double mpsi_fluid_dt(void *solver, const char *function) { return dt_of(solver); }
 
 /* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
  * (`span`, s) where nothing limits that: the fluid has diverged, and the run would hardly end. */
@@ -249,12 +243,11 @@ mps_status mpsi_fluid_advance_march(void *solver, const char *function, mpsi_mar
   mps_fluid *f = solver;
   (void)count; /* 1 */
   const bool run = mpsi_march_is_run(m);
-  mps_status status = check_dt(f, function, run ? m->t_end - m->start : INFINITY);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_dt(f, function, run ? m->t_end - m->start : INFINITY));
   const double rest = m->t_end - f->time, full = dt_of(f);
   if (!run) return take_step(f, function, full);
   m->last = rest <= full * (1.0 + 1e-9);
-  status = take_step(f, function, m->last ? rest : even_step(rest, full));
+  mps_status status = take_step(f, function, m->last ? rest : even_step(rest, full));
   if (status == MPS_OK && m->last) f->time = m->t_end;
   return status;
 }
@@ -263,14 +256,13 @@ mps_status mpsi_fluid_advance_march(void *solver, const char *function, mpsi_mar
 
 mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK) status = mpsi_fluid_check_dt(f, __func__, dt);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_fluid_ready(f, __func__));
+  MPSI_TRY(mpsi_fluid_check_dt(f, __func__, dt));
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = mpsi_solver_check_cancel(&f->base, __func__);
+  mps_status status = mpsi_solver_check_cancel(&f->base, __func__);
   if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
   if (status == MPS_OK) {
     status = begin(f, __func__, isnan(dt) ? dt_of(f) : dt);
@@ -290,11 +282,10 @@ static mps_status check_stage(mps_fluid *f, const char *function, mpsi_fluid_sta
 
 mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_stage(f, __func__, MPSI_FLUID_BEGUN));
   for (int b = 0; b < f->walls; b++) f->wall[b].former = f->wall[b].load;
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = mpsi_fluid_agree(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
+  mps_status status = mpsi_fluid_agree(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
   if (status == MPS_OK) {
     f->stage = MPSI_FLUID_BEGUN;
     mpsi_fluid_begin_walls(f, f->dt);
@@ -313,11 +304,9 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
 
 mps_status mps_fluid_end_step(mps_fluid *f) {
   if (!f) return mpsi_null(__func__, "fluid");
-  mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
-  if (status != MPS_OK) return status;
-  status = mpsi_fluid_agree(f, __func__, mpsi_particles_ready(f->particles, __func__));
-  if (status != MPS_OK) return status;
-  status = finish(f, __func__);
+  MPSI_TRY(check_stage(f, __func__, MPSI_FLUID_SOLVED));
+  MPSI_TRY(mpsi_fluid_agree(f, __func__, mpsi_particles_ready(f->particles, __func__)));
+  mps_status status = finish(f, __func__);
   if (status == MPS_OK) return keep(f, __func__);
   abandon(f);
   return status;
@@ -325,8 +314,7 @@ mps_status mps_fluid_end_step(mps_fluid *f) {
 
 mps_status mps_fluid_abandon_step(mps_fluid *f) {
   if (!f) return mpsi_null(__func__, "fluid");
-  const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_stage(f, __func__, MPSI_FLUID_BEGUN));
   abandon(f);
   for (int b = 0; b < f->walls; b++) f->wall[b].given = f->wall[b].placed = false;
   return MPS_OK;

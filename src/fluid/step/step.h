@@ -1,7 +1,6 @@
 /* step.h - steps of the fluid, and their size, for the run of all solvers (solver/solver_base.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_STEP_H
-#define MPSI_FLUID_STEP_H
+#pragma once
 
 #include "solver/solver_base.h"
 
@@ -10,5 +9,3 @@ double mpsi_fluid_dt(void *fluid, const char *function);
 mps_status mpsi_fluid_begin_march(void *fluid, const char *function, mpsi_march *march);
 mps_status mpsi_fluid_advance_march(void *fluid, const char *function, mpsi_march *march,
                                     int64_t count);
-
-#endif

@@ -75,9 +75,7 @@ static const char *kind_of(const mpsi_fluid_wall *w) { return w->of_body ? "body
 
 mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
   for (int32_t b = 0; f->segments > 0 && b < f->bodies; b++) {
-    const mps_status status =
-        f->body[b].body ? mpsi_fluid_check_clearance(f, function, true, b) : MPS_OK;
-    if (status != MPS_OK) return status;
+    MPSI_TRY(f->body[b].body ? mpsi_fluid_check_clearance(f, function, true, b) : MPS_OK);
   }
   for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];

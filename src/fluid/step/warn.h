@@ -1,7 +1,6 @@
 /* warn.h - assumptions of the model: warnings, and errors of steps that break them.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_WARN_H
-#define MPSI_FLUID_WARN_H
+#pragma once
 
 #include <mps/fluid.h>
 
@@ -16,5 +15,3 @@ typedef enum mpsi_fluid_warning {
 mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
 void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
-
-#endif

@@ -1,6 +1,7 @@
 /* access.c - access to the solver object: its guard, ranks of ids, and the set's fields as vectors
  * over all particles. SPDX-License-Identifier: BSD-3-Clause */
 #include "access.h"
+#include "core/base/order.h"
 #include "implicit/base/implicit_solver.h"
 
 #include <stdlib.h>
@@ -64,25 +65,14 @@ mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function
 }
 
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id) {
-  int64_t low = 0, high = e->n;
+  int64_t low;
   if (id >= 0 && id < e->n && e->id[id] == id) return id; /* as long as none is missing */
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (e->id[middle] < id)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  MPSI_BISECT(low, e->n, middle, e->id[middle] < id);
   return low < e->n && e->id[low] == id ? low : -1;
 }
 
-static int compare_ids(const void *a, const void *b) {
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-  return (x > y) - (x < y);
-}
-
 void mpsi_elastic_sort_ids(int64_t count, int64_t *ids) {
-  qsort(ids, (size_t)count, sizeof *ids, compare_ids);
+  qsort(ids, (size_t)count, sizeof *ids, mpsi_ascending);
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */

@@ -1,7 +1,6 @@
 /* access.h - guard of the public functions, agreement of ranks, ids, fields of the set as vectors.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_ACCESS_H
-#define MPSI_ELASTIC_ACCESS_H
+#pragma once
 
 #include "domain/domain_internal.h"
 
@@ -42,5 +41,3 @@ void mpsi_elastic_finish_mass(mps_elastic *e, double *former, bool renewed);
 /* MPS_ERROR_ARGUMENT that names the field, the particle and what is allowed. */
 mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const char *name, int64_t i,
                                   double value, const char *allowed);
-
-#endif

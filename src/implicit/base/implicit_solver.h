@@ -3,8 +3,7 @@
  * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns hold the
  * local directions that no support fixes. Arrays of the operator have the particles of the window
  * (ranks/partition.h), indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_IMPLICIT_SOLVER_H
-#define MPSI_IMPLICIT_SOLVER_H
+#pragma once
 
 #include "core/context/guard.h"
 #include "core/internal.h"
@@ -108,20 +107,8 @@ struct mps_elastic {
   struct mpsi_elastic_change *change; /* Under way, or NULL */
 };
 
-/* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
-static inline int32_t mpsi_elastic_boundary_count(const mps_elastic *e) {
-  return e->conditions[MPSI_BOUNDARIES].room;
-}
-static inline mpsi_elastic_boundary *mpsi_elastic_boundary_of(const mps_elastic *e,
-                                                              int32_t number) {
-  return e->conditions[MPSI_BOUNDARIES].own[number];
-}
-static inline int32_t mpsi_elastic_load_count(const mps_elastic *e) {
-  return e->conditions[MPSI_LOADS].room;
-}
-static inline mpsi_elastic_load *mpsi_elastic_load_of(const mps_elastic *e, int32_t number) {
-  return e->conditions[MPSI_LOADS].own[number];
-}
+MPSI_CONDITION_ACCESS(mpsi_elastic_boundary, mps_elastic, MPSI_BOUNDARIES, mpsi_elastic_boundary)
+MPSI_CONDITION_ACCESS(mpsi_elastic_load, mps_elastic, MPSI_LOADS, mpsi_elastic_load)
 
 /* Where the operator's arrays have particle i of the window. */
 static inline int64_t mpsi_elastic_slot(const mps_elastic *e, int64_t i) {
@@ -182,5 +169,3 @@ static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64
 static inline int64_t mpsi_elastic_chunks(const mps_elastic *e) {
   return (e->n + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
 }
-
-#endif

@@ -44,8 +44,7 @@ void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to
 
 void mpsi_elastic_end_motion(mps_elastic *e) {
   if (e->motion) mpsi_elastic_free_arrays(e, e->motion);
-  mpsi_free(e->context, e->motion);
-  mpsi_free(e->context, e->ended);
+  MPSI_FREE(e->context, e->motion, e->ended);
   e->motion = e->ended = NULL;
 }
 
@@ -69,6 +68,5 @@ int64_t mpsi_elastic_steps(const void *solver) {
 
 double mpsi_elastic_dt(void *solver, const char *function) {
   const mps_elastic *e = solver;
-  (void)function;
   return e->motion ? e->motion->dt : 0.0;
 }

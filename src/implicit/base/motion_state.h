@@ -1,7 +1,6 @@
 /* motion_state.h - the state of a motion under way, and its arrays.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_MOTION_STATE_H
-#define MPSI_ELASTIC_MOTION_STATE_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -41,5 +40,3 @@ void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 double mpsi_elastic_time(const void *elastic);
 int64_t mpsi_elastic_steps(const void *elastic);
 double mpsi_elastic_dt(void *elastic, const char *function);
-
-#endif

@@ -21,8 +21,6 @@
 #include "bending.h"
 #include "implicit/base/implicit_solver.h"
 
-#include <string.h>
-
 static const int8_t plane_axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 
 static int planes(const mps_elastic *e) { return e->dim == 2 ? 1 : 3; }

@@ -1,7 +1,6 @@
 /* bending.h - bending within a cell.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_BENDING_H
-#define MPSI_ELASTIC_BENDING_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -25,5 +24,3 @@ void mpsi_elastic_measure_bending(mps_elastic *e);
 void mpsi_elastic_bending_force(const mps_elastic *e, const double *u, int64_t p, double *f);
 /* The row of particle p; the number of terms, of which several may have the same site. */
 int32_t mpsi_elastic_bending_row(const mps_elastic *e, int64_t p, mpsi_bending_term *terms);
-
-#endif

@@ -1,7 +1,6 @@
 /* facets.h - faces of cells on the surface of the body.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_FACETS_H
-#define MPSI_ELASTIC_FACETS_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -18,5 +17,3 @@ void mpsi_elastic_reach(const mps_elastic *e, int64_t i, int axis, double *low, 
 void mpsi_elastic_facet_centre(const mps_elastic *e, const mpsi_facet *f, double *centre);
 /* The facet as a box relative to its particle. */
 void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *low, double *high);
-
-#endif

@@ -1,7 +1,6 @@
 /* gradient.h - the displacement gradient and its transpose.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_GRADIENT_H
-#define MPSI_ELASTIC_GRADIENT_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -10,5 +9,3 @@ void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)
 /* Displacement gradients G[(slot * dim + c) * dim + b] = d u_c / d x_b, of own particles and the
  * layers that their pairs reach. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
-
-#endif

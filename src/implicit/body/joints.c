@@ -65,9 +65,7 @@ static int64_t joint_at(const mps_elastic *e, int64_t i, int face) {
 }
 
 void mpsi_elastic_drop_joints(mps_elastic *e) {
-  mpsi_free(e->context, e->joints);
-  mpsi_free(e->context, e->joint_at);
-  mpsi_free(e->context, e->joint_scratch);
+  MPSI_FREE(e->context, e->joints, e->joint_at, e->joint_scratch);
   e->joints = NULL;
   e->joint_at = NULL;
   e->joint_scratch = NULL;
@@ -87,8 +85,7 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   int64_t *at = NULL;
   double *scratch = NULL, *bending = NULL;
   bool any = false;
-  const mps_status status = find_any(e, function, count, &any);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_any(e, function, count, &any));
   if (mpsi_elastic_has_bending(e, any)) {
     const int64_t size = mpsi_elastic_bending_size(e);
     if (!(bending = mpsi_alloc(e->context, size, sizeof *bending)))
@@ -97,9 +94,7 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   if (count > 0 && (!(joints = mpsi_alloc(e->context, count, sizeof *joints)) ||
                     !(at = mpsi_alloc(e->context, places, sizeof *at)) ||
                     !(scratch = mpsi_alloc(e->context, count * e->dim, sizeof *scratch)))) {
-    mpsi_free(e->context, joints);
-    mpsi_free(e->context, at);
-    mpsi_free(e->context, bending);
+    MPSI_FREE(e->context, joints, at, bending);
     return mpsi_fail_memory(e->context, function, (size_t)places * sizeof *at);
   }
   for (int64_t k = 0; at && k < places; k++) at[k] = -1;

@@ -1,7 +1,6 @@
 /* joints.h - faces between cells of different material, and the face value's correction there.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_JOINTS_H
-#define MPSI_ELASTIC_JOINTS_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -42,5 +41,3 @@ void mpsi_elastic_wide_gradient(const mps_elastic *e, int64_t i, mpsi_wide *w);
 /* Does the pair of i and its neighbour j at offset k, farther than one cell along some axis, reach
  * across a joint? The mean of its ends' gradients is then not that of its path. */
 bool mpsi_elastic_pair_crosses(const mps_elastic *e, int64_t i, int64_t j, int32_t k);
-
-#endif

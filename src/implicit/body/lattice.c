@@ -193,13 +193,8 @@ static mps_status allocate_window(mps_elastic *e, const char *function) {
 }
 
 void mpsi_elastic_disconnect(mps_elastic *e) {
-  mpsi_free(e->context, e->links.step);
-  mpsi_free(e->context, e->links.weight);
-  mpsi_free(e->context, e->links.r2);
-  mpsi_free(e->context, e->links.far);
-  mpsi_free(e->context, e->links.to);
-  void *arrays[] = {e->density, e->kappa, e->gradient, e->stress_work, e->at, e->place};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(e->context, arrays[k]);
+  MPSI_FREE(e->context, e->links.step, e->links.weight, e->links.r2, e->links.far, e->links.to);
+  MPSI_FREE(e->context, e->density, e->kappa, e->gradient, e->stress_work, e->at, e->place);
 }
 
 void mpsi_elastic_lose_window(mps_elastic *e) {
@@ -234,10 +229,7 @@ mps_status mpsi_elastic_open_sites(mps_elastic *e, const char *function, mpsi_si
 
 void mpsi_elastic_close_sites(mps_elastic *e, mpsi_sites *s) {
   if (!s) return;
-  mpsi_free(e->context, s->table.key);
-  mpsi_free(e->context, s->table.particle);
-  mpsi_free(e->context, s->site);
-  mpsi_free(e->context, s);
+  MPSI_FREE(e->context, s->table.key, s->table.particle, s->site, s);
 }
 
 int64_t mpsi_elastic_beside(const mpsi_sites *s, int64_t i, int axis, int up) {
@@ -339,7 +331,6 @@ typedef struct loop {
 } loop;
 
 static void loop_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
   const loop *l = data;
   const int64_t end = (chunk + 1) * MPSI_ELASTIC_CHUNK;
   for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++)

@@ -1,7 +1,6 @@
 /* lattice.h - sites of the lattice and their neighbours, n_i, the plain gradient; parallel loops
  * over particles. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_LATTICE_H
-#define MPSI_ELASTIC_LATTICE_H
+#pragma once
 
 #include "implicit/ranks/partition.h"
 
@@ -45,5 +44,3 @@ int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, do
 typedef void (*mpsi_elastic_work)(void *task, int64_t k);
 void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task);
 void mpsi_elastic_for_span(mps_elastic *e, mpsi_span span, mpsi_elastic_work work, void *task);
-
-#endif

@@ -34,8 +34,7 @@ mps_status mpsi_elastic_warn_of_thin_parts(mps_elastic *e, const char *function)
   int64_t count[THIN + 1] = {0}, thin = 0;
   int common = 0;
   if (e->warned_thin || !e->conservative || !isnan(e->def.bending) || e->bending) return MPS_OK;
-  const mps_status status = mpsi_elastic_open_sites(e, function, &sites);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_open_sites(e, function, &sites));
   for (int64_t i = 0; i < e->n; i++) count[count_through(sites, e->dim, i)]++;
   mpsi_elastic_close_sites(e, sites);
   e->warned_thin = true;

@@ -27,7 +27,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   const mps_elastic_boundary_def *def = known;
   const uint32_t all = e->dim == 2 ? MPS_DOF_X | MPS_DOF_Y : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   const double length = length_of(e, def->normal);
-  (void)number;
   if (def->kind == MPS_BOUNDARY_ROLLER &&
       !(isfinite(length) && length > 1e-150)) /* its square must not underflow */
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -41,7 +40,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
 
 static bool item(const void *solver, const void *def, int64_t k, double x[3], int64_t *id) {
   const mps_elastic *e = solver;
-  (void)def;
   if (k >= e->n) return false;
   memcpy(x, &e->x[k * e->dim], (size_t)e->dim * sizeof *x);
   *id = e->id[k];
@@ -51,7 +49,6 @@ static bool item(const void *solver, const void *def, int64_t k, double x[3], in
 static mps_status check_ids(void *solver, const char *function, const void *def, int64_t count,
                             const int64_t *ids) {
   const mps_elastic *e = solver;
-  (void)def;
   for (int64_t i = 0; i < count; i++)
     if (mpsi_elastic_find(e, ids[i]) < 0)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -64,7 +61,6 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   const mps_elastic *e = solver;
   const mps_elastic_boundary_def *def = known;
   mpsi_elastic_boundary *b = own;
-  (void)function, (void)number;
   b->def = def;
   b->dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | (e->dim == 3 ? MPS_DOF_Z : 0);
   b->present = def->id_count;
@@ -134,13 +130,11 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
   for (int32_t k = 0; k < mpsi_elastic_boundary_count(e) && status == MPS_OK; k++)
     status = add_boundary_rows(e, function, k, &s);
   if (status != MPS_OK) {
-    mpsi_free(e->context, s.supports);
-    mpsi_free(e->context, s.of);
+    MPSI_FREE(e->context, s.supports, s.of);
     return status;
   }
   if (!same_directions(e, &s)) e->pattern_valid = false;
-  mpsi_free(e->context, e->supports);
-  mpsi_free(e->context, e->support_of);
+  MPSI_FREE(e->context, e->supports, e->support_of);
   e->supports = s.supports;
   e->support_of = s.of;
   e->support_count = s.count;
@@ -154,7 +148,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_elastic *e = solver;
   void **const slot = &e->conditions[MPSI_BOUNDARIES].own[number];
-  (void)def;
   if (own && former)
     ((mpsi_elastic_boundary *)own)->reaction = ((mpsi_elastic_boundary *)former)->reaction;
   *slot = own;
@@ -167,13 +160,7 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
 }
 
 const mpsi_condition_kind mpsi_elastic_boundaries = {
-    .kind = MPS_DEF_ELASTIC_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_elastic_boundary_def,
-    .what = "boundary",
-    .add = "mps_elastic_add_boundary",
-    .set = "mps_elastic_set_boundary",
-    .get = "mps_elastic_get_boundary",
-    .remove = "mps_elastic_remove_boundary",
+    MPSI_CONDITION_OF(ELASTIC, elastic, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"ids", "id_count", 1}, {"values", "id_count", 3}},
     .most = INT32_MAX - 8,
@@ -189,7 +176,6 @@ const mpsi_condition_kind mpsi_elastic_boundaries = {
 
 mps_status mpsi_elastic_get_reaction(void *solver, const char *function, mps_status status,
                                      int32_t number, mps_reaction *out) {
-  (void)function;
   if (status == MPS_OK) *out = mpsi_elastic_boundary_of(solver, number)->reaction;
   return status;
 }
@@ -220,9 +206,8 @@ static mps_status evaluate_signals(mps_elastic *e, const char *function, double 
 static mps_status find_motions(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   const mps_status status = evaluate_signals(e, function, t, &by_caller);
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   if (!by_caller) return status;
-  mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < mpsi_elastic_boundary_count(e); k++)
     for (int m = 0; mpsi_elastic_boundary_of(e, k) && m < 3; m++)
       mpsi_give_vector(&list, "the motion of a boundary", 3,
@@ -231,8 +216,7 @@ static mps_status find_motions(mps_elastic *e, const char *function, double t) {
 }
 
 mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t) {
-  const mps_status status = find_motions(e, function, t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_motions(e, function, t));
   for (int64_t k = 0; k < e->support_count; k++) {
     mpsi_support *s = &e->supports[k];
     for (int derivative = 0; derivative < 3; derivative++)

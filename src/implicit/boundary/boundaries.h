@@ -1,7 +1,6 @@
 /* boundaries.h - prescribed displacements and rollers; reactions and works by boundary.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_BOUNDARIES_H
-#define MPSI_ELASTIC_BOUNDARIES_H
+#pragma once
 
 #include "solver/conditions.h"
 
@@ -36,5 +35,3 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
 extern const mpsi_condition_kind mpsi_elastic_boundaries;
 mps_status mpsi_elastic_get_reaction(void *elastic, const char *function, mps_status status,
                                      int32_t number, mps_reaction *out);
-
-#endif

@@ -101,9 +101,8 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
       if (e->dim == 3) r[q] = 0.5 * (low[q] + high[q]) + 0.5 * at[b] * (high[q] - low[q]);
       for (int c = 0; c < e->dim; c++) x[c] = e->x[f->particle * e->dim + c] + r[c];
       const int64_t failures = mpsi_failures(e->context);
-      const mps_status status = mpsi_callback_status(e->context, function, "the traction callback",
-                                                     failures, traction(user, x, normal, t));
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_callback_status(e->context, function, "the traction callback", failures,
+                                    traction(user, x, normal, t)));
       for (int c = 0; c < e->dim; c++)
         if (!isfinite(t[c]))
           return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -145,15 +144,13 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   mps_elastic *e = solver;
   const mps_elastic_load_def *def = known;
   mpsi_elastic_load *l = own;
-  mps_status status = MPS_OK;
-  (void)number;
   l->def = def;
   if (def->id_count == 0) return MPS_OK;
   if (!(l->patches = mpsi_alloc(e->context, def->id_count, sizeof *l->patches)))
     return mpsi_fail_memory(e->context, function, (size_t)def->id_count * sizeof *l->patches);
-  for (int64_t k = 0; k < def->id_count && status == MPS_OK; k++)
-    status = make_patch(e, function, def, k, &l->patches[k]);
-  return status;
+  for (int64_t k = 0; k < def->id_count; k++)
+    MPSI_TRY(make_patch(e, function, def, k, &l->patches[k]));
+  return MPS_OK;
 }
 
 /* The first load by mass reads the masses. */
@@ -161,7 +158,6 @@ static mps_status apply(void *solver, const char *function, int32_t number, void
                         void *former) {
   mps_elastic *e = solver;
   const mpsi_elastic_load *l = own;
-  (void)number, (void)def, (void)former;
   if (!l || l->def->kind != MPS_ELASTIC_LOAD_BODY || e->mass) return MPS_OK;
   double *mass = NULL;
   const mps_status status =
@@ -175,13 +171,7 @@ static void drop(void *solver, void *own) {
 }
 
 const mpsi_condition_kind mpsi_elastic_loads = {
-    .kind = MPS_DEF_ELASTIC_LOAD,
-    .definition = &mpsi_definition_of_mps_elastic_load_def,
-    .what = "load",
-    .add = "mps_elastic_add_load",
-    .set = "mps_elastic_set_load",
-    .get = "mps_elastic_get_load",
-    .remove = "mps_elastic_remove_load",
+    MPSI_CONDITION_OF(ELASTIC, elastic, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}, {"values", "id_count", 3}},
     .most = INT32_MAX - 8,
@@ -291,9 +281,8 @@ static mps_status evaluate_signals(mps_elastic *e, const char *function, double 
 static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   mps_status status = evaluate_signals(e, function, t, &by_caller);
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   if (!by_caller) return status;
-  mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < mpsi_elastic_load_count(e); k++)
     if (mpsi_elastic_load_of(e, k))
       mpsi_give_vector(&list, "the present factor on a load", 3, mpsi_elastic_load_of(e, k)->scale);
@@ -315,8 +304,7 @@ static mps_status check_strength(const mps_elastic *e, const char *function) {
 }
 
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
-  mps_status status = find_scales(e, function, t);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_scales(e, function, t));
   memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
   if (has_gravity(e)) {
     mps_elastic_load_def weight = {.kind = MPS_ELASTIC_LOAD_BODY};
@@ -334,7 +322,7 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
       if (i >= 0) add_patch(e, i, &l->patches[p], l->scale);
     }
   }
-  status = add_external(e, function);
+  mps_status status = add_external(e, function);
   if (status == MPS_OK) status = mpsi_elastic_complete(e, function, e->load);
   return status == MPS_OK ? check_strength(e, function) : status;
 }
@@ -388,9 +376,8 @@ mps_status mps_elastic_get_load_resultant(const mps_elastic *handle, const doubl
                                           double *force, double *moment) {
   mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
+  mps_status status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
   double *mass = e->mass;
   if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mpsi_elastic_time(e));

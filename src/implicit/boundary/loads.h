@@ -1,7 +1,6 @@
 /* loads.h - nodal forces of the loads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_LOADS_H
-#define MPSI_ELASTIC_LOADS_H
+#pragma once
 
 #include "solver/conditions.h"
 
@@ -34,5 +33,3 @@ void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double 
                             double *force, double *moment);
 
 extern const mpsi_condition_kind mpsi_elastic_loads;
-
-#endif

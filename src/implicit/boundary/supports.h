@@ -1,7 +1,6 @@
 /* supports.h - fixed directions of particles, and the numbers of the free unknowns.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_SUPPORTS_H
-#define MPSI_ELASTIC_SUPPORTS_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -40,5 +39,3 @@ void mpsi_elastic_impose(const mps_elastic *e, int derivative, double *values);
 void mpsi_elastic_reduce(const mps_elastic *e, const double *f, double *free_values);
 /* Keeps only the components of f along fixed directions. */
 void mpsi_elastic_keep_fixed(const mps_elastic *e, double *f);
-
-#endif

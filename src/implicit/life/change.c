@@ -63,8 +63,8 @@ static void carry(const mps_elastic *e, int64_t i, mps_elastic *next, int64_t k)
 }
 
 static mps_status finish(mps_elastic *next, const char *function) {
-  const mps_status status = mpsi_elastic_make_body(next, function, true);
-  return status == MPS_OK ? mpsi_elastic_make_supports(next, function) : status;
+  MPSI_TRY(mpsi_elastic_make_body(next, function, true));
+  return mpsi_elastic_make_supports(next, function);
 }
 
 static int64_t count_present(const mps_elastic *e, const mpsi_elastic_boundary *b) {
@@ -114,9 +114,8 @@ static mps_status prepare_removal(mps_elastic *e, const char *function, int64_t 
 mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count,
                                const int64_t *ids) {
   mps_elastic *e = self;
-  mps_status status = mpsi_guard_check(&e->guard, e->context, function);
-  if (status != MPS_OK) return status;
-  status = prepare_removal(e, function, count, ids);
+  MPSI_TRY(mpsi_guard_check(&e->guard, e->context, function));
+  mps_status status = prepare_removal(e, function, count, ids);
   if (status != MPS_OK) mpsi_elastic_drop_change(e);
   return status;
 }
@@ -196,28 +195,25 @@ static mps_status carry_all(mps_elastic *e, const char *function, const former *
                        "in %s the reference position of particle %lld is another than in this "
                        "solver",
                        source, (long long)e->id[i]);
-    const mps_status status = check_cut(e, i, function, f, k, source, disagreement);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(check_cut(e, i, function, f, k, source, disagreement));
     carry(e, i, next, k);
   }
   /* present moduli, and former ones of restored particles */
   for (int64_t p = 0; p < f->count; p++) {
     if (mpsi_elastic_find(e, f->id[p]) >= 0) continue;
-    const mps_status status = mpsi_elastic_set_moduli(
-        next, function, mpsi_elastic_find(next, f->id[p]), f->young[p], f->poisson[p]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_elastic_set_moduli(next, function, mpsi_elastic_find(next, f->id[p]), f->young[p],
+                                     f->poisson[p]));
   }
   return MPS_OK;
 }
 
 static mps_status prepare_body(mps_elastic *e, const char *function, const former *f,
                                const char *source, mps_status disagreement) {
-  mps_status status = begin(e, function, f->count);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(begin(e, function, f->count));
   mps_elastic *next = &e->change->next;
   memcpy(next->id, f->id, (size_t)f->count * sizeof *next->id);
   mpsi_elastic_sort_ids(f->count, next->id);
-  status = carry_all(e, function, f, source, disagreement);
+  mps_status status = carry_all(e, function, f, source, disagreement);
   if (status == MPS_OK) status = finish(next, function);
   if (!next->mass) next->mass = mpsi_alloc(e->context, next->n, sizeof *next->mass);
   if (status == MPS_OK && !next->mass)

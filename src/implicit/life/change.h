@@ -1,7 +1,6 @@
 /* change.h - particles removed, or restored by a former state.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_CHANGE_H
-#define MPSI_ELASTIC_CHANGE_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -13,5 +12,3 @@ mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mp
                                       const char *source, mps_status disagreement);
 void mpsi_elastic_bind(void *self);
 void mpsi_elastic_drop_change(mps_elastic *e);
-
-#endif

@@ -24,8 +24,7 @@
 static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
                            int32_t dim, double spacing, bool published, mps_elastic_def *def) {
   *def = mps_elastic_defaults();
-  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_elastic_def, user, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_elastic_def, user, def));
   if (def->kernel) def->radius_ratio = mps_kernel_radius(def->kernel) / spacing;
   if (def->kernel && !(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -92,12 +91,11 @@ static const mpsi_solver_kind elastic_kind = {
 mps_solver *mps_elastic_solver(const mps_elastic *e) { return e ? (mps_solver *)&e->base : NULL; }
 
 static mps_status build(mps_elastic *e, const char *function) {
-  mps_status status = mpsi_elastic_allocate(e, function);
-  if (status == MPS_OK && e->def.material) status = mpsi_elastic_add_material(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_allocate(e, function));
+  if (e->def.material) MPSI_TRY(mpsi_elastic_add_material(e, function));
   memcpy(e->id, mpsi_particles_integers(e->particles, "id"), (size_t)e->n * sizeof *e->id);
   mpsi_elastic_sort_ids(e->n, e->id);
-  status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
+  mps_status status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
   for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
     if (!isfinite(e->x[i]))
       status =
@@ -118,7 +116,6 @@ static mps_status take_edit(void *self, const char *function, const char *field,
                             const double *former) {
   mps_elastic *e = self;
   bool same = true;
-  (void)former;
   for (int32_t c = 0; c < e->dim && strcmp(field, "position") == 0; c++) {
     const double *x = mpsi_particles_column(e->particles, "position", c);
     for (int64_t i = 0; i < e->n && same; i++)
@@ -135,9 +132,8 @@ static mps_status take_edit(void *self, const char *function, const char *field,
 /* Do ranks that solve together have the same body and definition? */
 static mps_status agree_on_body(const mps_elastic_def *def, const char *function, mps_status status,
                                 mps_particles *particles) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpsi_domain_many(def->domain)) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_elastic_def, def);
   mpsi_give(&given, "the kind of the kernel", def->kernel ? mps_kernel_get_kind(def->kernel) : -1);
   if (status == MPS_OK) mpsi_material_give(&given, def->material);
@@ -152,13 +148,12 @@ static mps_status create(mps_context *context, const char *function, mps_particl
   if (!context) return mpsi_null(function, "context");
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = mpsi_particles_check_context(particles, context, function);
-  if (status == MPS_OK && mps_particles_count(particles) == 0)
-    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is empty");
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_particles_check_context(particles, context, function));
+  if (mps_particles_count(particles) == 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is empty");
   mps_elastic_def def;
-  status = read_def(context, function, user_def, mps_particles_dim(particles),
-                    mps_particles_spacing(particles), published, &def);
+  mps_status status = read_def(context, function, user_def, mps_particles_dim(particles),
+                               mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, function, NULL);
   if (status == MPS_OK)

@@ -43,8 +43,7 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   if (!e) return mpsi_null(__func__, "elastic");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_material_give(&given, material);
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
@@ -96,16 +95,13 @@ static mps_status check_cut(const mps_elastic *e, const char *function, int32_t 
 
 mps_status mps_elastic_cut(mps_elastic *e, int32_t side, const int64_t *ids, int64_t count) {
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "side", side);
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
-  status = check_cut(e, __func__, side, ids, count);
-  status = mpsi_elastic_leave(e, mpsi_elastic_agree_given(e, __func__, status, &given));
-  if (status != MPS_OK) return status;
+  mps_status status = check_cut(e, __func__, side, ids, count);
+  MPSI_TRY(mpsi_elastic_leave(e, mpsi_elastic_agree_given(e, __func__, status, &given)));
   mpsi_elastic_end_motion(e); /* the masses of its cells have changed */
   for (int64_t k = 0; k < count; k++) {
     const int64_t i = mpsi_elastic_find(e, ids[k]);
@@ -155,12 +151,10 @@ void mpsi_elastic_free_body(mps_elastic *e) {
   mpsi_cholesky_destroy(&e->cholesky);
   mpsi_elastic_disconnect(e);
   mpsi_elastic_drop_joints(e);
-  void *arrays[] = {
-      e->id,      e->x,       e->cut,      e->volume,       e->lambda,  e->mu,
-      e->poisson, e->facets,  e->load,     e->reaction,     e->work,    e->dof,
-      e->faces,   e->column,  e->row,      e->value,        e->rhs,     e->solution,
-      e->mass,    e->cg_work, e->supports, e->displacement, e->bending, e->support_of};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+  MPSI_FREE(context, e->id, e->x, e->cut, e->volume, e->lambda, e->mu, e->poisson, e->facets,
+            e->load, e->reaction, e->work, e->dof, e->faces, e->column, e->row, e->value, e->rhs,
+            e->solution, e->mass, e->cg_work, e->supports, e->displacement, e->bending,
+            e->support_of);
 }
 
 mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known) {

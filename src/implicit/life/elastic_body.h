@@ -1,7 +1,6 @@
 /* elastic_body.h - material, cuts and derived data of the present body.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_BODY_H
-#define MPSI_ELASTIC_BODY_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -14,5 +13,3 @@ mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool mod
 void mpsi_elastic_free_body(mps_elastic *e);
 /* The definition's material to the fields, at creation. */
 mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
-
-#endif

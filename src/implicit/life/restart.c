@@ -62,9 +62,7 @@ static void get_cuts(const void *solver, void *values) {
   for (int64_t i = 0; i < e->n; i++) ((int64_t *)values)[i] = e->cut[i];
 }
 /* Cuts stay; those of restored particles are set already (change.c). */
-static void keep_cuts(void *solver, int64_t rows, const void *values) {
-  (void)solver, (void)rows, (void)values;
-}
+static void keep_cuts(void *solver, int64_t rows, const void *values) {}
 static const mpsi_state_table table_of_cuts = {MPSI_STATE_I64, 1,    count_cuts,
                                                get_cuts,       NULL, keep_cuts};
 

@@ -29,8 +29,7 @@ static bool allocate(mps_context *context, lanczos *s) {
 }
 
 static void release(mps_context *context, lanczos *s) {
-  void *arrays[] = {s->residual, s->vectors, s->work, s->worku, s->values, s->select, s->root};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+  MPSI_FREE(context, s->residual, s->vectors, s->work, s->worku, s->values, s->select, s->root);
 }
 
 /* y = M^1/2 K^-1 M^1/2 x */
@@ -54,9 +53,7 @@ static mps_status iterate(mps_elastic *e, const char *function, lanczos *s) {
     dsaupd_c(&ido, "I", s->n, "LM", s->count, 0.0, s->residual, s->basis, s->vectors, s->n,
              parameters, pointers, s->work, s->worku, length, &info);
     if (ido != 1 && ido != -1) break;
-    const mps_status status =
-        operate(e, function, s, s->work + pointers[0] - 1, s->work + pointers[1] - 1);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(operate(e, function, s, s->work + pointers[0] - 1, s->work + pointers[1] - 1));
     if (mpsi_cancelled(e->context))
       return mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled");
   }
@@ -110,9 +107,6 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 #else
 static mps_status solve(mps_elastic *e, const char *function, int32_t count, double *omega,
                         double *shapes) {
-  (void)count;
-  (void)omega;
-  (void)shapes;
   return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                    "this libmps was built without ARPACK");
 }
@@ -120,9 +114,8 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 
 static mps_status find_modes(mps_elastic *e, const char *function, int64_t count, double *omega,
                              double *shapes, double **mass) {
-  mps_status status = mpsi_elastic_read_mass(e, function, mass);
-  if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_read_mass(e, function, mass));
+  MPSI_TRY(mpsi_elastic_prepare(e, function));
   if (count < 1 || count >= e->unknowns)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld, must be at least 1 and below the %lld unknowns",
@@ -130,9 +123,8 @@ static mps_status find_modes(mps_elastic *e, const char *function, int64_t count
   if (e->unknowns > INT32_MAX / 64)
     return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                      "%lld unknowns are too many for ARPACK's integers", (long long)e->unknowns);
-  status = mpsi_elastic_factor(e, function, 0.0);
-  if (status == MPS_OK) status = solve(e, function, (int32_t)count, omega, shapes);
-  return status;
+  MPSI_TRY(mpsi_elastic_factor(e, function, 0.0));
+  return solve(e, function, (int32_t)count, omega, shapes);
 }
 
 mps_status mps_elastic_modes(mps_elastic *e, int64_t count, double *omega, double *shapes) {

@@ -136,8 +136,7 @@ static mps_status check_finite(const mps_elastic *e, const char *function, int64
 /* Do all ranks start the same motion? */
 static mps_status agree_on_motion(mps_elastic *e, const char *function, mps_status status,
                                   const mps_elastic_motion_def *def) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_elastic_motion_def, def);
   return mpsi_elastic_agree_given(e, function, status, &given);
 }
@@ -188,12 +187,11 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
 
 mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) {
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
   e->within = true;
   const int32_t fields = mps_particles_field_count(e->particles);
   double *mass = e->mass;
-  status = begin(e, __func__, def, &mass);
+  mps_status status = begin(e, __func__, def, &mass);
   mpsi_elastic_finish_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
   if (status == MPS_OK) {
@@ -257,12 +255,11 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   const int64_t all = e->n * e->dim;
   double factor, *u1 = m->next[MPSI_NEXT_U], *v1 = m->next[MPSI_NEXT_V], *a1 = m->next[MPSI_NEXT_A];
   const double shift = shift_of(m, dt, &factor);
-  mps_status status = mpsi_elastic_prepare(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_factor(e, function, shift);
-  if (status == MPS_OK) status = mpsi_elastic_renew_motion(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, time);
-  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, time);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_prepare(e, function));
+  MPSI_TRY(mpsi_elastic_factor(e, function, shift));
+  MPSI_TRY(mpsi_elastic_renew_motion(e, function));
+  MPSI_TRY(mpsi_elastic_drive(e, function, time));
+  MPSI_TRY(mpsi_elastic_gather_loads(e, function, time));
   for (int64_t k = 0; k < all; k++) {
     u1[k] =
         e->displacement[k] + dt * m->velocity[k] + (0.5 - m->beta) * dt * dt * m->acceleration[k];
@@ -271,7 +268,7 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   }
   mpsi_elastic_impose(e, 0, u1);
   mpsi_elastic_impose(e, 1, v1);
-  status = find_right_side(e, function, factor);
+  mps_status status = find_right_side(e, function, factor);
   if (status == MPS_OK) status = mpsi_elastic_backsolve(e, function, 1, e->rhs, e->solution);
   if (status != MPS_OK) return status;
   memset(m->scratch, 0, (size_t)all * sizeof *m->scratch);
@@ -284,9 +281,8 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   }
   mpsi_elastic_impose(e, 2, a1);
   if ((status = check_finite(e, function, m->steps, time, u1, v1, a1)) != MPS_OK) return status;
-  status = mpsi_elastic_find_forces(e, function, u1, v1, m->next[MPSI_NEXT_INNER],
-                                    m->next[MPSI_NEXT_HELD]);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_find_forces(e, function, u1, v1, m->next[MPSI_NEXT_INNER],
+                                    m->next[MPSI_NEXT_HELD]));
   mpsi_elastic_keep_fixed(e, m->next[MPSI_NEXT_HELD]);
   accept(e, dt, time);
   return MPS_OK;
@@ -295,12 +291,10 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
 /* Fails only where the caller has removed a field. */
 static mps_status publish(mps_elastic *e, const char *function) {
   mpsi_elastic_motion *m = e->motion;
-  mps_status status = mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, function, "velocity", m->velocity, e->dim);
-  if (status == MPS_OK)
-    status = mpsi_elastic_write(e, function, "acceleration", m->acceleration, e->dim);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, function, "reaction", e->reaction, e->dim);
-  return status;
+  MPSI_TRY(mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim));
+  MPSI_TRY(mpsi_elastic_write(e, function, "velocity", m->velocity, e->dim));
+  MPSI_TRY(mpsi_elastic_write(e, function, "acceleration", m->acceleration, e->dim));
+  return mpsi_elastic_write(e, function, "reaction", e->reaction, e->dim);
 }
 
 /* ---- for the loop of all solvers ------------------------------------------------------------- */
@@ -315,8 +309,7 @@ mps_status mpsi_elastic_begin_march(void *solver, const char *function, mpsi_mar
   const mps_elastic *e = solver;
   mps_status status = check_motion(e, function);
   if (status != MPS_OK || !mpsi_march_is_run(m)) return status;
-  status = mpsi_march_check(m, e->context, function, e->motion->dt);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_march_check(m, e->context, function, e->motion->dt));
   m->total = (int64_t)ceil((m->t_end - m->start) / e->motion->dt * (1.0 - 1e-12));
   m->length = m->total > 0 ? (m->t_end - m->start) / (double)m->total : e->motion->dt;
   return m->callback ? publish(solver, function) : MPS_OK; /* for its first call */
@@ -351,19 +344,15 @@ mps_status mpsi_elastic_end_march(void *solver, const char *function, const mpsi
   return mpsi_elastic_agree(e, function, status);
 }
 
-double mpsi_elastic_limit(const void *solver) {
-  (void)solver;
-  return INFINITY;
-}
+double mpsi_elastic_limit(const void *solver) { return INFINITY; }
 
 mps_status mpsi_elastic_check_dt(void *solver, const char *function, double dt) {
   const mps_elastic *e = solver;
-  const mps_status status = check_motion(e, function);
-  return status == MPS_OK ? check_dt(e->context, function, dt) : status;
+  MPSI_TRY(check_motion(e, function));
+  return check_dt(e->context, function, dt);
 }
 
 mps_status mpsi_elastic_use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   ((mps_elastic *)solver)->motion->dt = dt;
   return MPS_OK;
 }

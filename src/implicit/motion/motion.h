@@ -1,7 +1,6 @@
 /* motion.h - steps of a motion, for the loop of all solvers (solver/solver_base.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_MOTION_H
-#define MPSI_ELASTIC_MOTION_H
+#pragma once
 
 #include "solver/solver_base.h"
 
@@ -13,5 +12,3 @@ mps_status mpsi_elastic_advance_march(void *elastic, const char *function, mpsi_
                                       int64_t count);
 mps_status mpsi_elastic_end_march(void *elastic, const char *function, const mpsi_march *march,
                                   mps_status status);
-
-#endif

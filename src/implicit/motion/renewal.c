@@ -40,13 +40,11 @@ mps_status mpsi_elastic_renew_motion(mps_elastic *e, const char *function) {
   mpsi_elastic_find_fabric(e, now);
   if (memcmp(now, m->fabric, sizeof now) == 0) return MPS_OK;
   const bool other = now[MPSI_FABRIC_MODULI] != m->fabric[MPSI_FABRIC_MODULI];
-  mps_status status = mpsi_elastic_drive(e, function, m->time);
-  if (status == MPS_OK && other) status = mpsi_elastic_strain_energy(e, function, &strain);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_drive(e, function, m->time));
+  if (other) MPSI_TRY(mpsi_elastic_strain_energy(e, function, &strain));
   double *inner = m->next[MPSI_NEXT_INNER], *held = m->next[MPSI_NEXT_HELD];
   memcpy(e->load, m->force, (size_t)(e->n * e->dim) * sizeof *m->force);
-  status = mpsi_elastic_find_forces(e, function, e->displacement, m->velocity, inner, held);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_find_forces(e, function, e->displacement, m->velocity, inner, held));
   if (other) e->ledger.strain += strain - mpsi_elastic_former_strain(e, strain);
   memcpy(m->inner, inner, (size_t)(e->n * e->dim) * sizeof *inner);
   memcpy(m->held, held, (size_t)(e->n * e->dim) * sizeof *held);

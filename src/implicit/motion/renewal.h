@@ -1,7 +1,6 @@
 /* renewal.h - forces at the start of a step, with the present moduli and boundaries.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_RENEWAL_H
-#define MPSI_ELASTIC_RENEWAL_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -12,5 +11,3 @@ mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const 
 void mpsi_elastic_balance(mps_elastic *e);
 /* Before a step: the forces at its beginning, with the present moduli and boundaries. */
 mps_status mpsi_elastic_renew_motion(mps_elastic *e, const char *function);
-
-#endif

@@ -472,12 +472,7 @@ static void rows_chunk(void *data, int64_t chunk, int32_t worker) {
 /* ---- the matrix ------------------------------------------------------------------------------ */
 
 static void drop_matrix(mps_elastic *e) {
-  mpsi_free(e->context, e->column);
-  mpsi_free(e->context, e->row);
-  mpsi_free(e->context, e->value);
-  mpsi_free(e->context, e->rhs);
-  mpsi_free(e->context, e->solution);
-  mpsi_free(e->context, e->cg_work);
+  MPSI_FREE(e->context, e->column, e->row, e->value, e->rhs, e->solution, e->cg_work);
   e->cg_work = NULL;
   e->column = e->row = NULL;
   e->value = e->rhs = e->solution = NULL;
@@ -495,8 +490,7 @@ mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function) {
 
 /* Counts the entries of each column and allocates the matrix. */
 static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t) {
-  const mps_status status = mpsi_elastic_make_vectors(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_make_vectors(e, function));
   const int64_t n = e->unknowns;
   if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)))
     return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->column);
@@ -536,8 +530,7 @@ mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function) {
     e->pattern_valid = e->values_valid = true;
     e->factored = false;
   }
-  mpsi_free(e->context, t.gathers);
-  mpsi_free(e->context, slots);
+  MPSI_FREE(e->context, t.gathers, slots);
   return status;
 }
 
@@ -567,7 +560,6 @@ mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, doub
     t.fill = true;
     mpsi_parallel_for(e->context, chunks, rows_chunk, &t);
   }
-  mpsi_free(e->context, t.gathers);
-  mpsi_free(e->context, slots);
+  MPSI_FREE(e->context, t.gathers, slots);
   return status;
 }

@@ -1,7 +1,6 @@
 /* assemble.h - the sparse matrix of the free unknowns.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_ASSEMBLE_H
-#define MPSI_ELASTIC_ASSEMBLE_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -21,5 +20,3 @@ mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, doub
                                       mpsi_elastic_rows *rows);
 /* Without a matrix: numbers the unknowns and allocates their vectors. */
 mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function);
-
-#endif

@@ -110,14 +110,13 @@ static void sum_momenta(const mps_elastic *e, mps_totals *t) {
 
 mps_status mpsi_elastic_get_totals(void *solver, const char *function, mps_totals *out) {
   mps_elastic *e = solver;
-  mps_status status = mpsi_elastic_check_between(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_check_between(e, function));
   const mpsi_elastic_motion *m = e->motion;
   const mpsi_ledger *l = &e->ledger;
   mps_totals t = {.work_loads = l->loads, .work_boundaries = l->boundaries};
   sum_momenta(e, &t);
   const bool agreed = mpsi_elastic_begin_reading(e);
-  status = mpsi_elastic_strain_energy(e, function, &t.strain);
+  mps_status status = mpsi_elastic_strain_energy(e, function, &t.strain);
   e->agreed = agreed;
   if (status != MPS_OK) return status;
   t.scheme = t.dissipated = 0.0 - l->left; /* 0, not -0 */

@@ -1,7 +1,6 @@
 /* budget.h - strain energy, and the works of loads, boundaries and damping.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_BUDGET_H
-#define MPSI_ELASTIC_BUDGET_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -27,5 +26,3 @@ void mpsi_elastic_count_step(mps_elastic *e, const double *u, const double *v, c
                              const double *inner, const double *held);
 
 mps_status mpsi_elastic_get_totals(void *elastic, const char *function, mps_totals *out);
-
-#endif

@@ -24,8 +24,7 @@ static mps_status check_moduli(mps_elastic *e, const char *function, int64_t i, 
 
 mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
                                    double poisson) {
-  const mps_status status = check_moduli(e, function, i, young, poisson);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_moduli(e, function, i, young, poisson));
   const double two_mu = young / (1.0 + poisson);
   const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_STATE_PLANE_STRESS;
   e->mu[i] = 0.5 * two_mu;
@@ -72,7 +71,8 @@ mps_status mpsi_elastic_renew_material(mps_elastic *e, const char *function) {
   if (!former) return mpsi_fail_memory(e->context, function, 3 * bytes);
   for (int k = 0; k < 3; k++) memcpy(former + k * e->n, moduli[k], bytes);
   mps_status status = mpsi_elastic_note_strain(e, function);
-  if (status == MPS_OK) status = mpsi_fail_of(e->context, mpsi_elastic_read_material(e, function), "e");
+  if (status == MPS_OK)
+    status = mpsi_fail_of(e->context, mpsi_elastic_read_material(e, function), "e");
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   if (status == MPS_OK) mpsi_elastic_warn_of_contrast(e);

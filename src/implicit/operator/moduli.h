@@ -1,6 +1,5 @@
 /* moduli.h - Lame's constants of the particles. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_MODULI_H
-#define MPSI_ELASTIC_MODULI_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -13,5 +12,3 @@ mps_status mpsi_elastic_read_material(mps_elastic *e, const char *function);
  * is noted before. */
 mps_status mpsi_elastic_renew_material(mps_elastic *e, const char *function);
 void mpsi_elastic_warn_of_contrast(const mps_elastic *e);
-
-#endif

@@ -1,7 +1,6 @@
 /* operator.h - K u, matrix free.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_OPERATOR_H
-#define MPSI_ELASTIC_OPERATOR_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -12,5 +11,3 @@ MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function
                                             double *f);
 /* Relative displacement of pair (i, k), conjugate to its stiffness, from u and the gradients. */
 void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k, double *out);
-
-#endif

@@ -167,14 +167,12 @@ static mps_status share_table(mps_elastic *e, const char *function, mps_status s
 
 mps_status mps_elastic_update_stress(mps_elastic *e) {
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_check_between(e, __func__);
-  if (status == MPS_OK)
-    status = mpsi_elastic_agree(e, __func__, mpsi_particles_committed(e->particles, __func__));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_check_between(e, __func__));
+  MPSI_TRY(mpsi_elastic_agree(e, __func__, mpsi_particles_committed(e->particles, __func__)));
   table t;
   const int32_t fields = mps_particles_field_count(e->particles);
   mpsi_elastic_gradients(e, e->displacement, e->gradient);
-  status = open_table(e, __func__, &t);
+  mps_status status = open_table(e, __func__, &t);
   if (e->shared) {
     const bool agreed = mpsi_elastic_begin_reading(e);
     status = share_table(e, __func__, status, &t);
@@ -202,13 +200,12 @@ mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, doub
   if (!isfinite(position))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "position is %g m, must be finite",
                      position);
-  mps_status status = mpsi_elastic_check_about(e, __func__, about);
-  if (status == MPS_OK) status = mpsi_elastic_check_between(e, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_check_about(e, __func__, about));
+  MPSI_TRY(mpsi_elastic_check_between(e, __func__));
   const bool agreed = mpsi_elastic_begin_reading(e);
   /* K u is the force of loads and reactions on each particle. Forces on the near side are balanced
    * across the section by minus their sum. */
-  status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
+  mps_status status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
   e->agreed = agreed;
   if (status != MPS_OK) return status;
   for (int64_t i = 0; i < e->n; i++)
@@ -217,4 +214,3 @@ mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, doub
   mpsi_elastic_resultant(e, e->work, about, force, moment);
   return MPS_OK;
 }
-

@@ -1,7 +1,6 @@
 /* partition.h - a rank's part of the operator: the order of layers, and its window.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_PARTITION_H
-#define MPSI_ELASTIC_PARTITION_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -23,5 +22,3 @@ MPS_NODISCARD mps_status mpsi_elastic_join(mps_elastic *e, const char *function,
 /* The same for a vector over all particles, with the rows of each owner. */
 MPS_NODISCARD mps_status mpsi_elastic_complete(mps_elastic *e, const char *function,
                                                double *values);
-
-#endif

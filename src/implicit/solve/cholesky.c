@@ -23,12 +23,7 @@ struct mpsi_cholesky {
 
 /* Errors are read from common->status after each call; the handler only has to exist, so that
  * CHOLMOD does not print. */
-static void quiet(int status, const char *file, int line, const char *message) {
-  (void)status;
-  (void)file;
-  (void)line;
-  (void)message;
-}
+static void quiet(int status, const char *file, int line, const char *message) {}
 
 static mps_status failure(mpsi_cholesky *c, const char *function, const char *what) {
   switch (c->common.status) {
@@ -204,8 +199,7 @@ static mps_status analyse_ordered(mpsi_cholesky *c, const char *function, const 
 mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                  const int64_t *group, int64_t groups,
                                  mpsi_cholesky_symbolic *out) {
-  const mps_status cancelled = call_cancel(c, function, "the ordering");
-  if (cancelled != MPS_OK) return cancelled;
+  MPSI_TRY(call_cancel(c, function, "the ordering"));
   cholmod_l_free_factor(&c->factor, &c->common);
   c->factored = false;
   const int64_t words = 2 * groups + 1 + a->n;
@@ -222,8 +216,7 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
 mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                 int64_t *bad) {
   *bad = -1;
-  const mps_status cancelled = call_cancel(c, function, "the factorisation");
-  if (cancelled != MPS_OK) return cancelled;
+  MPSI_TRY(call_cancel(c, function, "the factorisation"));
   c->factored = false;
   cholmod_sparse s = wrap(a);
   mpsi_foreign_enter(c->threads);

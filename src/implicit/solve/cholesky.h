@@ -1,8 +1,7 @@
 /* cholesky.h - interface to a sparse Cholesky library. Only cholesky.c depends on CHOLMOD. Matrices
  * are symmetric: lower triangle in compressed columns, rows ascending.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CHOLESKY_H
-#define MPSI_CHOLESKY_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -43,5 +42,3 @@ mps_status mpsi_cholesky_solve(mpsi_cholesky *c, const char *function, int64_t c
 /* Reciprocal condition estimate from the factor's diagonal (crude, 0 without factor). */
 double mpsi_cholesky_rcond(mpsi_cholesky *c);
 double mpsi_cholesky_peak_bytes(const mpsi_cholesky *c);
-
-#endif

@@ -4,7 +4,6 @@
 #include "foreign.h"
 
 #include <pthread.h>
-#include <stddef.h>
 
 #if defined(__GNUC__)
 int openblas_get_num_threads(void) __attribute__((weak));

@@ -1,8 +1,7 @@
 /* foreign.h - process-wide state of other libraries: the numbers of threads of BLAS and OpenMP, and
  * ARPACK's saved variables. libmps has no such state itself.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FOREIGN_H
-#define MPSI_FOREIGN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,5 +16,3 @@ void mpsi_foreign_leave(void);
  * is inside already. */
 bool mpsi_foreign_lock_arpack(void);
 void mpsi_foreign_unlock_arpack(void);
-
-#endif

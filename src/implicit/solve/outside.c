@@ -108,10 +108,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
     o->shift = shift;
     status = mpsi_linear_hand(&e->base, function, &matrix);
   }
-  mpsi_free(e->context, mode);
-  mpsi_free(e->context, a.start);
-  mpsi_free(e->context, a.column);
-  mpsi_free(e->context, a.value);
+  MPSI_FREE(e->context, mode, a.start, a.column, a.value);
   return status;
 }
 
@@ -167,11 +164,9 @@ static mps_status solve(mps_elastic *e, const char *function, double shift, cons
   double *b = work, *x = work + all, rr, bb, rounding;
   memset(x, 0, (size_t)all * sizeof *x);
   to_rows(e, rhs, b);
-  mps_status status = mpsi_linear_solve(&e->base, function, e->def.tolerance, b, x);
-  if (status == MPS_OK) status = from_rows(e, function, x, b, solution);
-  if (status == MPS_OK)
-    status = residual(e, function, shift, rhs, solution, work, &rr, &bb, &rounding);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_solve(&e->base, function, e->def.tolerance, b, x));
+  MPSI_TRY(from_rows(e, function, x, b, solution));
+  MPSI_TRY(residual(e, function, shift, rhs, solution, work, &rr, &bb, &rounding));
   e->report.iterations += e->linear->result.iterations;
   return mpsi_linear_check(&e->base, function, e->def.tolerance, rounding, rr, bb);
 }

@@ -1,7 +1,6 @@
 /* outside.h - the equations for a linear solver of the caller.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_OUTSIDE_H
-#define MPSI_ELASTIC_OUTSIDE_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -22,5 +21,3 @@ bool mpsi_elastic_solved_outside(const mps_elastic *e);
 /* solution = (K + shift M)^-1 rhs. */
 mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, double shift,
                                       const double *rhs, double *solution);
-
-#endif

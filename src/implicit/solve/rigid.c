@@ -191,7 +191,6 @@ mps_status mpsi_elastic_check_supported(mps_elastic *e, const char *function) {
     status = mpsi_fail_memory(context, function, (size_t)parts * sizeof *p);
   if (status == MPS_OK) measure(e, part_of, parts, p);
   for (int64_t k = 0; k < parts && status == MPS_OK; k++) status = check_part(e, function, &p[k]);
-  mpsi_free(context, p);
-  mpsi_free(context, part_of);
+  MPSI_FREE(context, p, part_of);
   return status;
 }

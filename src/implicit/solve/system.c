@@ -87,8 +87,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
 static mps_status prepare_outside(mps_elastic *e, const char *function) {
   if (e->pattern_valid && e->values_valid) return MPS_OK;
   e->linear->valid = false;
-  const mps_status status = e->pattern_valid ? MPS_OK : mpsi_elastic_make_vectors(e, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(e->pattern_valid ? MPS_OK : mpsi_elastic_make_vectors(e, function));
   memset(&e->symbolic, 0, sizeof e->symbolic);
   mpsi_cholesky_destroy(&e->cholesky);
   e->pattern_valid = e->values_valid = e->analysed = e->use_cg = true;
@@ -181,12 +180,11 @@ mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shif
 mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t count,
                                   const double *rhs, double *solution) {
   if (e->unknowns == 0) return MPS_OK;
-  mps_status status = MPS_OK;
   if (!e->use_cg) return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
-  for (int64_t k = 0; k < count && status == MPS_OK; k++)
-    status = (mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
-        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns);
-  return status;
+  for (int64_t k = 0; k < count; k++)
+    MPSI_TRY((mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
+        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns));
+  return MPS_OK;
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
@@ -256,9 +254,8 @@ static int32_t solver_used(const mps_elastic *e) {
 mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, size_t size) {
   static const char function[] = "mps_elastic_analyse";
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, function);
-  if (status != MPS_OK) return status;
-  status = mpsi_elastic_prepare(e, function);
+  MPSI_TRY(mpsi_elastic_enter(e, function));
+  mps_status status = mpsi_elastic_prepare(e, function);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const mps_elastic_estimate found = {.unknowns = e->unknowns,
                                       .matrix_nonzeros = nonzeros(e),
@@ -282,20 +279,18 @@ static mps_status residual_scale(mps_elastic *e, const char *function, double *u
 
 static mps_status solve(mps_elastic *e, const char *function, double *u, double **mass) {
   const int64_t all = e->n * e->dim;
-  mps_status status = mpsi_elastic_prepare(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_weigh(e, function, mass);
-  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mpsi_elastic_time(e));
-  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, mpsi_elastic_time(e));
-  if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_prepare(e, function));
+  MPSI_TRY(mpsi_elastic_weigh(e, function, mass));
+  MPSI_TRY(mpsi_elastic_drive(e, function, mpsi_elastic_time(e)));
+  MPSI_TRY(mpsi_elastic_gather_loads(e, function, mpsi_elastic_time(e)));
+  MPSI_TRY(mpsi_elastic_factor(e, function, 0.0));
   const double start = now();
   e->report.iterations = 0;
   double scale;
-  status = residual_scale(e, function, u, &scale);
-  if (status == MPS_OK) status = solve_block(e, function, 1, e->load, u, e->rhs, e->solution);
-  if (status == MPS_OK) status = residual(e, function, e->load, u, e->rhs);
-  if (status == MPS_OK) status = check_work(e, function, u);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(residual_scale(e, function, u, &scale));
+  MPSI_TRY(solve_block(e, function, 1, e->load, u, e->rhs, e->solution));
+  MPSI_TRY(residual(e, function, e->load, u, e->rhs));
+  MPSI_TRY(check_work(e, function, u));
   memcpy(e->displacement, u, (size_t)all * sizeof *u);
   e->report.residual = scale > 0.0 ? norm(e->rhs, e->unknowns) / scale : 0.0;
   for (int64_t k = 0; k < all; k++) e->reaction[k] = -e->work[k];
@@ -303,9 +298,8 @@ static mps_status solve(mps_elastic *e, const char *function, double *u, double 
   e->report.seconds_solve = now() - start;
   mpsi_elastic_end_motion(e);
   mpsi_elastic_count_solution(e);
-  status = mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, function, "reaction", e->reaction, e->dim);
-  return status;
+  MPSI_TRY(mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim));
+  return mpsi_elastic_write(e, function, "reaction", e->reaction, e->dim);
 }
 
 mps_status mps_elastic_solve(mps_elastic *e) {
@@ -380,12 +374,10 @@ static mps_status check_cases(const mps_elastic *e, const char *function, int64_
 mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *loads,
                                    double *displacements) {
   if (!e) return mpsi_null(__func__, "elastic");
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_elastic_enter(e, __func__));
   e->within = true;
-  status = check_cases(e, __func__, count, loads, displacements);
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mps_status status = check_cases(e, __func__, count, loads, displacements);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of loads", status == MPS_OK ? loads : NULL,
                   status == MPS_OK ? (size_t)(count * e->n) * 3 * sizeof *loads : 0);

@@ -1,7 +1,6 @@
 /* system.h - factor, solve, refine: (K + shift M)^-1.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_ELASTIC_SYSTEM_H
-#define MPSI_ELASTIC_SYSTEM_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -14,5 +13,3 @@ mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t 
                                   const double *rhs, double *solution);
 /* Vectors of `count` cases in the set's present order, three components a particle. */
 void mpsi_elastic_to_caller(const mps_elastic *e, int64_t count, double *ours, double *out);
-
-#endif

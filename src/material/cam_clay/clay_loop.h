@@ -6,8 +6,7 @@
  * M follows the Lode angle takes the step of cam_clay.c; which of the two depends on the particle
  * alone. Both agree to rounding. Included by laws.c alone, which compiles it for each instruction
  * set. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CLAY_LOOP_H
-#define MPSI_CLAY_LOOP_H
+#pragma once
 
 #include "material/tensor.h"
 
@@ -300,5 +299,3 @@ MPSI_INLINE mps_status cam_clay_loop(const int geometry, const mpsi_law *law,
   }
   return MPS_OK;
 }
-
-#endif

@@ -82,8 +82,7 @@ static mps_status find_states(const consolidation *c, clay_state *state) {
                        "surcharge",
                        (long long)mpsi_particles_integers(c->set, "id")[k], vertical[k]);
     state[i] = find_state(&c->material->law, &c->def, c->normal_k0, load);
-    const mps_status status = check_state(c->set, c->material, k, load, &state[i]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(check_state(c->set, c->material, k, load, &state[i]));
   }
   return MPS_OK;
 }
@@ -116,21 +115,18 @@ static void write_states(const consolidation *c, const clay_state *state) {
 
 static mps_status begin(consolidation *c, const mps_consolidation_def *def) {
   mps_context *context = mpsi_particles_context(c->set);
-  mps_status status = MPSI_DEF_READ_IN(context, function, mps_consolidation_def, def,
-                                       mpsi_scene_of(c->dim), &c->def);
-  if (status == MPS_OK && !c->material)
-    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  if (status == MPS_OK && c->material->type->kind != MPSI_LAW_CAM_CLAY)
-    status = mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                       "material: the law is %s, must be cam_clay", c->material->name);
-  if (status == MPS_OK)
-    status = mpsi_particles_check_ids_or_all(c->set, function, c->def.count, c->def.ids);
-  if (status == MPS_OK) status = mpsi_particles_writable(c->set, function);
-  if (status == MPS_OK && !mpsi_particles_column(c->set, "stress", 0))
-    status = mpsi_fail(context, function, MPS_ERROR_FIELD,
-                       "the set has no field 'stress' with the vertical stress: call "
-                       "mps_particles_set_geostatic first");
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_IN(context, function, mps_consolidation_def, def, mpsi_scene_of(c->dim),
+                            &c->def));
+  if (!c->material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (c->material->type->kind != MPSI_LAW_CAM_CLAY)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "material: the law is %s, must be cam_clay", c->material->name);
+  MPSI_TRY(mpsi_particles_check_ids_or_all(c->set, function, c->def.count, c->def.ids));
+  MPSI_TRY(mpsi_particles_writable(c->set, function));
+  if (!mpsi_particles_column(c->set, "stress", 0))
+    return mpsi_fail(context, function, MPS_ERROR_FIELD,
+                     "the set has no field 'stress' with the vertical stress: call "
+                     "mps_particles_set_geostatic first");
   c->count = c->def.ids ? c->def.count : mps_particles_count(c->set);
   c->up = c->def.vertical == -1 ? c->dim - 1 : c->def.vertical;
   c->normal_k0 = mpsi_cam_clay_k0(&c->material->law);
@@ -145,11 +141,10 @@ mps_status mps_particles_set_consolidation(mps_particles *particles, const mps_m
                      .material = material,
                      .def = mps_consolidation_defaults(),
                      .dim = mps_particles_dim(particles)};
-  mps_status status = begin(&c, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(begin(&c, def));
   clay_state *state = mpsi_alloc(context, c.count, sizeof *state);
   if (!state) return mpsi_fail_memory(context, function, (size_t)c.count * sizeof *state);
-  status = find_states(&c, state);
+  mps_status status = find_states(&c, state);
   if (status == MPS_OK) status = open_fields(&c);
   if (status == MPS_OK) write_states(&c, state);
   mpsi_free(context, state);

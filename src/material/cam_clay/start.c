@@ -10,7 +10,6 @@
 mps_status mpsi_define_cam_clay(mps_context *context, const char *function, const void *values,
                                 mpsi_law *law) {
   const mps_material_cam_clay_def *d = values;
-  (void)context, (void)function;
   const double sine = 3.0 * d->critical_slope / (6.0 + d->critical_slope);
   const double ratio = (3.0 - sine) / (3.0 + sine);
   const bool by_nu = isnan(d->shear_modulus);

@@ -22,8 +22,7 @@
  * vertical stress then falls by (K + 4G/3) de, the rebound modulus of one-dimensional unloading.
  * Grains without contact do not contract: p does not fall below 0. Included by laws.c alone.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONTRACT_LOOP_H
-#define MPSI_CONTRACT_LOOP_H
+#pragma once
 
 #include "material/tensor.h"
 
@@ -121,5 +120,3 @@ MPSI_INLINE void contract_loop(const int geometry, const mpsi_law *law,
     block->flags[k] |= MPS_MATERIAL_FLAG_PLASTIC;
   }
 }
-
-#endif

@@ -15,8 +15,7 @@ mps_status mpsi_define_cyclic_sand(mps_context *context, const char *function, c
   strength.friction = d->friction, strength.dilation = d->dilation;
   strength.cohesion = d->cohesion;
   strength.void_ratio = d->void_ratio, strength.max_void_ratio = d->max_void_ratio;
-  const mps_status status = mpsi_define_mohr_coulomb(context, function, &strength, law);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_define_mohr_coulomb(context, function, &strength, law));
   double c1 = d->c1;
   if (!isnan(d->relative_density)) c1 = 7600.0 * pow(100.0 * d->relative_density, -2.5);
   if (!isnan(d->blow_count)) c1 = 8.7 * pow(d->blow_count, -1.25);

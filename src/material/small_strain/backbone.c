@@ -13,7 +13,6 @@
 #include <mps/experimental/soil.h>
 
 enum { TABLE = 4000 }; /* intervals of ln x in the integral */
-#define LEAST_CURVATURE 0.5
 #define LEAST_SHARE 0.05 /* of G0 gamma_r: least strength */
 #define FARTHEST 1000.0  /* x at which the largest strength of a curve without a limit is taken */
 
@@ -127,8 +126,7 @@ static mps_status check_strength(mps_context *context, const char *function,
 mps_status mpsi_define_small_strain(mps_context *context, const char *function, const void *values,
                                     mpsi_law *law) {
   const mps_material_small_strain_def *d = values;
-  const mps_status status = check_strength(context, function, d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_strength(context, function, d));
   *law = mpsi_law_elastic(2.0 * d->shear_modulus * (1.0 + d->poisson), d->poisson);
   const double unit = d->shear_modulus * d->reference_strain;
   set_layers(law, d->curvature, isnan(d->strength) ? 1.0 : d->strength / unit, d->reference_strain);

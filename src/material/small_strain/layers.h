@@ -7,8 +7,7 @@
  * A layer bears five numbers a particle, its deviator's xx, yy, xy, zx, yz; zz is -(xx + yy). In 2D
  * zx and yz stay 0. Included by laws.c alone, which compiles it for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_LAYERS_H
-#define MPSI_LAYERS_H
+#pragma once
 
 #include "material/tensor.h"
 
@@ -203,5 +202,3 @@ MPSI_INLINE mps_status small_strain_loop(const int geometry, const mpsi_law *law
   }
   return MPS_OK;
 }
-
-#endif

@@ -31,8 +31,7 @@ mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition 
                                   mps_status status) {
   double found[4] = {run->edited, run->stale, run->lost, run->changed};
   partition->ready = false;
-  status = mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 4, found);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 4, found));
   run->edited = found[0] > 0.0;
   run->stale = found[1] > 0.0;
   run->lost = found[2] > 0.0;
@@ -42,7 +41,6 @@ mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition 
 
 void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
                          mpsi_given *list) {
-  mpsi_given_begin(list);
   mpsi_give(list, "the solver's time", run->time);
   mpsi_give(list, "the solver's number of steps", (double)run->steps);
   mpsi_give(list, "dt", def->dt);
@@ -52,32 +50,13 @@ void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, con
 mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *partition,
                                 const mpsi_run *run, const mps_mpm_def *def, const char *function,
                                 mps_status status, int32_t count, double *values) {
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   mpsi_mpm_give_state(contacts, run, def, &list);
   return mpsi_domain_agree_given_max(partition->domain, function, status, &list, count, values);
 }
 
 mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_status status) {
   return partition ? mpsi_domain_agree(partition->domain, function, status) : status;
-}
-
-mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
-                              mpsi_partition *partition, const char *function, mps_status status,
-                              int64_t count, const int64_t *ids) {
-  int64_t found[2] = {0, p->count}; /* found of the list; particles */
-  status = mpsi_mpm_agree(partition, function, status);
-  if (status != MPS_OK) return status;
-  if (!partition) return mpsi_particles_check_ids(p->set, function, count, ids);
-  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(p->set, ids[k]) >= 0;
-  status = mpsi_domain_sum(partition->domain, function, 2, found);
-  if (status != MPS_OK || (found[0] == count && count <= found[1])) return status;
-  if (count > found[1])
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "id_count is %lld, allowed are 1 to %lld particles", (long long)count,
-                     (long long)found[1]);
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                   "of %lld ids %lld are of particles of the set on any rank", (long long)count,
-                   (long long)found[0]);
 }
 
 /* ---- particles that the caller adds and removes ---------------------------------------------- */

@@ -1,7 +1,6 @@
 /* columns.h - the particles as structure of arrays, in sorted order, over the memory of the fields
  * of the particle set. Tensors by rows. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_COLUMNS_H
-#define MPSI_MPM_COLUMNS_H
+#pragma once
 
 #include "mpm/particles/laws.h"
 
@@ -82,5 +81,3 @@ static inline void mpsi_mpm_saturated(const mpsi_columns *p, int64_t particle, d
   mpsi_mpm_elastic(p, particle, wave, shear);
   if (p->n) *wave += p->K_w / p->n[particle];
 }
-
-#endif

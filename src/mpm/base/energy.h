@@ -12,8 +12,7 @@
  *
  * Sums over blocks, particles and ranks are exact: they do not depend on the partition. On several
  * ranks each has its part of them. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_ENERGY_H
-#define MPSI_MPM_ENERGY_H
+#pragma once
 
 #include "mpm/grid/blocks.h"
 #include "mpm/particles/laws.h"
@@ -123,5 +122,3 @@ void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
 void mpsi_mpm_energy_end(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_contacts *contacts, mpsi_partition *partition,
                          mpsi_energy *energy, const mps_mpm_def *def);
-
-#endif

@@ -1,8 +1,7 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
  * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c, whole_cells.c; common code is in
  * loops.h. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_KERNELS_H
-#define MPSI_MPM_KERNELS_H
+#pragma once
 
 #include "shape.h"
 
@@ -115,5 +114,3 @@ typedef struct mpsi_inside_search {
   const mpsi_kernels *kernels;
   bool failed; /* on this rank: it takes part in the exchange alone */
 } mpsi_inside_search;
-
-#endif

@@ -6,8 +6,7 @@
  * which along a row is w_j w_k w_i (B + s_i D) with B and D constant on the row: two multiply-adds
  * a node for all four quantities at once (fused where the processor can: these files, unlike the
  * others, allow it). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_LOOPS_H
-#define MPSI_MPM_LOOPS_H
+#pragma once
 
 #include "kernels.h"
 
@@ -307,5 +306,3 @@ void MPSI_LEVELLED(mpsi_pore_strain)(const mpsi_transfer *work, const double *fo
                                      int n);
 void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
 void MPSI_LEVELLED(mpsi_pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
-
-#endif

@@ -1,6 +1,5 @@
 /* march.h - steps of WLS-MPM, for the loop of all solvers. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_MARCH_H
-#define MPSI_MPM_MARCH_H
+#pragma once
 
 #include "solver/solver_base.h"
 
@@ -11,5 +10,3 @@ mps_status mpsi_mpm_advance_march(void *mpm, const char *function, mpsi_march *m
 mps_status mpsi_mpm_end_march(void *mpm, const char *function, const mpsi_march *march,
                               mps_status status);
 bool mpsi_mpm_stopped(const void *mpm);
-
-#endif

@@ -1,8 +1,7 @@
 /* mpm_solver.h - the WLS-MPM solver as a whole, for public functions and the stages of a step: its
  * parts, and what the rooms below a step work on, made from it. SPDX-License-Identifier:
  * BSD-3-Clause */
-#ifndef MPSI_MPM_SOLVER_H
-#define MPSI_MPM_SOLVER_H
+#pragma once
 
 #include "energy.h"
 #include "kernels.h"
@@ -178,5 +177,3 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
  * the step, and the largest of `count` values. Collective. */
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values);
-
-#endif

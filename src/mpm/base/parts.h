@@ -1,8 +1,7 @@
 /* parts.h - names of the parts of the solver, by which the arguments of functions say what these
  * read and write. A const part does not change, though the arrays that it points to may be written.
  * Each is defined in the header of its room. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PARTS_H
-#define MPSI_MPM_PARTS_H
+#pragma once
 
 typedef struct mpsi_columns mpsi_columns;             /* base/columns.h: particles and their laws */
 typedef struct mpsi_energy mpsi_energy;               /* base/energy.h */
@@ -29,5 +28,3 @@ typedef struct mpsi_partition mpsi_partition;               /* ranks/partition.h
 typedef struct mpsi_water mpsi_water;                       /* water/water.h */
 typedef struct mpsi_settling mpsi_settling;                 /* step/damping.h */
 typedef struct mpsi_undo mpsi_undo;                         /* step/undo.h */
-
-#endif

@@ -1,7 +1,6 @@
 /* run.h - progress of the run: time, steps, and state between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_RUN_H
-#define MPSI_MPM_RUN_H
+#pragma once
 
 #include "parts.h"
 #include "core/context/guard.h"
@@ -49,5 +48,3 @@ bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
 mps_status mpsi_mpm_between_steps(mps_context *context, mpsi_run *run, const char *function);
 mps_status mpsi_mpm_check_whole(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
                                 const char *function);
-
-#endif

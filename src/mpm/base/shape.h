@@ -7,8 +7,7 @@
  *
  * `dim` and `spline` are literal arguments wherever speed counts.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_SHAPE_H
-#define MPSI_MPM_SHAPE_H
+#pragma once
 
 #include "mpm/grid/blocks.h"
 
@@ -88,5 +87,3 @@ MPSI_INLINE void mpsi_make_stencil(const mpsi_grid *grid, const mpsi_columns *p,
     out->own[c] = (int)(mpsi_own_cell(grid, c, X) - (int64_t)base);
   }
 }
-
-#endif

@@ -246,11 +246,9 @@ static mps_status set_side(const mpsi_boundary_setup *setup, const char *functio
                            const mps_mpm_boundary_def *def) {
   mpsi_boundary *hold = &setup->boundaries->hold[number];
   mpsi_free_field *field = NULL;
-  mps_status status =
-      mpsi_mpm_check_beside_field(setup->context, setup->boundaries, function, number, def->kind);
-  if (status == MPS_OK && def->kind == MPS_BOUNDARY_FREE_FIELD)
-    status = make_field(setup, function, number, &field);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(
+      mpsi_mpm_check_beside_field(setup->context, setup->boundaries, function, number, def->kind));
+  if (def->kind == MPS_BOUNDARY_FREE_FIELD) MPSI_TRY(make_field(setup, function, number, &field));
   mpsi_mpm_free_field_free(setup->context, &hold->field);
   hold->field = field;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
@@ -332,8 +330,7 @@ static mps_status sum_ranks(mpsi_partition *partition, const char *function,
   for (int k = 0; k < MPSI_BOUNDARY_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
   counts[0] = hold->count, counts[1] = hold->removed;
   if (!partition) return MPS_OK;
-  const mps_status status = mpsi_domain_sum(partition->domain, function, 2, counts);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_sum(partition->domain, function, 2, counts));
   return mpsi_domain_sum_exact(partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1, out->step);
 }
 
@@ -344,8 +341,7 @@ mps_status mpsi_mpm_find_reaction(const mpsi_boundary_setup *setup, const char *
   if (setup->partition)
     status = mpsi_domain_agree_same(setup->partition->domain, function, status, "number", number);
   if (status != MPS_OK) return status;
-  status = sum_ranks(setup->partition, function, &setup->boundaries->hold[number], &sums, counts);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(sum_ranks(setup->partition, function, &setup->boundaries->hold[number], &sums, counts));
   const double rate = setup->run->dt > 0.0 ? 1.0 / setup->run->dt : 0.0;
   *out = (mps_reaction){.count = counts[0],
                         .removed = counts[1],

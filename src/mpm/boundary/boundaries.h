@@ -1,7 +1,6 @@
 /* boundaries.h - boundary conditions: sides of the domain, boxes of nodes and lists of particles
  * with a prescribed velocity, dashpots of absorbing sides. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_BOUNDARIES_H
-#define MPSI_MPM_BOUNDARIES_H
+#pragma once
 
 #include "mpm/grid/blocks.h"
 #include "core/base/exact.h"
@@ -228,5 +227,3 @@ static inline bool mpsi_mpm_passes(const mpsi_grid *grid, const mpsi_boundaries 
   return (upper || X < (double)grid->low[c] - MPSI_ON_BORDER) &&
          (boundaries->open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
 }
-
-#endif

@@ -3,7 +3,6 @@
  * m (v' - v)^2/2 + sum L_s |v' - V_s| over v'. SPDX-License-Identifier: BSD-3-Clause */
 #include "corners.h"
 #include "mpm/contact/thin_bodies.h"
-#include "mpm/step/damping.h"
 
 double mpsi_mpm_corner_share(int32_t count, const mpsi_boundary *const *hold, uint32_t some, int c,
                              int32_t s) {

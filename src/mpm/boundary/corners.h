@@ -1,7 +1,6 @@
 /* corners.h - sides of one kind that share a node: what they do together, without regard to the
  * order of their numbers. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_CORNERS_H
-#define MPSI_MPM_CORNERS_H
+#pragma once
 
 #include "boundaries.h"
 
@@ -25,5 +24,3 @@ double mpsi_mpm_edge_friction(int32_t count, double m, double v, const double *v
 /* Part of a particle at grid coordinate X that lies in the layer of cells at side `number`: 1, 0,
  * or half where it is on the layer's border, as in a mirror image. */
 double mpsi_mpm_part_at_side(const mpsi_grid *grid, int32_t number, double X);
-
-#endif

@@ -3,6 +3,7 @@
  * block of nodes when the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kinds.h"
+#include "core/base/order.h"
 #include "mpm/ranks/messages.h"
 
 #include <stdlib.h>
@@ -19,7 +20,6 @@ static void pack(void *data, int64_t b, int32_t worker, double *message) {
   const mpsi_boundary_setup *setup = data;
   const mpsi_grid *grid = setup->grid;
   const size_t bytes = (size_t)plane_doubles(grid) * sizeof *message;
-  (void)worker;
   for (int32_t side = 0; side < MPSI_SIDES; side++, message += plane_doubles(grid)) {
     double tile[MPSI_DASH_PLANE][2];
     memset(message, 0, bytes);
@@ -102,14 +102,8 @@ static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const c
   from += sizeof at;
   mpsi_held key = {.hold = at.hold};
   memcpy(key.at, at.at, sizeof key.at);
-  int64_t low = 0, high = b->held_count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (mpsi_mpm_compare_held(&b->held[middle], &key) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, b->held_count, middle, mpsi_mpm_compare_held(&b->held[middle], &key) < 0);
   if (low == b->held_count || mpsi_mpm_compare_held(&b->held[low], &key) != 0) return;
   memcpy(&b->dashpot[b->held[low].dashpot], from, (size_t)plane_nodes(grid) * sizeof *b->dashpot);
 }
@@ -160,9 +154,7 @@ mps_status mpsi_mpm_send_dashpots(const mpsi_boundary_setup *setup, const char *
     for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(setup->grid))
       read_record(setup->grid, setup->boundaries, (const char *)r.box.mail[m].data + at);
   mpsi_domain_free_mail(&r.box);
-  mpsi_free(context, r.sending);
-  mpsi_free(context, r.mail);
-  mpsi_free(context, r.message);
+  MPSI_FREE(context, r.sending, r.mail, r.message);
   return status;
 }
 

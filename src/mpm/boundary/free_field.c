@@ -2,10 +2,8 @@
  * copies of the particles in the cells at the side. See free_field.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "free_field.h"
-#include "mpm/contact/thin_bodies.h"
 #include "mpm/ranks/partition.h"
 
-#include "core/base/boundary_kind.h"
 #include "corners.h"
 #include "kinds.h"
 
@@ -112,9 +110,8 @@ static bool reserve(mps_context *context, mpsi_free_field *f) {
 void mpsi_mpm_free_field_free(mps_context *context, mpsi_free_field **pointer) {
   mpsi_free_field *f = *pointer;
   if (!f) return;
-  void *parts[] = {f->state, f->kept,          f->law,    f->id,  f->row_of,
-                   f->row,   f->derivative[0], f->lowest, f->node};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  MPSI_FREE(context, f->state, f->kept, f->law, f->id, f->row_of, f->row, f->derivative[0],
+            f->lowest, f->node);
   mpsi_free(context, f);
   *pointer = NULL;
 }
@@ -241,8 +238,7 @@ mps_status mpsi_mpm_make_free_field(const mpsi_boundary_setup *setup, const char
     find_rows(grid, f, scratch);
     memcpy(f->kept, f->state, (size_t)f->doubles * sizeof *f->state);
   }
-  mpsi_free(setup->context, from);
-  mpsi_free(setup->context, scratch);
+  MPSI_FREE(setup->context, from, scratch);
   if (!good) {
     mpsi_mpm_free_field_free(setup->context, &f);
     return mpsi_fail_memory(setup->context, function, (size_t)count * FIXED * sizeof(double));

@@ -21,8 +21,7 @@
  * (docs/theory/walls.md). Implicit pressures are refused: the column has none.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_FREE_FIELD_H
-#define MPSI_MPM_FREE_FIELD_H
+#pragma once
 
 #include "boundaries.h"
 #include "mirror.h"
@@ -95,5 +94,3 @@ void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries);
  * node is in, counted from the side; NULL: none. */
 const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *hold,
                                        const int32_t *at, int k, int *plane);
-
-#endif

@@ -471,9 +471,8 @@ static mps_status step(const mpsi_boundary_setup *setup, const char *function, i
   unsigned fixed[2];
   memset(f->node, 0, (size_t)f->nodes * sizeof *f->node);
   take_water(setup, f);
-  mps_status status = find_traction(setup, function, number, f);
-  if (status == MPS_OK) status = scatter(setup, function, number, f);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_traction(setup, function, number, f));
+  MPSI_TRY(scatter(setup, function, number, f));
   for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++) fold(setup, f, k);
   update(setup, f);
   for (int32_t k = 0; k < 2; k++) hold_node(setup, f, MPS_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);

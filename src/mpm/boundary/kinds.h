@@ -4,8 +4,7 @@
  * (free_field_step.c), to particles that pass. A new kind is a row and, where no other kind does
  * the same to a node, a function of walls.c with its line in the order there.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_BOUNDARY_KINDS_H
-#define MPSI_MPM_BOUNDARY_KINDS_H
+#pragma once
 
 #include "boundaries.h"
 
@@ -62,5 +61,3 @@ static inline bool mpsi_side_turns(const mpsi_boundary *hold, int axis, int c) {
   const mpsi_prescribes which = mpsi_kind_of(hold)->prescribes;
   return which == MPSI_PRESCRIBES_ALL || (which == MPSI_PRESCRIBES_ACROSS && c == axis);
 }
-
-#endif

@@ -306,7 +306,6 @@ void mpsi_mpm_unfold(const mpsi_transfer *work) {
 
 static void copy_state(const side *s, const couple *at, int layer, void *data) {
   mpsi_worker *worker = data;
-  (void)s, (void)layer;
   worker->state[at->ghost] = worker->state[at->partner];
 }
 

@@ -12,8 +12,7 @@
  *
  * The changes of momentum by folding, and of the particles' velocities by mirroring back, are the
  * rest of the wall's impulse. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_MIRROR_H
-#define MPSI_MPM_MIRROR_H
+#pragma once
 
 #include "mpm/grid/blocks.h"
 #include "boundaries.h"
@@ -74,5 +73,3 @@ void mpsi_mpm_reflect_impulse(const mpsi_grid *grid, const mpsi_boundaries *boun
 bool mpsi_mpm_find_image(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                          const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
                          double *keeps, double *carried);
-
-#endif

@@ -11,7 +11,6 @@
 #include "kinds.h"
 #include "mpm/base/energy.h"
 #include "mpm/contact/thin_bodies.h"
-#include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
 
 #include <string.h>
@@ -58,9 +57,8 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 static mps_status make_list(const mpsi_boundary_setup *setup, const char *function) {
   int64_t count, dashpots;
   setup->boundaries->outdated = true;
-  const mps_status status = mpsi_mpm_list_mirrors(setup->context, setup->grid, setup->boundaries,
-                                                  setup->mirrors, setup->def, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_list_mirrors(setup->context, setup->grid, setup->boundaries, setup->mirrors,
+                                 setup->def, function));
   swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
   swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
   bool good = list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
@@ -130,8 +128,7 @@ void mpsi_mpm_plan_dashpots(mpsi_boundaries *boundaries, int64_t steps) {
 
 mps_status mpsi_mpm_put_dashpots(const mpsi_boundary_setup *setup, const char *function,
                                  int64_t count, const mpsi_dashpot *dashpot) {
-  const mps_status status = make_list(setup, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_list(setup, function));
   setup->boundaries->renew = false;
   const int64_t plane = setup->grid->block_nodes / MPSI_SIDE;
   int64_t expected = 0;

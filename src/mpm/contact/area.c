@@ -164,7 +164,6 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
-  (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
     constraint->areas = 0;
@@ -189,7 +188,6 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[all->area_first + unit];
-  (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_area_share *at = all->around + n * nodes_around(grid, 4);
     const double normal = all->constraint[n].impulse.normal_impulse;
@@ -203,7 +201,6 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
-  (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_area_share *at = all->around + n * nodes_around(grid, 4);

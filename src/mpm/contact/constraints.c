@@ -9,7 +9,6 @@
  * Blocks of cells are listed colour by colour (blocks.h), the constraints of a block by place, then
  * by body: the order in which impulses.c sweeps, whatever the order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body/rotation.h"
 #include "core/base/room_array.h"
 #include "mpm/base/kernels.h"
 #include "mpm/base/run.h"
@@ -71,7 +70,6 @@ static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, doub
                               const mpsi_foot *foot) {
   const double half = half_size(grid, p, contact, k, foot->normal);
   double surface[3], closing = 0.0;
-  (void)x;
   mpsi_body_velocity(&contact->body->pose, foot->at, surface);
   for (int c = 0; c < grid->dim; c++) closing += (surface[c] - p->v[c][k]) * foot->normal[c];
   return mpsi_impulse_near(foot->distance - half, half, closing, dt);
@@ -123,7 +121,6 @@ static void find_candidates(const mpsi_grid *grid, const mpsi_columns *p,
 static void find_in_block(void *data, int64_t b, int32_t worker) {
   const mpsi_contact_stage *stage = data;
   const mpsi_cell_block *cells = &stage->transfer.grid->cells[b];
-  (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
     if (mpsi_by_impulses(stage->contact->handle[pair->body]))

@@ -2,7 +2,7 @@
  * in a step: pairs.c, inside.c, constraints.c, impulses.c, penalty.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particle.h"
-#include "mpm/particles/mpm_particles.h"
+#include "mpm/base/run.h"
 #include "mpm/ranks/partition.h"
 
 #include "core/particles/particles_internal.h"
@@ -66,10 +66,9 @@ static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
 
 mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
                                    const mpsi_contacts *contacts, const char *function) {
-  mps_status status = MPS_OK;
-  for (int32_t b = 1; b < contacts->bodies && status == MPS_OK; b++)
-    status = check_overlap(context, grid, contacts, function, contacts->body[b]);
-  return status;
+  for (int32_t b = 1; b < contacts->bodies; b++)
+    MPSI_TRY(check_overlap(context, grid, contacts, function, contacts->body[b]));
+  return MPS_OK;
 }
 
 /* Contact by impulses separates the sides of a thin wall (thin_bodies.h), penalty contact does
@@ -140,8 +139,7 @@ static void warn_of_areas(mps_context *context, const mpsi_grid *grid, const mps
 static mps_status compare_ranks(mpsi_partition *partition, const char *function, mps_status status,
                                 const mps_contact *contact) {
   if (!partition) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   if (status == MPS_OK) {
     const mps_contact_def *d = &contact->def;
     MPSI_GIVE(&given, d, mover);

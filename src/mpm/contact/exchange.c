@@ -6,7 +6,6 @@
 #include "exchange.h"
 #include "mpm/boundary/mirror.h"
 #include "mpm/contact/pairs.h"
-#include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
 
 #include "mpm/base/kernels.h"
@@ -436,7 +435,6 @@ void mpsi_mpm_end_contact_exchange(mpsi_contacts *contacts) {
 
 void mpsi_mpm_free_contact_exchange(mps_context *context, mpsi_contacts *contacts) {
   mpsi_contact_exchange *r = &contacts->exchange;
-  mpsi_room *const rooms[] = {&r->constraint, &r->block,  &r->weight, &r->node,
-                              &r->shared,     &r->lookup, &r->mail,   &r->list};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(context, rooms[k]->item);
+  MPSI_FREE(context, r->constraint.item, r->block.item, r->weight.item, r->node.item,
+            r->shared.item, r->lookup.item, r->mail.item, r->list.item);
 }

@@ -5,8 +5,7 @@
  * the same arithmetic on each, and no message between sweeps. A step costs one message between any
  * two partners. Warm-start impulses are exchanged before particles change ranks (warm_start.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_EXCHANGE_H
-#define MPSI_MPM_EXCHANGE_H
+#pragma once
 
 #include "impulses.h"
 
@@ -63,5 +62,3 @@ mpsi_shared_node *mpsi_mpm_shared_node(mpsi_contact_exchange *exchange,
 mpsi_area *mpsi_mpm_shared_area(const mpsi_contact_exchange *exchange, const int32_t *block,
                                 const int *at, int32_t body);
 void mpsi_mpm_free_contact_exchange(mps_context *context, mpsi_contacts *contacts);
-
-#endif

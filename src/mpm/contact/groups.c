@@ -7,6 +7,7 @@
 #include "mpm/boundary/mirror.h"
 #include "mpm/contact/prescribed.h"
 
+#include "core/base/order.h"
 #include "core/particles/particles_internal.h"
 
 #include <stdlib.h>
@@ -100,14 +101,8 @@ static void list_cells(const mpsi_grid *grid, mpsi_prescribed *all, int64_t entr
 
 /* First listed cell that does not come before `cell`. */
 static int64_t find_first(const mpsi_prescribed *all, const int32_t *cell) {
-  int64_t low = 0, high = all->cell_count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (compare_three(all->cell[middle].cell, cell) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, all->cell_count, middle, compare_three(all->cell[middle].cell, cell) < 0);
   return low;
 }
 

@@ -12,7 +12,6 @@
 #include "mpm/base/run.h"
 #include "mpm/boundary/mirror.h"
 #include "mpm/contact/prescribed.h"
-#include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
 
 #include "domain/domain_internal.h"
@@ -35,7 +34,6 @@ static void one_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_contact_stage *stage = s->stage;
   mpsi_impulses *all = &stage->contact->impulses;
   mpsi_constraint_block *block = &all->block[s->first + unit];
-  (void)worker;
   if (s->kind == MPSI_SWEEP_WARM)
     stage->kernels->warm(all, stage->transfer.run->dt, block);
   else if (s->kind == MPSI_SWEEP_RELEASE)
@@ -197,9 +195,7 @@ void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *cont
 
 void mpsi_mpm_free_impulses(mps_context *context, mpsi_contacts *contacts) {
   mpsi_impulses *all = &contacts->impulses;
-  void *rooms[] = {all->constraint_room.item, all->block_room.item,     all->weight_room.item,
-                   all->node_room.item,       all->candidate_room.item, all->warm_room.item,
-                   all->next_room.item,       all->lookup_room.item,    all->area_room.item,
-                   all->around_room.item,     all->body_room.item};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(context, rooms[k]);
+  MPSI_FREE(context, all->constraint_room.item, all->block_room.item, all->weight_room.item,
+            all->node_room.item, all->candidate_room.item, all->warm_room.item, all->next_room.item,
+            all->lookup_room.item, all->area_room.item, all->around_room.item, all->body_room.item);
 }

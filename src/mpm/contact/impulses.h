@@ -1,8 +1,7 @@
 /* impulses.h - contact by impulses on the grid (impulses.c, constraints.c): which particles may
  * reach which body in a step, the nodes through which they act, and the warm start of the next
  * step. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_IMPULSES_H
-#define MPSI_MPM_IMPULSES_H
+#pragma once
 
 #include "contact/corner.h"
 #include "contact/impulse.h"
@@ -169,5 +168,3 @@ static inline void mpsi_mpm_add_node(mpsi_constraint *constraint, double **node,
   }
   for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
-
-#endif

@@ -72,7 +72,6 @@ static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contact
 
 void mpsi_mpm_find_inside(void *search, int64_t g, int32_t worker) {
   const mpsi_inside_search *of = search;
-  (void)worker;
   const size_t count = (size_t)of->grid->block_nodes;
   mpsi_node_block *nodes = &of->grid->nodes[g];
   nodes->inside = nodes->thin = false;
@@ -187,14 +186,12 @@ static void mark_node(const mpsi_inside_search *of, const mpsi_cell_block *cells
 
 void mpsi_mpm_mark_reached(void *search, int64_t b, int32_t worker) {
   const mpsi_inside_search *of = search;
-  (void)worker;
   for_corners(of, &of->grid->cells[b], mark_node, of->contact->reached);
 }
 
 static void set_corner_bit(const mpsi_inside_search *of, const mpsi_cell_block *cells,
                            const int *at, void *data) {
   const int t = mpsi_tile_index(at[0], at[1], at[2]);
-  (void)of, (void)cells;
   ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
 }
 
@@ -213,7 +210,6 @@ static int64_t corner_words(const mpsi_grid *grid) { return (grid->tile_nodes + 
 static void pack_corners(void *search, int64_t b, int32_t worker, double *message) {
   const mpsi_inside_search *of = search;
   uint64_t *bits = (uint64_t *)message;
-  (void)worker;
   memset(bits, 0, (size_t)corner_words(of->grid) * sizeof *bits);
   if (of->failed) return;
   for_corners(of, &of->grid->cells[b], set_corner_bit, bits);

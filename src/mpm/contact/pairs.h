@@ -1,8 +1,7 @@
 /* pairs.h - contact on the grid. A block and a body near it are a pair: the lists of pairs are
  * rebuilt before each step, so that only the blocks near a body are searched for contact.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PAIRS_H
-#define MPSI_MPM_PAIRS_H
+#pragma once
 
 #include "thin_bodies.h"
 #include "contact/penalty_contact.h"
@@ -170,5 +169,3 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
 void mpsi_mpm_end_contact(const mpsi_grid *grid, mpsi_contacts *contacts, mps_contact *contact);
 mps_status mpsi_mpm_list_in_contact(const mpsi_contact_setup *setup, const mps_contact *contact,
                                     const mpsi_contact_list *out, int64_t *count);
-
-#endif

@@ -1,7 +1,6 @@
 /* particle.h - contact of one particle with one body, by the functions of src/contact.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_CONTACT_PARTICLE_H
-#define MPSI_MPM_CONTACT_PARTICLE_H
+#pragma once
 
 #include "mpm/base/columns.h"
 #include "pairs.h"
@@ -24,5 +23,3 @@ MPSI_INLINE bool mpsi_find_contact(const mpsi_grid *grid, const mpsi_columns *p,
                                                                 : grid->measure};
   return mpsi_contact_find(contact, dim, &law, v, L, out);
 }
-
-#endif

@@ -50,8 +50,7 @@ mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *m, mps_domain *domain,
 }
 
 void mpsi_mpm_free_partners(mpsi_contact_partners *m, mps_context *context) {
-  mpsi_free(context, m->words_room.item);
-  mpsi_free(context, m->own_room.item);
+  MPSI_FREE(context, m->words_room.item, m->own_room.item);
 }
 
 bool mpsi_mpm_is_partner(const mpsi_contact_partners *m, int32_t rank) {
@@ -183,8 +182,7 @@ mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, const mpsi_grid *grid
     while (spread(grid)) {
     }
   }
-  const mps_status lost = mpsi_domain_sum(domain, function, HEAD + rows * words, m->words);
-  if (lost != MPS_OK) return lost;
+  MPSI_TRY(mpsi_domain_sum(domain, function, HEAD + rows * words, m->words));
   if (m->words[FAILED] > 0) return mpsi_domain_agree(domain, function, status);
   *constraints = m->words[CONSTRAINTS];
   read_rows(m, domain, row, rows);

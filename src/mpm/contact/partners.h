@@ -5,8 +5,7 @@
  * Constraints that reach neither constraints nor blocks of another rank are not sent. A free body
  * couples all of its constraints: then all ranks with constraints are partners.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PARTNERS_H
-#define MPSI_MPM_PARTNERS_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/base/room.h"
@@ -41,5 +40,3 @@ mps_status mpsi_mpm_find_partners(struct mpsi_contacts *contacts, const struct m
 /* Whether a rank is a partner, or this rank. */
 bool mpsi_mpm_is_partner(const mpsi_contact_partners *partners, int32_t rank);
 void mpsi_mpm_free_partners(mpsi_contact_partners *partners, mps_context *context);
-
-#endif

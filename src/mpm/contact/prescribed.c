@@ -240,10 +240,8 @@ void mpsi_mpm_end_prescribed(const mpsi_contact_stage *stage, mpsi_energy *energ
 }
 
 void mpsi_mpm_free_prescribed(mps_context *context, mpsi_prescribed *all) {
-  mpsi_room *const rooms[] = {&all->listed_room, &all->group_room, &all->cell_room,
-                              &all->first_room,  &all->key_room,   &all->fixed_room,
-                              &all->before_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(context, rooms[k]->item);
+  MPSI_FREE(context, all->listed_room.item, all->group_room.item, all->cell_room.item,
+            all->first_room.item, all->key_room.item, all->fixed_room.item, all->before_room.item);
   mpsi_mpm_free_impulses(context, &all->constraints);
   mpsi_mpm_free_contact_exchange(context, &all->constraints);
   mpsi_mpm_free_partners(&all->constraints.partners, context);

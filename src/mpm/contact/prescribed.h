@@ -8,8 +8,7 @@
  * stiffens the body there. At the ends of a list a cell is divided in two along each axis that
  * crosses the end, so that the place of the end counts, and a list of one cell bears moments.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PRESCRIBED_H
-#define MPSI_MPM_PRESCRIBED_H
+#pragma once
 
 #include "pairs.h"
 #include "mpm/boundary/boundaries.h"
@@ -86,5 +85,3 @@ mps_status mpsi_mpm_solve_prescribed(const mpsi_contact_stage *stage, const char
  * and warm-start impulses. */
 void mpsi_mpm_end_prescribed(const mpsi_contact_stage *stage, mpsi_energy *energy);
 void mpsi_mpm_free_prescribed(mps_context *context, mpsi_prescribed *prescribed);
-
-#endif

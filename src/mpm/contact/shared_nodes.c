@@ -1,6 +1,7 @@
 /* shared_nodes.c - replicas of the nodes that constraints of all partner ranks use, each once,
  * found by a hash of their coordinates (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
+#include "core/base/order.h"
 #include "mpm/contact/thin_bodies.h"
 
 #include "mpm/grid/blocks.h"
@@ -15,17 +16,8 @@ static double *find_home(const mpsi_grid *grid, const int32_t *at, bool across) 
         c < grid->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE) : 0;
     local = local * MPSI_SIDE + (at[c] - block[c] * MPSI_SIDE);
   }
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    const int32_t *there = grid->nodes[middle].at;
-    int c = 2;
-    while (c > 0 && there[c] == block[c]) c--;
-    if (there[c] < block[c])
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, grid->node_count, middle, mpsi_block_before(grid->nodes[middle].at, block));
   if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
   if (across && grid->nodes[low].across < 0) return NULL;
   return grid->node[mpsi_first_node(grid, across ? grid->nodes[low].across : low) + local];

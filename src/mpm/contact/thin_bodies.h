@@ -13,8 +13,7 @@
  * Values across have blocks of nodes of their own, behind the nodes in the particles' supports
  * (mpsi_all_nodes), and a second tile; they are rebuilt before each step. With penalty contact
  * (MPS_CONTACT_METHOD_PENALTY) no node is two-sided. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_THIN_BODIES_H
-#define MPSI_MPM_THIN_BODIES_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include <stdbool.h>
@@ -55,5 +54,3 @@ bool mpsi_mpm_list_across(mps_context *context, mpsi_grid *grid, mpsi_mirrors *m
 mpsi_parted mpsi_mpm_find_parted(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                  const struct mpsi_cell_block *cells, const int *base,
                                  const double *x);
-
-#endif

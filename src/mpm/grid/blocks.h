@@ -16,8 +16,7 @@
  *
  * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_BLOCKS_H
-#define MPSI_MPM_BLOCKS_H
+#pragma once
 
 #include "pass.h"
 #include "mpm/base/columns.h"
@@ -243,6 +242,12 @@ static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
   return a[0] < b[0];
 }
 
+/* The same for qsort: of items that are or begin with the place of a block. */
+static inline int mpsi_compare_blocks(const void *left, const void *right) {
+  const int32_t *a = left, *b = right;
+  return mpsi_block_before(a, b) ? -1 : mpsi_block_before(b, a) ? 1 : 0;
+}
+
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_at(const mpsi_grid *grid, int c, double x) {
   return (x - grid->origin[c]) * grid->inverse;
@@ -340,5 +345,3 @@ void mpsi_mpm_clear_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_finish_nodes(void *solver, int64_t g, int32_t worker);
 void mpsi_mpm_damp_after_lists(void *solver, int64_t g, int32_t worker);
-
-#endif

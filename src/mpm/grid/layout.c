@@ -58,7 +58,6 @@ static void find_begins(void *data, int64_t chunk, int32_t worker) {
   const mpsi_radix *key = grid->sorted;
   const int64_t end = end_of_chunk(c, chunk);
   int64_t number = c->cells ? c->first[chunk] : 0;
-  (void)worker;
   for (int64_t k = chunk * c->length; k < end; k++) {
     if (k > 0 && key[k].key >> grid->own_bits == key[k - 1].key >> grid->own_bits) continue;
     if (c->cells) c->cells[number] = (mpsi_cell_block){.begin = k, .bad = -1};
@@ -90,7 +89,6 @@ static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
 static void list_chunk(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
   const int64_t end = end_of_chunk(c, chunk);
-  (void)worker;
   c->in_order[chunk] = true;
   for (int64_t k = chunk * c->length; k < end; k++) {
     c->order[k] = c->grid->sorted[k].index;
@@ -128,7 +126,6 @@ static void place_block(void *data, int64_t b, int32_t worker) {
   const key_chunks *of = data;
   const mpsi_grid *grid = of->grid;
   const mpsi_columns *p = of->p;
-  (void)worker;
   mpsi_cell_block *cells = &grid->cells[b];
   mpsi_radix *key = grid->sorted;
   const uint64_t own = (UINT64_C(1) << grid->own_bits) - 1;
@@ -275,8 +272,8 @@ mps_status mpsi_mpm_sort_cells(mps_context *context, mpsi_grid *grid, const mpsi
   run->stale = false;
   if (p->count == 0)
     return mpsi_mpm_ensure_cells(context, grid, 0) ? MPS_OK : no_room(context, grid, function, 0);
-  const mps_status status = find_cells(context, grid, p, function);
-  return status == MPS_OK ? put_in_order(context, grid, p, function) : status;
+  MPSI_TRY(find_cells(context, grid, p, function));
+  return put_in_order(context, grid, p, function);
 }
 
 mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
@@ -287,8 +284,7 @@ mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi
         mpsi_mpm_ensure_cells(context, grid, 0) && mpsi_mpm_build_nodes(context, grid, 0);
     return good ? MPS_OK : no_room(context, grid, function, 0);
   }
-  mps_status status = find_cells(context, grid, p, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_cells(context, grid, p, function));
   const int64_t cells = grid->cell_count;
   if (!mpsi_mpm_build_nodes(context, grid, cells)) return no_room(context, grid, function, cells);
   run->stale = false;

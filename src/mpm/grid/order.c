@@ -9,7 +9,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "blocks.h"
 #include "core/internal.h"
-#include "mpm/contact/thin_bodies.h"
 
 #include <string.h>
 
@@ -47,7 +46,6 @@ typedef struct chunk_task {
 static void run_chunk(void *data, int64_t chunk, int32_t worker) {
   const chunk_task *t = data;
   const int64_t begin = chunk * t->sorter->chunk, end = begin + t->sorter->chunk;
-  (void)worker;
   t->work(t->sorter, (int32_t)chunk, begin, end < t->sorter->p->count ? end : t->sorter->p->count);
 }
 
@@ -128,13 +126,11 @@ static inline uint64_t key_of(const sorter *s, int64_t k) {
 }
 
 static void make_keys(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
-  (void)chunk;
   for (int64_t k = begin; k < end; k++) s->from[k] = (mpsi_radix){key_of(s, k), k};
 }
 
 /* Other keys for items that have been moved. */
 static void change_keys(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
-  (void)chunk;
   for (int64_t k = begin; k < end; k++) s->from[k].key = key_of(s, s->from[k].index);
 }
 

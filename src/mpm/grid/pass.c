@@ -329,7 +329,6 @@ static void receive(flow *f) {
 static void run_worker(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
   const bool own = mpsi_executor_is_own(f->context), receives = own && worker == 0;
-  (void)unit;
   for (int32_t look = 0; !is_all_claimed(f); look++) {
     int32_t entry[MOST_CLAIMED];
     /* under a caller's executor the thread of another lane may never come: no patience */

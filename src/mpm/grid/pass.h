@@ -9,8 +9,7 @@
  * Blocks of cells that share a block of nodes add to it one after the other, in the order of their
  * colours (mpsi_node_block): sums do not depend on the order or number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PASS_H
-#define MPSI_MPM_PASS_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/base/room.h"
@@ -53,5 +52,3 @@ void mpsi_mpm_link_blocks(const mpsi_grid *grid);
 /* Calls task(data, index, worker) for all blocks of cells, in any order. */
 void mpsi_mpm_for_cells(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                         mpsi_mpm_task task, void *data);
-
-#endif

@@ -11,25 +11,8 @@
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static mps_status check_ids(void *solver, const char *function, const void *def, int64_t count,
-                            const int64_t *ids) {
-  const mps_mpm *mpm = solver;
-  (void)def;
-  if (mpm->partition) return MPS_OK; /* they may be of another rank */
-  return mpsi_particles_check_ids(mpm->p.set, function, count, ids);
-}
-
 static bool counts(const void *solver, int64_t id) {
   return mps_particles_index(((const mps_mpm *)solver)->p.set, id) >= 0;
-}
-
-static bool item(const void *solver, const void *def, int64_t k, double x[3], int64_t *id) {
-  const mps_mpm *mpm = solver;
-  (void)def;
-  if (k >= mpm->p.count) return false;
-  for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
-  *id = mpsi_particles_integers(mpm->p.set, "id")[k];
-  return true;
 }
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
@@ -58,10 +41,7 @@ static mps_status check_boundary(void *solver, const char *function, int32_t num
 }
 
 /* The nodes of a box are those of the grid. */
-static bool keeps(const void *def, mpsi_selected by) {
-  (void)def, (void)by;
-  return true;
-}
+static bool keeps(const void *def, mpsi_selected by) { return true; }
 
 static mps_status make_boundary(void *solver, const char *function, int32_t number, void *def,
                                 void *own) {
@@ -72,19 +52,12 @@ static mps_status make_boundary(void *solver, const char *function, int32_t numb
 static mps_status apply_boundary(void *solver, const char *function, int32_t number, void *def,
                                  void *own, void *former) {
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(solver);
-  (void)former;
   return def ? mpsi_mpm_set_boundary(&setup, function, number, def, own)
              : mpsi_mpm_remove_boundary(&setup, function, number);
 }
 
 const mpsi_condition_kind mpsi_mpm_boundary_kind = {
-    .kind = MPS_DEF_MPM_BOUNDARY,
-    .definition = &mpsi_definition_of_mps_mpm_boundary_def,
-    .what = "boundary",
-    .add = "mps_mpm_add_boundary",
-    .set = "mps_mpm_set_boundary",
-    .get = "mps_mpm_get_boundary",
-    .remove = "mps_mpm_remove_boundary",
+    MPSI_CONDITION_OF(MPM, mpm, BOUNDARY, boundary),
     .role = MPSI_SIGNAL_MOTION,
     .list = {{"ids", "id_count", 1}},
     .first = MPSI_SIDES,
@@ -95,7 +68,6 @@ const mpsi_condition_kind mpsi_mpm_boundary_kind = {
     .check = check_boundary,
     .selects = true,
     .keeps = keeps,
-    .check_ids = check_ids,
     .counts = counts,
     .make = make_boundary,
     .apply = apply_boundary,
@@ -111,14 +83,12 @@ mps_status mpsi_mpm_get_reaction(void *solver, const char *function, mps_status 
 
 static mps_status check_load(void *solver, const char *function, int32_t number, const void *def) {
   const mps_mpm *mpm = solver;
-  (void)number;
   return mpsi_mpm_check_load(mpm->context, &mpm->grid, &mpm->p, mpm->partition, function, def);
 }
 
 static mps_status make_load(void *solver, const char *function, int32_t number, void *def,
                             void *own) {
   mps_mpm *mpm = solver;
-  (void)number;
   ((mpsi_traction *)own)->def = def;
   return mpsi_mpm_make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, function);
 }
@@ -126,7 +96,6 @@ static mps_status make_load(void *solver, const char *function, int32_t number, 
 static mps_status apply_load(void *solver, const char *function, int32_t number, void *def,
                              void *own, void *former) {
   mpsi_traction *now = own;
-  (void)solver, (void)function, (void)number, (void)def;
   if (!now || !former) return MPS_OK;
   memcpy(now->now, ((mpsi_traction *)former)->now, sizeof now->now);
   memcpy(now->former, ((mpsi_traction *)former)->former, sizeof now->former);
@@ -134,21 +103,13 @@ static mps_status apply_load(void *solver, const char *function, int32_t number,
 }
 
 const mpsi_condition_kind mpsi_mpm_load_kind = {
-    .kind = MPS_DEF_MPM_LOAD,
-    .definition = &mpsi_definition_of_mps_mpm_load_def,
-    .what = "load",
-    .add = "mps_mpm_add_load",
-    .set = "mps_mpm_set_load",
-    .get = "mps_mpm_get_load",
-    .remove = "mps_mpm_remove_load",
+    MPSI_CONDITION_OF(MPM, mpm, LOAD, load),
     .role = MPSI_SIGNAL_NUMBER,
     .list = {{"ids", "id_count", 1}, {"area", "id_count", 1}},
     .most = INT32_MAX - 8,
     .size = sizeof(mpsi_traction),
     .check = check_load,
     .selects = true,
-    .item = item,
-    .check_ids = check_ids,
     .counts = counts,
     .make = make_load,
     .apply = apply_load,

@@ -1,7 +1,6 @@
 /* conditions.h - boundaries and loads by number, for the functions of all solvers.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_CONDITIONS_H
-#define MPSI_MPM_CONDITIONS_H
+#pragma once
 
 #include "solver/conditions.h"
 
@@ -10,5 +9,3 @@
 extern const mpsi_condition_kind mpsi_mpm_boundary_kind, mpsi_mpm_load_kind;
 mps_status mpsi_mpm_get_reaction(void *mpm, const char *function, mps_status status, int32_t number,
                                  mps_reaction *out);
-
-#endif

@@ -82,9 +82,8 @@ static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low
   }
   low[2] = high[2] = 0;
   for (int c = 0; c < dim_of(d); c++) {
-    mps_status status = read_wall(context, d, c, false, &low[c]);
-    if (status == MPS_OK) status = read_wall(context, d, c, true, &high[c]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(read_wall(context, d, c, false, &low[c]));
+    MPSI_TRY(read_wall(context, d, c, true, &high[c]));
     if (low[c] >= high[c])
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                        "the domain in %c is [%g, %g] m, must be at least one cell", "xyz"[c],
@@ -131,21 +130,19 @@ static bool in_parts(const mpsi_columns *p) { return mpsi_particles_deal(p->set)
 static mps_status join_extremes(mpsi_contacts *contacts, mpsi_run *run, const mps_mpm_def *def,
                                 mps_status status) {
   double most[2] = {run->speed, isnan(contacts->least_mass) ? -INFINITY : -contacts->least_mass};
-  status = mpsi_domain_agree_max(def->domain, create, status, 2, most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(def->domain, create, status, 2, most));
   run->speed = most[0];
   contacts->least_mass = most[1] == -INFINITY ? NAN : -most[1];
-  return status;
+  return MPS_OK;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static mps_status add_fields(mps_context *context, const mpsi_columns *p) {
   static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
-  mps_status status = MPS_OK;
-  for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
-    status = mpsi_as(context, create, mps_particles_add_field(p->set, names[k], 0));
-  return status;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    MPSI_TRY(mpsi_as(context, create, mps_particles_add_field(p->set, names[k], 0)));
+  return MPS_OK;
 }
 
 /* ---- restoring the set after an error -------------------------------------------------------- */
@@ -253,10 +250,9 @@ static mps_status make_memory(mps_mpm *mpm) {
 /* Initial state of the particles, and their order. */
 static mps_status begin(mps_mpm *mpm) {
   mpsi_mpm_begin_particles(&mpm->grid, &mpm->p, &mpm->contact);
-  mps_status status = find_speed(mpm);
-  if (status == MPS_OK) status = check_step(mpm);
-  if (status == MPS_OK) status = make_memory(mpm);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_speed(mpm));
+  MPSI_TRY(check_step(mpm));
+  MPSI_TRY(make_memory(mpm));
   return is_shared(&mpm->def)
              ? mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create)
              : mpsi_mpm_sort(mpm, create);
@@ -364,57 +360,25 @@ static mps_status complete(mps_context *context, mps_particles *particles, mps_m
 static void free_rooms(mps_mpm *mpm) {
   for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++)
     mpsi_free(mpm->context, mpm->grid.workers[k].memory);
-  void *parts[] = {mpm->grid.workers,
-                   mpm->grid.cells_room.item,
-                   mpm->grid.coloured_room.item,
-                   mpm->grid.digits_room.item,
-                   mpm->grid.pass_room.item,
-                   mpm->grid.nodes_room.item,
-                   mpm->grid.node_room.item,
-                   mpm->grid.side_room.item,
-                   mpm->grid.fit_room.item,
-                   mpm->grid.fitted_room.item,
-                   mpm->contact.cell_pair_room.item,
-                   mpm->contact.node_pair_room.item,
-                   mpm->contact.node_room.item,
-                   mpm->contact.normal_room.item,
-                   mpm->contact.inside_room.item,
-                   mpm->contact.reached_room.item,
-                   mpm->contact.sight_room.item,
-                   mpm->contact.across_room.item,
-                   mpm->contact.beside_room.item,
-                   mpm->contact.penalty_room.item,
-                   mpm->contact.load_room.item,
-                   mpm->contact.held_room.item,
-                   mpm->contact.near_room.item,
-                   mpm->contact.sum_room.item,
-                   mpm->contact.handle_room.item,
-                   mpm->contact.body_room.item,
-                   mpm->contact.state_room.item,
-                   mpm->grid.across_room.item,
-                   mpm->mirrors.mirror_room.item,
-                   mpm->mirrors.mass_room.item,
-                   mpm->boundaries.held_room.item,
-                   mpm->boundaries.dashpot_room.item,
-                   mpm->boundaries.old_held_room.item,
-                   mpm->boundaries.old_dashpot_room.item,
-                   mpm->boundaries.warm_room.item,
-                   mpm->energy.cells_room.item,
-                   mpm->energy.nodes_room.item,
-                   mpm->settling.nodes_room.item,
-                   mpm->rooms.force.item,
-                   mpm->rooms.radix.item,
-                   mpm->rooms.stencil.item,
-                   mpm->rooms.places.item,
-                   mpm->rooms.strain.item,
-                   mpm->rooms.rough.item,
-                   mpm->rooms.gone.item,
-                   mpm->undo.list_room.item,
-                   mpm->undo.room.item,
-                   mpm->undo.dashpot_room.item,
-                   mpm->undo.sums_room.item,
-                   mpm->undo.hold_room.item};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  MPSI_FREE(
+      mpm->context, mpm->grid.workers, mpm->grid.cells_room.item, mpm->grid.coloured_room.item,
+      mpm->grid.digits_room.item, mpm->grid.pass_room.item, mpm->grid.nodes_room.item,
+      mpm->grid.node_room.item, mpm->grid.side_room.item, mpm->grid.fit_room.item,
+      mpm->grid.fitted_room.item, mpm->contact.cell_pair_room.item,
+      mpm->contact.node_pair_room.item, mpm->contact.node_room.item, mpm->contact.normal_room.item,
+      mpm->contact.inside_room.item, mpm->contact.reached_room.item, mpm->contact.sight_room.item,
+      mpm->contact.across_room.item, mpm->contact.beside_room.item, mpm->contact.penalty_room.item,
+      mpm->contact.load_room.item, mpm->contact.held_room.item, mpm->contact.near_room.item,
+      mpm->contact.sum_room.item, mpm->contact.handle_room.item, mpm->contact.body_room.item,
+      mpm->contact.state_room.item, mpm->grid.across_room.item, mpm->mirrors.mirror_room.item,
+      mpm->mirrors.mass_room.item, mpm->boundaries.held_room.item,
+      mpm->boundaries.dashpot_room.item, mpm->boundaries.old_held_room.item,
+      mpm->boundaries.old_dashpot_room.item, mpm->boundaries.warm_room.item,
+      mpm->energy.cells_room.item, mpm->energy.nodes_room.item, mpm->settling.nodes_room.item,
+      mpm->rooms.force.item, mpm->rooms.radix.item, mpm->rooms.stencil.item, mpm->rooms.places.item,
+      mpm->rooms.strain.item, mpm->rooms.rough.item, mpm->rooms.gone.item, mpm->undo.list_room.item,
+      mpm->undo.room.item, mpm->undo.dashpot_room.item, mpm->undo.sums_room.item,
+      mpm->undo.hold_room.item);
 }
 
 static void destroy(void *solver) {
@@ -442,10 +406,7 @@ static void destroy(void *solver) {
 static double time_of(const void *solver) { return ((const mps_mpm *)solver)->run.time; }
 static int64_t steps_of(const void *solver) { return ((const mps_mpm *)solver)->run.steps; }
 
-static double dt_of(void *solver, const char *function) {
-  (void)function;
-  return mpsi_mpm_dt(solver);
-}
+static double dt_of(void *solver, const char *function) { return mpsi_mpm_dt(solver); }
 
 static mps_status agree(void *solver, const char *function, mps_status status) {
   mps_mpm *mpm = solver;
@@ -455,7 +416,6 @@ static mps_status agree(void *solver, const char *function, mps_status status) {
 }
 
 static mps_status use_dt(void *solver, const char *function, double dt) {
-  (void)function;
   mps_mpm *mpm = solver;
   if (mpm->bound.beyond >= 0)
     mpm->run.renewed = true; /* the caller continues from the present state */
@@ -606,7 +566,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
 
 mps_solver *mps_mpm_solver(const mps_mpm *mpm) { return mpm ? (mps_solver *)&mpm->base : NULL; }
 
-
 /* ---- variants for comparison ----------------------------------------------------------------- */
 
 /* Checks that a variant is chosen before the first step, the same on all ranks. */
@@ -623,9 +582,7 @@ static mps_status check_before_steps(mps_context *context, mpsi_run *run, const 
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer));
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
@@ -642,9 +599,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
 
 mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain));
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
@@ -654,9 +609,7 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
 
 mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status =
-      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip));
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
                      mpsi_outside(flip, 0.0, 1.0).text);

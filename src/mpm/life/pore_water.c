@@ -16,8 +16,7 @@
 static const char add[] = "mps_mpm_add_pore_water";
 
 static mps_status check_solver(mps_mpm *mpm) {
-  mps_status status = mpsi_mpm_usable(mpm, add);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_usable(mpm, add));
   if (mpm->energy.counts)
     return mpsi_fail(mpm->context, add, MPS_ERROR_UNSUPPORTED,
                      "budget is 1: the energy budget has no terms for pore water, must be 0");
@@ -76,16 +75,13 @@ static bool has_layers(const mpsi_columns *p) {
 static mps_status add_fields(mps_mpm *mpm, double *bulk) {
   const mps_pore_water_def *def = &mpm->water->def;
   mpm->water->flows = !isnan(def->permeability) || has_layers(&mpm->p);
-  mps_status status = fill(mpm->context, &mpm->p, "porosity", def->porosity);
-  if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure", NAN);
-  if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN);
-  if (status == MPS_OK && mpsi_pore_predicts(mpm))
-    status = fill(mpm->context, &mpm->p, "pore_pressure_mean", NAN);
-  if (status == MPS_OK && mpm->water->flows)
-    status = fill(mpm->context, &mpm->p, "permeability", def->permeability);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(fill(mpm->context, &mpm->p, "porosity", def->porosity));
+  MPSI_TRY(fill(mpm->context, &mpm->p, "pore_pressure", NAN));
+  MPSI_TRY(fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN));
+  if (mpsi_pore_predicts(mpm)) MPSI_TRY(fill(mpm->context, &mpm->p, "pore_pressure_mean", NAN));
+  if (mpm->water->flows) MPSI_TRY(fill(mpm->context, &mpm->p, "permeability", def->permeability));
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);
+  mps_status status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);
   return status == MPS_OK && isnan(def->bulk) ? find_bulk(mpm->context, &mpm->p, bulk) : status;
 }
 
@@ -93,7 +89,7 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
 static mps_status begin(mps_mpm *mpm, mps_status status) {
   double bulk = 0.0; /* of all particles */
   if (status == MPS_OK) status = add_fields(mpm, &bulk);
-  if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 1, &bulk);
+  if (mpm->partition) status = mpsi_domain_agree_max(mpm->domain, add, status, 1, &bulk);
   if (status != MPS_OK) return status;
   if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = bulk;
   mpm->p.K_w = mpm->water->def.bulk;
@@ -151,12 +147,11 @@ static void restore(mps_mpm *mpm, const kept *before) {
 
 /* All ranks give the same. */
 static mps_status agree_on_water(mps_mpm *mpm, mps_status status, const mps_pore_water_def *def) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpm->partition) return status;
-  mpsi_given_begin(&given);
   MPSI_GIVE_DEF(&given, mps_pore_water_def, def);
   mpsi_give(&given, "having a field 'permeability'", has_layers(&mpm->p));
-  return mpsi_domain_agree_given(mpm->partition->domain, add, status, &given);
+  return mpsi_domain_agree_given(mpm->domain, add, status, &given);
 }
 
 mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
@@ -164,11 +159,9 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   mps_pore_water_def def = mps_pore_water_defaults();
   mps_status status = check_solver(mpm);
   if (status == MPS_OK)
-    status =
-        MPSI_DEF_READ_OR_DEFAULTS(mpm->context, __func__, mps_pore_water_def, user_def, &def);
-  status = agree_on_water(mpm, status, &def);
-  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
-  if (status != MPS_OK) return status;
+    status = MPSI_DEF_READ_OR_DEFAULTS(mpm->context, __func__, mps_pore_water_def, user_def, &def);
+  MPSI_TRY(agree_on_water(mpm, status, &def));
+  MPSI_TRY(mpsi_mpm_ready(mpm, __func__));
   kept before;
   status = keep(mpm->context, &mpm->p, &mpm->run, &before);
   mpm->water = status == MPS_OK ? mpsi_alloc(mpm->context, 1, sizeof *mpm->water) : NULL;
@@ -197,8 +190,7 @@ static mps_status check_water(mps_context *context, mpsi_water *water, const cha
 
 mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *out, size_t size) {
   if (!mpm) return mpsi_null(__func__, "mpm");
-  const mps_status status = check_water(mpm->context, mpm->water, __func__);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_water(mpm->context, mpm->water, __func__));
   return mpsi_def_write(mpm->context, "mps_mpm_get_pore_water", out, size, &mpm->water->def,
                         sizeof mpm->water->def);
 }
@@ -207,8 +199,8 @@ mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *
 static mps_status sum_ranks(const mps_mpm *mpm, const char *function, mps_status status,
                             int32_t count, mpsi_exact *sum) {
   if (!mpm->partition) return status;
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->partition->domain, function, count, sum)
+  status = mpsi_domain_agree(mpm->domain, function, status);
+  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->domain, function, count, sum)
                           : status;
 }
 
@@ -244,11 +236,10 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
                        "number is %d, must be -1 (the free surface) to %lld", number,
                        (long long)mpm->water->faces - 1);
   if (mpm->partition)
-    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "number", number);
+    status = mpsi_domain_agree_same(mpm->domain, __func__, status, "number", number);
   const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
   if (status == MPS_OK) sum[0] = mpm->water->rate[at], sum[1] = mpm->water->drained[at];
-  status = sum_ranks(mpm, __func__, status, 2, sum);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(sum_ranks(mpm, __func__, status, 2, sum));
   if (rate) *rate = mpsi_exact_value(&sum[0]);
   if (mass) *mass = mpsi_exact_value(&sum[1]);
   return MPS_OK;
@@ -257,9 +248,8 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
 /* ---- changes --------------------------------------------------------------------------------- */
 
 static mps_status check_level(mps_mpm *mpm, const char *function, const double *point) {
-  mps_status status = mpsi_mpm_usable(mpm, function);
-  if (status == MPS_OK) status = check_water(mpm->context, mpm->water, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_usable(mpm, function));
+  MPSI_TRY(check_water(mpm->context, mpm->water, function));
   if (!point) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "point is NULL");
   double square = 0.0;
   for (int c = 0; c < mpm->grid.dim; c++) {
@@ -279,10 +269,9 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   if (!mpm) return mpsi_null(__func__, "mpm");
   mps_status status = check_level(mpm, __func__, point);
   if (mpm->partition) {
-    mpsi_given given;
-    mpsi_given_begin(&given);
+    mpsi_given given = MPSI_GIVEN;
     if (status == MPS_OK) mpsi_give_vector(&given, "point", mpm->grid.dim, point);
-    status = mpsi_domain_agree_given(mpm->partition->domain, __func__, status, &given);
+    status = mpsi_domain_agree_given(mpm->domain, __func__, status, &given);
   }
   if (status != MPS_OK) return status;
   const mpsi_columns *p = &mpm->p;
@@ -301,24 +290,21 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
 /* All ranks give the same. */
 static mps_status agree_on_face(const mps_mpm *mpm, const char *function, mps_status status,
                                 const mps_pore_face_def *def, int32_t number) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!mpm->partition) return status;
-  mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
   MPSI_GIVE_DEF(&given, mps_pore_face_def, def);
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(mpm->domain, function, status, &given);
 }
 
 static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_water *water,
                             mpsi_run *run, const char *function, const mps_pore_face_def *user_def,
                             mps_pore_face_def *def) {
   *def = mps_pore_face_defaults();
-  mps_status status = mpsi_mpm_between_steps(context, run, function);
-  if (status == MPS_OK) status = check_water(context, water, function);
-  if (status == MPS_OK)
-    status = MPSI_DEF_READ_IN(context, function, mps_pore_face_def, user_def,
-                              mpsi_scene_of(grid->dim), def);
-  return status;
+  MPSI_TRY(mpsi_mpm_between_steps(context, run, function));
+  MPSI_TRY(check_water(context, water, function));
+  return MPSI_DEF_READ_IN(context, function, mps_pore_face_def, user_def, mpsi_scene_of(grid->dim),
+                          def);
 }
 
 /* As where the permeability was forgotten. */
@@ -339,8 +325,7 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
     status =
         mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                   "the solver has %d pore faces, the most that are allowed", MPS_PORE_MAX_FACES);
-  status = agree_on_face(mpm, __func__, status, &def, -1);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(agree_on_face(mpm, __func__, status, &def, -1));
   if (number) *number = (int32_t)mpm->water->faces;
   mpm->water->face[mpm->water->faces++] = def;
   warn_of_face(mpm, &def);
@@ -355,8 +340,7 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
   if (status == MPS_OK && (number < 0 || number >= mpm->water->faces))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "number is %d, must be 0 to %lld", number, (long long)mpm->water->faces - 1);
-  status = agree_on_face(mpm, __func__, status, &def, number);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(agree_on_face(mpm, __func__, status, &def, number));
   const bool drained = mpm->water->face[number].kind == MPS_PORE_FACE_DRAINED;
   mpm->water->face[number] = def;
   if (!drained) warn_of_face(mpm, &def); /* once, whatever its pressure does from step to step */

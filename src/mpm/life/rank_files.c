@@ -94,7 +94,7 @@ static mps_status merge(mps_context *context, const mpsi_grid *grid, const mpsi_
 
 mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
                                   const char *path, const mps_checkpoint *info) {
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = mpm->domain;
   mps_snapshot state = {.context = mpm->context};
   const mpsi_checkpoint_request request = {of, function, path, info, &state.state};
   mps_status status = MPS_OK;
@@ -179,7 +179,7 @@ mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_sta
     status = mpsi_mpm_take_dashpots(mpm->context, &mpm->grid, &mpm->boundaries, mpm->partition,
                                     function, mpsi_values_find(&values->state, "blocks"),
                                     (mpsi_value *)mpsi_values_find(&values->state, "dashpots"));
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  status = mpsi_domain_agree(mpm->domain, function, status);
   if (status == MPS_OK) {
     mpsi_value *blocks = (mpsi_value *)mpsi_values_find(&values->state, "blocks");
     const int64_t count = take_blocks(&mpm->grid, mpm->partition, blocks, values->particles, rows);

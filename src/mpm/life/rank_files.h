@@ -1,7 +1,6 @@
 /* rank_files.h - checkpoints of a solver on several ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_FILES_H
-#define MPSI_MPM_FILES_H
+#pragma once
 
 #include "io/checkpoint.h"
 #include "mpm/base/mpm_solver.h"
@@ -12,5 +11,3 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
                                   const char *path, const mps_checkpoint *info);
 mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_status status,
                                      mps_snapshot *values);
-
-#endif

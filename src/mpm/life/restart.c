@@ -9,7 +9,6 @@
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
 
-#include <stdio.h>
 #include <string.h>
 
 _Static_assert(sizeof(mpsi_dashpot) == MPSI_DASH * sizeof(double), "kept as numbers");
@@ -51,7 +50,6 @@ static void get_blocks(const void *solver, void *values) {
 static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpsi_grid *grid = &mpm->grid;
-  (void)values;
   const int64_t entries = 4 * rows + grid->nodes_room.capacity; /* see mpsi_mpm_ensure_pass */
   const bool good = keep_room(mpm->context, &grid->cells_room, rows, sizeof *grid->cells) &&
                     keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured) &&
@@ -74,10 +72,7 @@ static void set_blocks(void *solver, int64_t rows, const void *values) {
  * mirrors. */
 enum { SIZES = 4 };
 
-static int64_t one_row(const void *solver) {
-  (void)solver;
-  return 1;
-}
+static int64_t one_row(const void *solver) { return 1; }
 
 static void get_sizes(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
@@ -113,9 +108,7 @@ static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
   return good;
 }
 
-static void set_sizes(void *solver, int64_t rows, const void *values) {
-  (void)solver, (void)rows, (void)values;
-}
+static void set_sizes(void *solver, int64_t rows, const void *values) {}
 
 /* Number of dashpots on blocks of nodes for which this rank has all particles. */
 static int64_t count_dashes(const void *solver) {
@@ -142,7 +135,6 @@ static void get_dashes(const void *solver, void *values) {
 /* On several ranks dashpots are restored after the ghosts are found: mpsi_mpm_returned. */
 static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  (void)values;
   return !mpm->partition ||
          mpsi_room_ensure(mpm->context, &mpm->boundaries.warm_room, rows, sizeof(mpsi_dashpot));
 }
@@ -165,7 +157,7 @@ mps_status mpsi_mpm_returned(void *solver, const char *function) {
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
   mps_status status = mpsi_mpm_partition_find_ghosts(&part, function);
   if (status == MPS_OK)
-    status = mpsi_domain_agree(mpm->partition->domain, function,
+    status = mpsi_domain_agree(mpm->domain, function,
                                mpsi_mpm_put_dashpots(&setup, function, mpm->boundaries.warm,
                                                      mpm->boundaries.warm_room.item));
   mpm->run.stale = mpm->run.stale || stale;
@@ -197,7 +189,6 @@ static void get_warm_start_owners(const void *solver, void *values) {
 
 static bool reserve_kept(void *solver, int64_t rows, const void *values) {
   bool good = true;
-  (void)values;
   for (int which = 0; which < 2; which++) {
     mpsi_impulses *all = impulses_of(solver, which);
     good =
@@ -227,7 +218,6 @@ static void get_kept(const void *solver, void *values) {
 
 static void set_kept(void *solver, int64_t rows, const void *values) {
   const double *row = values;
-  (void)rows;
   for (int which = 0; which < 2; which++) {
     mpsi_impulses *all = impulses_of(solver, which);
     for (int64_t k = 0; k < all->warm_count; k++, row += 3)
@@ -507,8 +497,7 @@ mps_status mpsi_mpm_settle_state(void *solver, const char *function) {
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "step %lld has failed: there is no state to go on from",
                      (long long)mpm->run.steps);
-  const mps_status status = mpsi_mpm_apply_edits(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_apply_edits(mpm, function));
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
   return mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
 }

@@ -1,7 +1,6 @@
 /* restart.h - the state of WLS-MPM, for the driver of all solvers (solver/solver_base.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_RESTART_H
-#define MPSI_MPM_RESTART_H
+#pragma once
 
 #include "core/state/state.h"
 
@@ -13,5 +12,3 @@ void mpsi_mpm_settled_state(void *mpm, mps_status status);
 mps_status mpsi_mpm_returned(void *mpm, const char *function);
 mps_status mpsi_mpm_save_state(void *mpm, const mpsi_state_of *of, const char *function,
                                const char *path, const mps_checkpoint *info);
-
-#endif

@@ -1,7 +1,6 @@
 /* set_material.c - another law for some particles, or all of them, between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
-#include "mpm/particles/mpm_particles.h"
 
 /* Number of particles of a list, NULL being all; index of the i-th of them. */
 static int64_t listed(const mpsi_columns *p, int64_t count, const int64_t *ids) {
@@ -26,12 +25,11 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   if (status == MPS_OK && (!ids || count < 0 || !mpm->partition))
     status = mpsi_particles_check_ids_or_all(mpm->p.set, function, count, ids);
   if (!mpm->partition) return status;
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_material_give(&given, material);
   mpsi_give(&given, "the number of the material", number_of(&mpm->p, material));
-  status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  status = mpsi_domain_agree_given(mpm->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->p.set, ids[k]) >= 0;
   return mpsi_mpm_count_listed(mpm->context, mpm->partition, function, status, count, ids, known,
@@ -42,8 +40,7 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
                         int64_t count, const int64_t *ids) {
   mps_status status = MPS_OK;
   if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  status = check_list(mpm, function, status, material, count, ids);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(check_list(mpm, function, status, material, count, ids));
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->p.set, "volume_ratio", 0)
                         : NULL;
@@ -80,8 +77,7 @@ static mps_status check_start(mps_mpm *mpm, const char *function, const mps_mate
 /* Adds the column of the laws' numbers, which a set with one law lacks. */
 static mps_status number_particles(mpsi_columns *p) {
   if (p->law) return MPS_OK;
-  const mps_status status = mps_particles_add_field(p->set, "material", 0);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mps_particles_add_field(p->set, "material", 0));
   p->law = mpsi_particles_integers(p->set, "material");
   for (int64_t k = 0; k < p->count; k++) p->law[k] = 0;
   return MPS_OK;
@@ -117,8 +113,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, const int6
   if (status == MPS_OK) status = check_start(mpm, __func__, material, count, ids);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
-  status = mpsi_mpm_agree(mpm->partition, __func__, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_agree(mpm->partition, __func__, status));
   for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
     const int64_t k = place(&mpm->p, ids, i);
     if (k < 0) continue;                    /* particle of another rank */

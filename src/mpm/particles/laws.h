@@ -1,6 +1,5 @@
 /* laws.h - the materials' laws of the particles. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_LAWS_H
-#define MPSI_MPM_LAWS_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/base/room.h"
@@ -95,5 +94,3 @@ mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, co
 void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law);
 void mpsi_mpm_begin_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_law_use *law,
                         int64_t particle);
-
-#endif

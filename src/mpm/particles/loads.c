@@ -28,7 +28,6 @@ static void begin_forces(void *data, int64_t b, int32_t worker) {
   const field_forces *of = data;
   const mpsi_columns *p = of->p;
   const mpsi_cell_block *cells = &of->grid->cells[b];
-  (void)worker;
   for (int c = 0; c < of->grid->dim; c++) {
     const double *a = of->loads->body_acceleration[c], *f = of->loads->external_force[c];
     for (int64_t k = cells->begin; k < cells->end; k++)
@@ -64,8 +63,7 @@ mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mps
     loads->external_force[c] = mpsi_particles_column(p->set, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
-    const mps_status status = mpsi_mpm_make_forces(context, grid, p, rooms, function);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_mpm_make_forces(context, grid, p, rooms, function));
   }
   if (!rooms->force.item) return MPS_OK;
   field_forces of = {grid, p, loads};

@@ -1,7 +1,6 @@
 /* loads.h - forces on particles besides gravity.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_LOADS_H
-#define MPSI_MPM_LOADS_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "solver/conditions.h"
@@ -36,5 +35,3 @@ mps_status mpsi_mpm_make_forces(mps_context *context, const mpsi_grid *grid, mps
 /* loads.c: sums force fields and loads of the step in the columns f. */
 mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                                 mpsi_rooms *rooms, mpsi_loads *loads, const char *function);
-
-#endif

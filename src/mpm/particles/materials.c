@@ -1,6 +1,5 @@
 /* materials.c - the laws of a solver and the particles of each: fields that a law reads and writes,
  * and its initial state. SPDX-License-Identifier: BSD-3-Clause */
-
 #include "core/particles/particles_internal.h"
 #include "mpm_particles.h"
 #include "mpm/particles/rooms.h"
@@ -135,11 +134,10 @@ mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, co
                                  const char *function, int32_t number, int64_t begin, int64_t end) {
   const mps_material *material = p->laws.law[number].material;
   mpsi_first_state first;
-  mps_status status = MPS_OK;
   if (!mpsi_material_has_start(material)) return MPS_OK;
   mpsi_mpm_find_state(p, material, &first);
-  for (int64_t k = begin; k < end && status == MPS_OK; k++)
+  for (int64_t k = begin; k < end; k++)
     if ((p->law ? p->law[k] : 0) == number)
-      status = mpsi_mpm_check_state(context, grid, p, function, &first, k);
-  return status;
+      MPSI_TRY(mpsi_mpm_check_state(context, grid, p, function, &first, k));
+  return MPS_OK;
 }

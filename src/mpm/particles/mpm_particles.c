@@ -2,7 +2,6 @@
  * initial state, masses, checks. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_particles.h"
 
-#include "mpm/contact/particle.h"
 #include "mpm/water/water.h"
 
 #include <string.h>
@@ -116,10 +115,9 @@ static mps_status check_amount(mps_context *context, const mpsi_grid *grid, cons
 mps_status mpsi_mpm_check_amounts(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_columns *p, const char *function) {
   const double *density = mpsi_particles_column(p->set, "density", 0);
-  mps_status status = MPS_OK;
-  for (int64_t k = 0; k < p->count && status == MPS_OK; k++)
-    status = check_amount(context, grid, p, function, k, density[k]);
-  return status;
+  for (int64_t k = 0; k < p->count; k++)
+    MPSI_TRY(check_amount(context, grid, p, function, k, density[k]));
+  return MPS_OK;
 }
 
 /* Mass of a particle from its density in the present volume. */
@@ -149,8 +147,7 @@ mps_status mpsi_mpm_renew_masses(mps_context *context, const mpsi_grid *grid, co
   const double *now = strcmp(field, "density") == 0 ? density : p->V;
   for (int64_t k = 0; k < p->count; k++) {
     if (now[k] == former[k] || (p->m[k] == 0.0 && density[k] == 0.0)) continue;
-    const mps_status status = check_amount(context, grid, p, function, k, density[k]);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(check_amount(context, grid, p, function, k, density[k]));
   }
   for (int64_t k = 0; k < p->count; k++)
     if (now[k] != former[k]) set_mass(grid, p, contacts, k, density[k]);

@@ -1,7 +1,6 @@
 /* mpm_particles.h - columns and checks of the solver's particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PARTICLES_H
-#define MPSI_MPM_PARTICLES_H
+#pragma once
 
 #include "core/particles/particles_internal.h"
 #include "mpm/base/run.h"
@@ -43,5 +42,3 @@ double mpsi_mpm_lattice_volume(const mpsi_grid *grid, const mpsi_columns *p, int
 /* ready.c */
 mpsi_edit_state mpsi_mpm_edit_state(const mpsi_run *run);
 void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before);
-
-#endif

@@ -1,7 +1,6 @@
 /* rooms.h - memory with an entry for each particle, besides its fields (rooms.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_ROOMS_H
-#define MPSI_MPM_ROOMS_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/base/room.h"
@@ -29,5 +28,3 @@ bool mpsi_mpm_force_room(mps_context *context, const mpsi_grid *grid, mpsi_colum
  * them. */
 bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                           mpsi_rooms *rooms, int64_t particles, bool means, bool filter);
-
-#endif

@@ -3,6 +3,7 @@
  * of the body. The axes of the curve may be any permutation of those of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_orientation.h"
+#include "core/base/order.h"
 #include "mpm/grid/blocks.h"
 
 #include "domain/curve.h"
@@ -39,17 +40,12 @@ typedef struct trial {
   int64_t *foreign; /* for each rank, pairs of one of its blocks and a neighbour on another rank */
 } trial;
 
-static int compare(const void *left, const void *right) {
-  const int64_t a = ((const weighed *)left)->key, b = ((const weighed *)right)->key;
-  return a < b ? -1 : a > b;
-}
-
 /* Owners as by mpsi_curve_cut: the middle of a block's weight determines its part of the whole. */
 static void find_owners(trial *t) {
   int64_t below = 0;
   for (int64_t b = 0; b < t->blocks; b++)
     t->list[b] = (weighed){mpsi_mpm_curve_key(t->dim, &t->orientation, t->block[b].at), b};
-  qsort(t->list, (size_t)t->blocks, sizeof *t->list, compare);
+  qsort(t->list, (size_t)t->blocks, sizeof *t->list, mpsi_ascending);
   for (int64_t k = 0; k < t->blocks; k++) {
     const int64_t weight = t->block[t->list[k].cells].particles;
     t->owner[t->list[k].cells] = (int32_t)((2 * below + weight) * t->ranks / (2 * t->particles));
@@ -137,8 +133,6 @@ bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t rank
     least = foreign;
     *out = t.orientation;
   }
-  mpsi_free(context, t.list);
-  mpsi_free(context, t.owner);
-  mpsi_free(context, t.foreign);
+  MPSI_FREE(context, t.list, t.owner, t.foreign);
   return good;
 }

@@ -3,8 +3,7 @@
  * determines how much of the body is at borders of ranks. So several orientations are tried, and
  * the one is chosen in which the rank with the most ghosts has the fewest. Results do not depend on
  * it. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_CURVE_ORIENTATION_H
-#define MPSI_MPM_CURVE_ORIENTATION_H
+#pragma once
 
 #include <mps/mpm.h>
 
@@ -30,5 +29,3 @@ typedef struct mpsi_placed {
  * refused. */
 bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
                                  const mpsi_placed *block, mpsi_curve_orientation *out);
-
-#endif

@@ -15,12 +15,6 @@
 
 #define MOST_BLOCKS (INT64_C(1) << 20)
 
-static int compare(const void *left, const void *right) {
-  const mpsi_placed *a = left, *b = right;
-  if (mpsi_block_before(a->at, b->at)) return -1;
-  return mpsi_block_before(b->at, a->at) ? 1 : 0;
-}
-
 static mpsi_placed *list_own(mps_context *context, const mpsi_grid *grid) {
   const int64_t blocks = grid->cell_count;
   mpsi_placed *list = mpsi_alloc(context, blocks, sizeof *list);
@@ -42,9 +36,9 @@ static mpsi_placed *join_lists(mps_context *context, const mpsi_mailbox *box, in
   char *to = (char *)list;
   for (int32_t m = 0; m < box->count; to += box->mail[m++].bytes)
     memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
-  qsort(list, (size_t)count, sizeof *list, compare);
+  qsort(list, (size_t)count, sizeof *list, mpsi_compare_blocks);
   for (int64_t k = 0; k < count; k++)
-    if (kept > 0 && compare(&list[kept - 1], &list[k]) == 0)
+    if (kept > 0 && mpsi_compare_blocks(&list[kept - 1], &list[k]) == 0)
       list[kept - 1].particles += list[k].particles;
     else
       list[kept++] = list[k];
@@ -74,9 +68,7 @@ static mps_status place_by_list(mps_context *context, const mpsi_grid *grid,
                                                         &partition->orientation)))
     status = mpsi_fail_memory(context, function, (size_t)blocks * sizeof *all);
   mpsi_domain_free_mail(&box);
-  mpsi_free(context, own);
-  mpsi_free(context, all);
-  mpsi_free(context, message);
+  MPSI_FREE(context, own, all, message);
   return mpsi_domain_agree(domain, function, status);
 }
 
@@ -104,9 +96,7 @@ static mps_status find_blocks(const mpsi_rank_part *part, const char *function) 
   mpsi_mpm_bind(part->grid, part->p, part->water);
   part->p->laws.ids = mpsi_particles_integers(part->p->set, "id"); /* laws are added later */
   part->grid->worker_count = mps_context_threads(part->context);
-  const mps_status status =
-      mpsi_mpm_check_start(part->context, part->grid, part->p, part->def, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_check_start(part->context, part->grid, part->p, part->def, function));
   if (!mpsi_mpm_make_room(part->context, part->grid, part->p, part->rooms, part->p->count))
     return mpsi_fail_memory(part->context, function,
                             (size_t)part->p->count * 2 * sizeof *part->grid->radix);
@@ -127,11 +117,9 @@ static mps_status fit(const mpsi_rank_part *part, const char *function) {
 mps_status mpsi_mpm_share_deal(const mpsi_rank_part *part, const char *function) {
   bool moved;
   int64_t blocks;
-  mps_status status =
-      mpsi_domain_agree(part->partition->domain, function, find_blocks(part, function));
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(part->partition->domain, function, find_blocks(part, function)));
   blocks = part->grid->cell_count;
-  status = mpsi_domain_sum(part->partition->domain, function, 1, &blocks);
+  mps_status status = mpsi_domain_sum(part->partition->domain, function, 1, &blocks);
   if (status == MPS_OK)
     status = blocks <= MOST_BLOCKS
                  ? place_by_list(part->context, part->grid, part->partition, function)

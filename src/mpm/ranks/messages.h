@@ -2,8 +2,7 @@
  * other ranks have as a ghost, the same number of doubles. One exchange is under way at a time. Its
  * status stays in the partition (`lost`), as it ends within a pass.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_MESSAGES_H
-#define MPSI_MPM_MESSAGES_H
+#pragma once
 
 #include "mpm/grid/blocks.h"
 #include "partition.h"
@@ -44,5 +43,3 @@ mps_status mpsi_mpm_exchange_items(mpsi_halo *halo, const char *function, int64_
  * message; returns their end there. */
 double *mpsi_mpm_copy_nodes(const int32_t *low, const int32_t *high, void *tile, size_t size,
                             double *message, bool pack);
-
-#endif

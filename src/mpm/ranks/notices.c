@@ -106,8 +106,6 @@ mps_status mpsi_mpm_exchange_notices(mps_context *context, mps_domain *domain, c
   status = send(&a, status, range);
   if (status == MPS_OK) status = read(&a, list, found);
   mpsi_domain_free_mail(&a.box);
-  mpsi_free(context, a.range);
-  mpsi_free(context, a.sent);
-  mpsi_free(context, a.message);
+  MPSI_FREE(context, a.range, a.sent, a.message);
   return status;
 }

@@ -1,7 +1,6 @@
 /* notices.h - blocks that ranks announce to those whose blocks may be beside them: what the
  * searches for ghosts, and for cells of water, begin with. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_NOTICES_H
-#define MPSI_MPM_NOTICES_H
+#pragma once
 
 #include "core/internal.h"
 
@@ -26,5 +25,3 @@ void mpsi_mpm_add_to_range(int64_t *range, const int32_t *at);
 mps_status mpsi_mpm_exchange_notices(mps_context *context, mps_domain *domain, const char *function,
                                      mps_status status, const int64_t *range, int64_t count,
                                      const mpsi_notice *own, mpsi_notice **list, int64_t *found);
-
-#endif

@@ -3,11 +3,11 @@
  * than any had after the last cut. Results do not depend on the partition.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
+#include "core/base/order.h"
 #include "domain/migrate.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/particles/rooms.h"
 #include "mpm/ranks/partition.h"
-#include "mpm/step/damping.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,11 +33,6 @@ int32_t mpsi_mpm_block_owner(const mpsi_grid *grid, mpsi_partition *partition, c
 typedef struct weighed {
   int64_t key, weight;
 } weighed;
-
-static int compare(const void *left, const void *right) {
-  const int64_t a = ((const weighed *)left)->key, b = ((const weighed *)right)->key;
-  return a < b ? -1 : a > b;
-}
 
 /* Orientation of the curve over the blocks, all of which are here; false: memory refused. */
 static bool place_curve(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
@@ -74,13 +69,12 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
     list[b] = (weighed){key_of(grid, partition, cells->at), cells->end - cells->begin};
   }
   if (status == MPS_OK) {
-    qsort(list, (size_t)blocks, sizeof *list, compare);
+    qsort(list, (size_t)blocks, sizeof *list, mpsi_ascending);
     for (int64_t b = 0; b < blocks; b++) key[b] = list[b].key, key[blocks + b] = list[b].weight;
     status =
         mpsi_curve_cut(partition->domain, function, blocks, key, key + blocks, partition->first);
   }
-  mpsi_free(context, list);
-  mpsi_free(context, key);
+  MPSI_FREE(context, list, key);
   return status;
 }
 
@@ -117,8 +111,7 @@ static mps_status list_columns(departure *d) {
 static mps_status list_leaving(departure *d, const char *function) {
   const mpsi_rank_part *part = d->part;
   const int32_t rank = mps_domain_rank(part->partition->domain);
-  mps_status status = list_columns(d);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(list_columns(d));
   const int64_t count = part->p->count;
   d->column = mpsi_alloc(part->context, d->columns, sizeof *d->column);
   d->gone = mpsi_alloc(part->context, count, 1);
@@ -155,8 +148,7 @@ static mps_status store_received(departure *d, const char *function, const mpsi_
         mpsi_fail_memory(part->context, function, (size_t)count * 2 * sizeof *part->grid->radix);
   if (status == MPS_OK) status = mpsi_particles_hold_room(part->p->set, function, count);
   mpsi_mpm_bind(part->grid, part->p, part->water); /* columns may have moved */
-  status = mpsi_domain_agree(part->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(part->partition->domain, function, status));
   mpsi_particles_make_way(part->p->set, d->gone);
   (void)list_columns(d);
   mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(part->p->set));
@@ -215,10 +207,7 @@ mps_status mpsi_mpm_partition_migrate(const mpsi_rank_part *part, const char *fu
     partition->heaviest = (double)part->p->count;
     status = mpsi_domain_max(partition->domain, function, 1, &partition->heaviest);
   }
-  mpsi_free(part->context, d.column);
-  mpsi_free(part->context, d.gone);
-  mpsi_free(part->context, d.row);
-  mpsi_free(part->context, d.to);
+  MPSI_FREE(part->context, d.column, d.gone, d.row, d.to);
   return status;
 }
 

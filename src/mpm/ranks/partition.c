@@ -4,6 +4,7 @@
  * Ghosts are found from the blocks that exist: each rank sends the list of its blocks to the ranks
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/mpm_particles.h"
+#include "core/base/order.h"
 #include "core/base/room_array.h"
 #include "messages.h"
 #include "notices.h"
@@ -31,14 +32,8 @@ typedef struct search {
 } search;
 
 static bool is_own(const search *s, const int32_t *at) {
-  int64_t low = 0, high = s->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (mpsi_block_before(s->own[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, s->count, middle, mpsi_block_before(s->own[middle].at, at));
   return low < s->count && memcmp(s->own[low].at, at, sizeof s->own[low].at) == 0;
 }
 
@@ -193,14 +188,12 @@ static mps_status join(search *s, mps_status status, int64_t announced) {
   if (status == MPS_OK && !put_lists(s))
     status = mpsi_fail_memory(part->context, s->function,
                               (size_t)(s->count + s->ghosts) * sizeof *part->grid->cells);
-  status = mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most));
   partition->most = (int32_t)most;
   mark_blocks(part->grid);
   mpsi_halo_destroy(part->context, &partition->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
-  status = mpsi_halo_create(partition->domain, s->function, &def, &partition->halo);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_halo_create(partition->domain, s->function, &def, &partition->halo));
   return mpsi_domain_agree(partition->domain, s->function, find_border(part, s->function));
 }
 
@@ -213,8 +206,7 @@ mps_status mpsi_mpm_partition_find_ghosts(const mpsi_rank_part *part, const char
   status = mpsi_mpm_exchange_notices(part->context, partition->domain, function, status, s.range,
                                      s.count, s.announced, &s.ghost, &announced);
   status = join(&s, status, announced);
-  void *parts[] = {s.own, s.announced, s.ghost, s.rank, s.index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(part->context, parts[k]);
+  MPSI_FREE(part->context, s.own, s.announced, s.ghost, s.rank, s.index);
   partition->outdated = status != MPS_OK;
   partition->searches++;
   if (partition->outdated) part->run->stale = true; /* the lists may have been freed */
@@ -272,8 +264,7 @@ static mps_status keep_own(const mpsi_rank_part *part, const char *function,
 /* Checks that all ranks are given the same definition. */
 static mps_status compare_ranks(const mpsi_columns *p, const mps_mpm_def *d, const char *function,
                                 mps_status status) {
-  mpsi_given given;
-  mpsi_given_begin(&given);
+  mpsi_given given = MPSI_GIVEN;
   MPSI_GIVE_DEF(&given, mps_mpm_def, d);
   mpsi_give(&given, "having a kernel", d->kernel != NULL);
   if (status == MPS_OK) mpsi_material_give(&given, p->laws.law[0].material);
@@ -319,11 +310,8 @@ void mpsi_mpm_partition_free(mps_context *context, mpsi_partition **pointer) {
   if (!partition) return;
   *pointer = NULL;
   mpsi_halo_destroy(context, &partition->halo);
-  mpsi_free(context, partition->first);
-  mpsi_free(context, partition->border_room.item);
-  mpsi_free(context, partition->rank_room.item);
-  mpsi_free(context, partition->out_room.item);
-  mpsi_free(context, partition->in_room.item);
+  MPSI_FREE(context, partition->first, partition->border_room.item, partition->rank_room.item,
+            partition->out_room.item, partition->in_room.item);
   mps_domain_destroy(&partition->domain);
   mpsi_free(context, partition);
 }

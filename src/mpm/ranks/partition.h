@@ -11,8 +11,7 @@
  *
  * In sums over blocks of nodes each is counted on the rank of the first block of cells that covers
  * it. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PARTITION_H
-#define MPSI_MPM_PARTITION_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include "core/particles/particles_internal.h"
@@ -95,11 +94,6 @@ mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *p
 /* collective_status.c: state that is equal on all ranks: time, step, positions of bodies. */
 void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
                          mpsi_given *list);
-/* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
- * first all agree on `status`, that of this rank. */
-mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
-                              mpsi_partition *partition, const char *function, mps_status status,
-                              int64_t count, const int64_t *ids);
 /* collective_status.c: whether sums over blocks of nodes count block g on this rank. Not
  * collective. */
 bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g);
@@ -132,5 +126,3 @@ mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bo
 mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition *partition,
                                   mpsi_run *run, const mps_mpm_def *def, const char *function,
                                   mps_status status);
-
-#endif

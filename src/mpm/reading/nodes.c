@@ -26,8 +26,7 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
                           .scatter = mpsi_step_scatter,
                           .ranks = mpm->partition,
                           .arrive = mpsi_mpm_receive_messages};
-  const mps_status status = mpm->partition ? mpsi_mpm_send_tiles(mpm, function) : MPS_OK;
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpm->partition ? mpsi_mpm_send_tiles(mpm, function) : MPS_OK);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
@@ -107,8 +106,7 @@ mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity, int64_t *c
   else if (capacity < 0)
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                        (long long)capacity);
-  status = make_sums(mpm, __func__, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_sums(mpm, __func__, status));
   int64_t n = 0;
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
     for (int k = 0; k < mpm->grid.block_nodes; k++) {

@@ -4,7 +4,7 @@
  * ranks all receive the particles near the points. Sums are in the order of cells, within a cell of
  * ids. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
-#include "mpm/particles/mpm_particles.h"
+#include "core/base/order.h"
 #include "mpm/base/shape.h"
 
 #include <mps/grid.h>
@@ -106,7 +106,7 @@ static mps_status join_rows(near *list, const char *function, const mpsi_mailbox
 }
 
 static mps_status exchange_particles(near *list, const char *function, mps_status status) {
-  mps_domain *domain = list->mpm->partition->domain;
+  mps_domain *domain = list->mpm->domain;
   mps_context *context = list->mpm->context;
   mpsi_mailbox box = {.context = context};
   int32_t count = 0;
@@ -147,14 +147,8 @@ static mps_status list_near(near *list, const char *function, int64_t count, con
 
 /* The first item that is not before `cell`. */
 static int64_t first_from(const near *list, const int64_t *cell) {
-  int64_t low = 0, high = list->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (compare_cells(list->item[middle].cell, cell) < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, list->count, middle, compare_cells(list->item[middle].cell, cell) < 0);
   return low;
 }
 
@@ -207,7 +201,6 @@ static void add_weight(fit *f, int64_t k, double w, const double *s, void *data)
   const double across =
       mpm->grid.measure *
       (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
-  (void)data;
   f->weight += w;
   f->filled += w * f->list->row[k].value[ROW_V] / across;
   for (int c = 0; c < 3; c++) f->mean[c] += w * s[c];
@@ -215,7 +208,6 @@ static void add_weight(fit *f, int64_t k, double w, const double *s, void *data)
 
 static void add_spread(fit *f, int64_t k, double w, const double *s, void *data) {
   double(*spread)[3] = data;
-  (void)k;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) spread[a][b] += w * (s[a] - f->mean[a]) * (s[b] - f->mean[b]);
 }
@@ -314,9 +306,8 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
 static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partition,
                                   const char *function, mps_status status, const char *field,
                                   int32_t component, int64_t count, const double *points) {
-  mpsi_given given;
+  mpsi_given given = MPSI_GIVEN;
   if (!partition) return status;
-  mpsi_given_begin(&given);
   if (status == MPS_OK) {
     mpsi_give_text(&given, "a hash of field", field);
     mpsi_give(&given, "component", component);
@@ -343,8 +334,7 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
     list.column[c] = mpsi_particles_column(mpm->p.set, field, first + c);
   status = list_near(&list, __func__, count, points);
   if (status != MPS_OK) {
-    mpsi_free(mpm->context, list.row);
-    mpsi_free(mpm->context, list.item);
+    MPSI_FREE(mpm->context, list.row, list.item);
     return status;
   }
   for (int64_t i = 0; i < count; i++) {
@@ -355,7 +345,6 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
       values[width * i + c] = state == MPS_GRID_POINT_INSIDE ? value_of(&f, c) : NAN;
     if (states) states[i] = state;
   }
-  mpsi_free(mpm->context, list.row);
-  mpsi_free(mpm->context, list.item);
+  MPSI_FREE(mpm->context, list.row, list.item);
   return MPS_OK;
 }

@@ -128,7 +128,7 @@ mps_status mpsi_mpm_get_totals(void *solver, const char *function, mps_totals *o
                                     status);
   if (status != MPS_OK) return status;
   sum_share(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->run, sum);
-  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->domain, function, SUMS, sum);
   if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
   if (status != MPS_OK) return status;
   mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),
@@ -159,9 +159,8 @@ mps_status mps_mpm_get_energy_report_sized(const mps_mpm *handle, mps_mpm_energy
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
   double e[MPSI_ENERGY_SUMS];
-  mps_status status = mpsi_mpm_agree(mpm->partition, function, MPS_OK);
-  if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_agree(mpm->partition, function, MPS_OK));
+  MPSI_TRY(sum_energies(mpm->partition, &mpm->energy, function, e));
   mps_mpm_energy_report l = {.laws = e[MPSI_ENERGY_SPENT],
                              .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],
                              .bodies = e[MPSI_ENERGY_FRICTION_LOSS],

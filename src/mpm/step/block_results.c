@@ -1,7 +1,6 @@
 /* block_results.c - results of the blocks of a step, on this rank and all others: the largest
  * speed, and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
-#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include "core/particles/particles_internal.h"

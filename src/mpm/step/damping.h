@@ -1,7 +1,6 @@
 /* damping.h - damping at the nodes, after all forces and boundaries; and the unbalanced force of
  * the nodes, for mps_mpm_settle. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_DAMPING_H
-#define MPSI_MPM_DAMPING_H
+#pragma once
 
 #include "mpm/base/energy.h"
 #include "core/base/exact.h"
@@ -44,5 +43,3 @@ static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settl
                                      const mps_mpm_def *def) {
   return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
 }
-
-#endif

@@ -20,7 +20,6 @@
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 bool mpsi_mpm_compares(const void *self, const char *field) {
-  (void)self;
   return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
 }
 
@@ -66,8 +65,7 @@ bool mpsi_mpm_hold_room(void *self, int64_t particles) {
 }
 
 static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
-  mps_status status = mpsi_mpm_usable(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_usable(mpm, function));
   if (first + count > MPSI_MPM_MOST_PARTICLES)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "%lld particles to add to %lld, a WLS-MPM solver has at most %d",
@@ -76,8 +74,8 @@ static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t firs
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(first + count) * 2 * sizeof *mpm->grid.radix);
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  status = mpsi_mpm_check_places(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function, first,
-                                 first + count);
+  mps_status status = mpsi_mpm_check_places(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function,
+                                            first, first + count);
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     status = mpsi_mpm_check_inside(mpm->context, &mpm->grid, &mpm->p, function,
                                    mpm->contact.handle[b], first);

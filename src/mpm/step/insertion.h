@@ -1,8 +1,7 @@
 /* insertion.h - callbacks of a solver as the holder of its set of particles (mpsi_holder in
  * core/particles/particles_internal.h), whose `self` is the solver.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_INSERTION_H
-#define MPSI_MPM_INSERTION_H
+#pragma once
 
 #include "core/particles/particles_internal.h"
 
@@ -25,5 +24,3 @@ mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_sta
                                        int64_t first);
 mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status status, int64_t count,
                                  const int64_t *ids, int64_t known, int64_t *all);
-
-#endif

@@ -1,8 +1,7 @@
 /* means.h - sums over particles at the nodes, {sum V, sum V value} and in the filter a third, for
  * means by cell or by node after the step's G2P. They replace the mass and momentum of the nodes,
  * which are not needed any more. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_MEANS_H
-#define MPSI_MPM_MEANS_H
+#pragma once
 
 #include "mpm/base/mpm_solver.h"
 
@@ -45,5 +44,3 @@ void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
  * frictional laws; the filter. */
 bool mpsi_mpm_filters(const mpsi_columns *p, const struct mpsi_water *water, const mpsi_run *run);
 void mpsi_mpm_filter(mps_mpm *mpm);
-
-#endif

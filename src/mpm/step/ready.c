@@ -17,11 +17,11 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
     return mpsi_mpm_sort_alone(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
   mps_status status = MPS_OK;
   if (mpm->contact.bodies > 0)
-    status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,
+    status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->domain,
                                        function, status);
   if (mpm->prescribed.on)
     status = mpsi_mpm_share_warm_start(&mpm->prescribed.constraints.impulses, mpm->p.set,
-                                       mpm->partition->domain, function, status);
+                                       mpm->domain, function, status);
   const mpsi_rank_part part = mpsi_rank_part_of(mpm);
   if (status == MPS_OK) return mpsi_mpm_partition_sort(&part, function);
   mpm->run.stale = true;
@@ -30,7 +30,7 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status) {
   if (!mpm->run.stale && !mpm->partition->outdated) return status;
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  status = mpsi_domain_agree(mpm->domain, function, status);
   if (status != MPS_OK || mpm->run.stale) return status;
   mpm->boundaries.outdated = true;
   const mpsi_rank_part part = mpsi_rank_part_of(mpm);
@@ -82,8 +82,7 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(mpm);
   status = mpsi_mpm_list_boundaries(&boundaries, function, status);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   mpsi_mpm_find_speeds(mpm);
   mpm->run.edited = mpm->run.unchecked = false;
   return mpsi_mpm_collect_block_results(mpm, function);
@@ -101,8 +100,8 @@ void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before) {
 }
 
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_guard_check(&mpm->guard, mpm->context, function);
-  return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
+  MPSI_TRY(mpsi_guard_check(&mpm->guard, mpm->context, function));
+  return mpsi_mpm_apply_edits(mpm, function);
 }
 
 mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function) {

@@ -18,8 +18,8 @@ mps_status mpsi_mpm_check_dt(void *solver, const char *function, double dt) {
 mps_status mpsi_mpm_begin_march(void *solver, const char *function, mpsi_march *m) {
   mps_mpm *mpm = solver;
   mpm->run.as_edited = mpsi_mpm_edit_state(&mpm->run);
-  const mps_status status = mpsi_mpm_apply_edits(mpm, function);
-  return status == MPS_OK ? mpsi_march_check(m, mpm->context, function, mpsi_mpm_dt(mpm)) : status;
+  MPSI_TRY(mpsi_mpm_apply_edits(mpm, function));
+  return mpsi_march_check(m, mpm->context, function, mpsi_mpm_dt(mpm));
 }
 
 /* Size (s) of the next step, at most to t_end. The last two steps are equal, because a very short
@@ -52,7 +52,6 @@ mps_status mpsi_mpm_advance_march(void *solver, const char *function, mpsi_march
 mps_status mpsi_mpm_end_march(void *solver, const char *function, const mpsi_march *m,
                               mps_status status) {
   mpsi_run *run = &((mps_mpm *)solver)->run;
-  (void)function;
   if (status != MPS_OK && run->steps == m->before)
     mpsi_mpm_restore_edit_state(run, &run->as_edited);
   return status;

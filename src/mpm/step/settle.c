@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define TOLERANCE 1e-3
-#define MOST_STEPS 20000
 
 /* ---- bodies at rest -------------------------------------------------------------------------- */
 
@@ -55,7 +54,6 @@ static void release_bodies(const mpsi_contacts *contacts) {
 
 static void stop_block(void *data, int64_t b, int32_t worker) {
   mps_mpm *mpm = data;
-  (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
   for (int c = 0; c < mpm->grid.dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);
@@ -199,8 +197,7 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
                               mps_mpm_settled *now) {
   mpsi_settling *settling = &mpm->settling;
   while (settling->steps < def->max_steps) {
-    const mps_status status = relax(mpm, function, now);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(relax(mpm, function, now));
     const bool balanced = now->unbalanced <= def->tolerance;
     if (balanced && settling->from_rest) return MPS_OK;
     settling->from_rest = balanced || now->kinetic < settling->before;
@@ -241,8 +238,7 @@ static mps_status relax_with_explicit_pressures(mps_mpm *mpm, const char *functi
 static mps_status read_def(mps_context *context, const char *function,
                            const mps_mpm_settle_def *user, mps_mpm_settle_def *def) {
   *def = mps_mpm_settle_defaults();
-  mps_status status = MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_mpm_settle_def, user, def);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_mpm_settle_def, user, def));
   if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
   return MPS_OK;
 }
@@ -271,10 +267,9 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (status == MPS_OK) status = check_sides(mpm->context, &mpm->boundaries, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->partition) {
-    mpsi_given given;
-    mpsi_given_begin(&given);
+    mpsi_given given = MPSI_GIVEN;
     MPSI_GIVE_DEF(&given, mps_mpm_settle_def, &def);
-    status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+    status = mpsi_domain_agree_given(mpm->domain, function, status, &given);
   }
   double *motion = status == MPS_OK ? save_motion(mpm->context, &mpm->p, function) : NULL;
   if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;

@@ -13,9 +13,7 @@ static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
     mpsi_traction *load = mpsi_load_of(loads, k);
     for (int c = 0; load && c < grid->dim; c++) {
       const mpsi_signal_use use = {context, function, "load", k, c};
-      const mps_status status =
-          mpsi_signal_factor(load->def->signal[c], use, run->time, &load->now[c]);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_factor(load->def->signal[c], use, run->time, &load->now[c]));
     }
   }
   return MPS_OK;
@@ -23,10 +21,9 @@ static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
 
 static mps_status evaluate_friction(const mpsi_contacts *contacts, const mpsi_run *run,
                                     const char *function) {
-  mps_status status = MPS_OK;
-  for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++)
-    status = mpsi_contact_set_friction(contacts->handle[b], function, b, run->time);
-  return status;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    MPSI_TRY(mpsi_contact_set_friction(contacts->handle[b], function, b, run->time));
+  return MPS_OK;
 }
 
 static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *grid,
@@ -40,9 +37,7 @@ static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *gri
       mpsi_signal_motion m = {0};
       hold->v[c] = 0.0;
       if (!hold->signal[c] || settling->on) continue;
-      const mps_status status =
-          mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m);
-      if (status != MPS_OK) return status;
+      MPSI_TRY(mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m));
       hold->v[c] = hold->factor[c] * m.v;
     }
   }
@@ -53,8 +48,7 @@ static mps_status evaluate_bodies(const mpsi_contacts *contacts, const mpsi_sett
                                   const char *function, double dt) {
   for (int32_t b = 0; b < contacts->bodies && !settling->on; b++) {
     if (!contacts->handle[b]->source.moves) continue;
-    const mps_status status = mpsi_body_look_ahead(contacts->body[b], function, b, dt);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(mpsi_body_look_ahead(contacts->body[b], function, b, dt));
   }
   return MPS_OK;
 }
@@ -109,10 +103,9 @@ static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
 
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values) {
-  mpsi_given list;
+  mpsi_given list = MPSI_GIVEN;
   mpsi_mpm_give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
   if (status == MPS_OK)
     give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
-  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
-                                     values);
+  return mpsi_domain_agree_given_max(mpm->domain, function, status, &list, count, values);
 }

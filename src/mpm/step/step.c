@@ -13,7 +13,6 @@
 #include "mpm/base/mpm_solver.h"
 #include "mpm/boundary/free_field.h"
 #include "mpm/grid/pass.h"
-#include "mpm/particles/mpm_particles.h"
 #include "mpm/ranks/messages.h"
 #include "mpm/water/water.h"
 #include "means.h"
@@ -151,9 +150,8 @@ static mps_status find_forces(step *s) {
 
 static mps_status begin_energy(step *s) {
   mps_mpm *mpm = s->mpm;
-  const mps_status status = mpsi_mpm_energy_begin(mpm->context, &mpm->grid, &mpm->p, &mpm->contact,
-                                                  &mpm->energy, &mpm->def, s->function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_mpm_energy_begin(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->energy,
+                                 &mpm->def, s->function));
   return mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
                                 s->function);
 }
@@ -281,7 +279,6 @@ static mps_status apply_impulses(step *s) {
 
 static void save(void *solver, int64_t b, int32_t worker) {
   mps_mpm *mpm = solver;
-  (void)worker;
   mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
 }
 

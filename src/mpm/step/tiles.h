@@ -1,7 +1,6 @@
 /* tiles.h - scatter of a step, and its tiles between ranks (tiles.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_TILES_H
-#define MPSI_MPM_TILES_H
+#pragma once
 
 #include "mpm/base/parts.h"
 #include <mps/mpm.h>
@@ -20,5 +19,3 @@ mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
 /* Scatter task of a pass: P2G of a block of cells, with penalty contact; on several ranks by the
  * tile that has been sent, whichever rank has summed it. */
 void mpsi_step_scatter(void *solver, int64_t b, int32_t worker);
-
-#endif

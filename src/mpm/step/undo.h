@@ -3,8 +3,7 @@
  * (water/bounds.c), or all get more energy than there is (bound.c). Steps that continue a calm
  * motion of ground without water and such laws save nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_UNDO_H
-#define MPSI_MPM_UNDO_H
+#pragma once
 
 #include "mpm/boundary/boundaries.h"
 
@@ -65,5 +64,3 @@ double mpsi_bound_fastest(const mps_mpm *mpm);
 void mpsi_bound_describe(const mps_mpm *mpm, char *out, size_t size);
 /* Whether a law of the caller may refuse. */
 bool mpsi_bound_by_law(const mpsi_columns *p);
-
-#endif

@@ -1,6 +1,5 @@
 /* warnings.h - what the log says of a step, once. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WARNINGS_H
-#define MPSI_MPM_WARNINGS_H
+#pragma once
 
 #include "mpm/base/mpm_solver.h"
 
@@ -8,5 +7,3 @@
 void mpsi_step_warn_before(mps_mpm *mpm);
 /* After it: of ground that has grown to more than the loosest sand. */
 void mpsi_step_warn_about_volume(mps_mpm *mpm);
-
-#endif

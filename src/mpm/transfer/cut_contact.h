@@ -1,7 +1,6 @@
 /* cut_contact.h - penalty contact of a particle with a cut support: normal force, slip and
  * friction, Nakamura (28)-(30). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_CUT_CONTACT_H
-#define MPSI_MPM_CUT_CONTACT_H
+#pragma once
 
 #include "mpm/contact/particle.h"
 #include "mpm/base/run.h"
@@ -111,5 +110,3 @@ MPSI_INLINE void mpsi_add_friction_load(const mpsi_transfer *work, int dim, int 
     mpsi_contact_add_load(&work->contact->load[pair->first_load + c.part].by, arm, reaction);
   }
 }
-
-#endif

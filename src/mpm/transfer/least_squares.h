@@ -3,8 +3,7 @@
  * their gradient by the other rows, Nakamura (5), (6). Each particle is a lane of a vector. The
  * scatter of a step stores the fits for its gather and for the contact stage between.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_LEAST_SQUARES_H
-#define MPSI_MPM_LEAST_SQUARES_H
+#pragma once
 
 #include "support.h"
 
@@ -251,5 +250,3 @@ MPSI_INLINE void mpsi_take_single(const mpsi_grid *grid, int dim, int spline, co
        ? work->grid->spline == 2 ? body##_2_2(work, __VA_ARGS__) : body##_2_3(work, __VA_ARGS__)   \
    : work->grid->spline == 2 ? body##_3_2(work, __VA_ARGS__)                                       \
                              : body##_3_3(work, __VA_ARGS__))
-
-#endif

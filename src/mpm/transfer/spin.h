@@ -15,8 +15,7 @@
  *
  * For files that are compiled for several instruction sets, after loops.h. Lengths in cells;
  * particles in the lanes of a vector. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_SPIN_H
-#define MPSI_MPM_SPIN_H
+#pragma once
 
 #include "least_squares.h"
 
@@ -136,5 +135,3 @@ MPSI_INLINE void mpsi_set_spin(int dim, int spline, double inverse, mpsi_mask ke
       L[a][b] -= more;
     }
 }
-
-#endif

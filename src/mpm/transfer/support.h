@@ -7,8 +7,7 @@
  * particle's side of the surface, n . (x_p - x_i) > 0. Without the corners of its own cell the
  * moment matrix M can be singular; without the test of the side momentum passes through thin walls.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_SUPPORT_H
-#define MPSI_MPM_SUPPORT_H
+#pragma once
 
 #include "mpm/base/loops.h"
 #include "mpm/boundary/mirror.h"
@@ -324,5 +323,3 @@ MPSI_INLINE bool mpsi_is_full(const mpsi_transfer *work, int dim, int spline, co
     }
   return true;
 }
-
-#endif

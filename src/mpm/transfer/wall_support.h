@@ -9,8 +9,7 @@
  * the wall; its derivative along the wall is w s/m2 of that axis times w/M0 across. So the loops
  * for full supports are used with these weights, instead of a fit over all nodes as in
  * cut_scatter.c. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WALL_H
-#define MPSI_MPM_WALL_H
+#pragma once
 
 #include "mpm/base/loops.h"
 
@@ -111,5 +110,3 @@ MPSI_INLINE void mpsi_wall_places(const mpsi_transfer *work, int dim, int spline
   }
   mpsi_pad_places(dim, spline, 7, end - begin, &out->places);
 }
-
-#endif

@@ -53,7 +53,6 @@ static void find_impossible(void *data, int64_t b, int32_t worker) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   const bool slow = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED &&
                     cells->speed * mpm->run.dt <= mpm->grid.cell; /* c + |v| of all of them */
-  (void)worker;
   if ((cells->bad >= 0 && !cells->lost) || (slow && are_possible(mpm, cells->begin, cells->end)))
     return;
   for (int64_t k = cells->begin; k < cells->end; k++)

@@ -1,7 +1,6 @@
 /* cell_loops.h - what the loops of the water over particles (cell_loops.c, compiled once for each
  * instruction set) share with its cells. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_CELL_LOOPS_H
-#define MPSI_MPM_WATER_CELL_LOOPS_H
+#pragma once
 
 #include "water.h"
 
@@ -14,5 +13,3 @@ enum { MPSI_PORE_PERMEABILITY, MPSI_PORE_SLOPE };
 void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water,
                                    const double *former, int64_t begin, int64_t end);
 void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end);
-
-#endif

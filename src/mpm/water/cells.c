@@ -56,7 +56,6 @@ static void pack(void *data, int64_t b, int32_t number, double *message) {
 
 static void clear(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
-  (void)worker;
   memset(mpm->water->block[g].filled, 0, sizeof mpm->water->block[g].filled);
 }
 
@@ -130,7 +129,6 @@ static void find_means(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t *filled = mpm->water->block[g].filled;
-  (void)worker;
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = filled[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
@@ -170,7 +168,6 @@ static void find_ahead(void *data, int64_t b, int32_t worker) {
   const mpsi_columns *p = &mpm->p;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   double *rest = mpm->water->rest;
-  (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++) rest[k] = p->V[k] * (p->u[k] - p->slow[k]);
 }
 
@@ -182,7 +179,6 @@ static void follow(void *data, int64_t b, int32_t worker) {
   const mps_mpm *mpm = data;
   const mpsi_columns *p = &mpm->p;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++)
     p->slow[k] += FOLLOWS * (p->u[k] - p->slow[k]);
 }
@@ -216,7 +212,6 @@ static void note_rest(void *data, int64_t b, int32_t worker) {
   const mps_mpm *mpm = data;
   const mpsi_water *water = mpm->water;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++)
     water->rest[k] = mpm->p.V[k] + gap_of(&mpm->p, k, water->former[k]) - water->rest[k];
 }

@@ -171,7 +171,7 @@ static void find_yields(const mps_mpm *mpm, mpsi_pore_contacts *all) {
 
 /* Sums over ranks of words to which one rank contributes. */
 static mps_status share(mps_mpm *mpm, const char *function, int64_t words, int64_t *word) {
-  return mpsi_domain_sum(mpm->partition->domain, function, (int32_t)words, word);
+  return mpsi_domain_sum(mpm->domain, function, (int32_t)words, word);
 }
 
 /* The nodes that all ranks count, each with its slot, in order of places. */
@@ -192,7 +192,7 @@ static int64_t pack(int64_t low, int64_t high) {
 /* How many nodes all ranks count; *first: those of the ranks before. Collective. */
 static mps_status count_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out,
                               int64_t *first) {
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = mpm->domain;
   const int32_t ranks = mps_domain_size(domain), own = mps_domain_rank(domain);
   const bool good = mpsi_room_ensure(mpm->context, &out->word_room, ranks, sizeof(int64_t));
   mps_status status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, 8);
@@ -213,7 +213,7 @@ static mps_status count_slots(mps_mpm *mpm, const char *function, mpsi_pore_cont
 
 /* Gives the nodes of all ranks their slots: those that rank 0 counts first. Collective. */
 static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out) {
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = mpm->domain;
   const mpsi_pore_system *s = mpm->water->system;
   int64_t first = 0;
   mps_status status = count_slots(mpm, function, out, &first);
@@ -222,8 +222,7 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
       mpsi_room_ensure(mpm->context, &out->word_room, 3 * out->slots, sizeof(int64_t)) &&
       mpsi_room_ensure(mpm->context, &out->known_room, out->slots, sizeof(known_node));
   status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)out->slots * 24);
-  status = mpsi_domain_agree(domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(domain, function, status));
   int64_t *word = out->word_room.item;
   memset(word, 0, (size_t)(WORDS * out->slots) * sizeof *word);
   for (int64_t k = 0; k < out->nodes; k++) {
@@ -232,8 +231,7 @@ static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_conta
     word[WORDS * first] = pack(node->at[0], node->at[1]);
     word[WORDS * first++ + 1] = pack(node->at[2], s->held[node->number]);
   }
-  status = share(mpm, function, WORDS * out->slots, word);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(share(mpm, function, WORDS * out->slots, word));
   known_node *known = out->known_room.item;
   list_known(word, out->slots, known);
   for (int64_t k = 0; k < out->nodes; k++) {
@@ -272,8 +270,7 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
   if (!make_room(mpm, out))
     status = mpsi_fail_memory(mpm->context, function,
                               (size_t)all->constraint_count * sizeof *out->contact);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   if (out->indices > 0) memset(out->index, -1, (size_t)out->indices * sizeof *out->index);
   for (int64_t n = 0; n < all->constraint_count; n++)
     if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, out);
@@ -383,8 +380,7 @@ mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function) {
   mpsi_pore_system *s = mpm->water->system;
   mpsi_pore_contacts *all = &s->contacts;
   if (!all->any) return MPS_OK;
-  const mps_status status = take_velocities(mpm, function, all);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(take_velocities(mpm, function, all));
   for (int64_t k = 0; k < all->count; k++)
     memset(all->contact[k].left, 0, sizeof all->contact[k].left);
   for (int32_t b = 0; b < all->movers; b++) {

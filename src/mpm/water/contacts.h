@@ -1,7 +1,6 @@
 /* contacts.h - contacts with bodies in the operator of implicit pressures (contacts.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_CONTACTS_H
-#define MPSI_MPM_WATER_CONTACTS_H
+#pragma once
 
 #include "system.h"
 
@@ -12,5 +11,3 @@ mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function);
 mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function);
 /* Adds what the last call of that has taken, over the step, to the impulses of the contacts. */
 void mpsi_pore_bear_contacts(mps_mpm *mpm);
-
-#endif

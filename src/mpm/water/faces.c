@@ -159,7 +159,6 @@ static void find_faces(void *data, int64_t g, int32_t worker) {
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   mpsi_pore_block *block = &water->block[g];
   uint64_t inside[MPSI_PORE_WORDS] = {0};
-  (void)worker;
   if (mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) {
     mpsi_pore_surrounded(&mpm->grid, water, g, false, inside);
     leave_sides(&mpm->grid, g, inside);

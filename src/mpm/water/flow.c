@@ -216,7 +216,6 @@ static void find_pressures(void *data, int64_t g, int32_t worker) {
   const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
-  (void)worker;
   memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
   if (find_whole(&mpm->grid, mpm->water, g, whole)) mpm->kernels->pore_advance(&work, g, whole);
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
@@ -296,7 +295,6 @@ static void find_slopes(void *data, int64_t g, int32_t worker) {
   const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
-  (void)worker;
   if (find_whole(&mpm->grid, water, g, whole)) mpm->kernels->pore_slopes(&work, g, whole);
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
@@ -543,7 +541,6 @@ static void find_equations(void *data, int64_t g, int32_t worker) {
   mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = water->cell + first;
-  (void)worker;
   memset(water->outflow[g], 0, sizeof water->outflow[g]);
   if (!mpsi_mpm_counts_node_block(&mpm->grid, g)) return; /* another rank has its equations */
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
@@ -557,7 +554,6 @@ static void find_gains(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
-  (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_marked(water->block[g].filled, k))
       cell[k].gain = flux_into(mpm, g, k, true, &cell[k]);
@@ -593,8 +589,7 @@ mps_status mpsi_pore_press(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
   mpsi_water *water = mpm->water;
-  const mps_status status = find_implicit(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_implicit(mpm, function));
   mpsi_pore_follow_means(mpm);
   water->expecting = true;
   water->share = 1.0;
@@ -610,7 +605,6 @@ static void find_rest(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
-  (void)worker;
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = water->block[g].filled[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);

@@ -189,7 +189,6 @@ static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
 static void add_particles(void *data, int64_t b, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const mpsi_pore_particle particle = mpsi_pore_particle_of(mpm, cells, k);
     add_particle(mpm, cells, &particle);
@@ -206,7 +205,6 @@ static void find_masses(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_grid *grid = &mpm->grid;
   const int64_t first = mpsi_first_node(grid, g);
-  (void)worker;
   for (int64_t k = first; k < first + grid->block_nodes; k++)
     for (int c = 0; c < 3; c++) mpm->water->system->inertia[k][c] = grid->node[k][MPSI_MASS];
 }

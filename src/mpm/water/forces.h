@@ -1,7 +1,6 @@
 /* forces.h - forces of the cells on their nodes, for pressures that are implicit (forces.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_FORCES_H
-#define MPSI_MPM_WATER_FORCES_H
+#pragma once
 
 #include "system.h"
 
@@ -12,5 +11,3 @@ mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function);
  * correction, their inertias against one and which components are prescribed, also in the rim.
  * Collective. */
 mps_status mpsi_pore_find_nodes(mps_mpm *mpm, const char *function);
-
-#endif

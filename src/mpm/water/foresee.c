@@ -112,7 +112,6 @@ static void find_nodes(void *data, int64_t g, int32_t worker) {
   const wall_nodes to = {mpm->run.dt, grid->dim, s->velocity + first, s->inertia + first,
                          s->held + first};
   const double damped = 1.0 + mpm->def.viscous_damping * mpm->run.dt;
-  (void)worker;
   memset(to.held, 0, (size_t)grid->block_nodes);
   for (int k = 0; k < grid->block_nodes; k++)
     for (int c = 0; c < 3; c++) {

@@ -36,7 +36,6 @@ typedef struct mpsi_pore_system system_of;
 static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   mpsi_pore_cell *cell = mpm->water->cell + first;
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
     if (mpsi_pore_is_unknown(mpm->water, g, k)) cell[k].now = cell[k].p + s->change[first + k];
 }
@@ -45,7 +44,6 @@ static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 static void take_motion(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -60,7 +58,6 @@ static void find_squeeze(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -93,8 +90,7 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   const int64_t cells = mpm->grid.node_count * mpm->grid.block_nodes; /* a rank may have none */
   if (cells > 0) memcpy(s->direction, s->change, (size_t)cells * sizeof *s->change);
-  const mps_status status = mpsi_pore_find_motion(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_motion(mpm, function));
   mpsi_pore_bear_contacts(mpm);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_squeeze, 0.0);
   return MPS_OK;
@@ -104,7 +100,6 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
 static void take_ahead(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = mpm->water->cell + first;
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     const bool unknown = mpsi_pore_is_unknown(mpm->water, g, k);
     s->ahead[first + k] = unknown ? cell[k].change / cell[k].volume : 0.0;
@@ -158,14 +153,12 @@ void mpsi_pore_add_reactions(mps_mpm *mpm) {
 }
 
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_pore_find_nodes(mpm, function);
-  if (status == MPS_OK) status = mpsi_pore_find_contacts(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_nodes(mpm, function));
+  MPSI_TRY(mpsi_pore_find_contacts(mpm, function));
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, take_motion, 0.0);
-  status = mpsi_pore_find_changes(mpm, function);
-  if (status == MPS_OK) status = move_nodes(mpm, function);
-  if (status == MPS_OK && mpm->partition) status = mpsi_pore_send_changes(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_changes(mpm, function));
+  MPSI_TRY(move_nodes(mpm, function));
+  if (mpm->partition) MPSI_TRY(mpsi_pore_send_changes(mpm, function));
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, take, 0.0);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, correct, mpm->run.dt);
   mpsi_pore_exchange(mpm, MPSI_PORE_NOW);

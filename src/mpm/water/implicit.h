@@ -1,7 +1,6 @@
 /* implicit.h - pressures of cells that are implicit in time (implicit.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_IMPLICIT_H
-#define MPSI_MPM_WATER_IMPLICIT_H
+#pragma once
 
 #include "system.h"
 
@@ -12,5 +11,3 @@ mps_status mpsi_pore_press_nodes(mps_mpm *mpm, const char *function);
  * and faces; corrects the velocities and the impulses of contacts. Collective. MPS_ERROR_NUMERIC:
  * no solution to the tolerance; MPS_ERROR_MEMORY. */
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function);
-
-#endif

@@ -35,7 +35,7 @@ mps_status mpsi_pore_find_notices(const mps_mpm *mpm, const char *function, mpsi
     own[count] = (mpsi_notice){.number = (int32_t)g};
     memcpy(own[count++].at, grid->nodes[g].at, sizeof own->at);
   }
-  status = mpsi_mpm_exchange_notices(mpm->context, mpm->partition->domain, function, status,
+  status = mpsi_mpm_exchange_notices(mpm->context, mpm->domain, function, status,
                                      computed, count, own, list, found);
   mpsi_free(mpm->context, own);
   return status;
@@ -134,13 +134,12 @@ static double widest(const mps_mpm *mpm) {
 }
 
 static mps_status find(search *s, mpsi_pore_layers *layers) {
-  mps_domain *domain = s->mpm->partition->domain;
+  mps_domain *domain = s->mpm->domain;
   double most = widest(s->mpm);
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
   layers->guests = layers->blocks = 0;
   if (status == MPS_OK) status = choose(s, layers);
-  status = mpsi_domain_agree_max(domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(domain, s->function, status, 1, &most));
   layers->most = (int64_t)most;
   const mpsi_halo_def def = {.guests = layers->guests, .rank = s->rank, .index = s->index};
   status = mpsi_halo_create(domain, s->function, &def, &layers->halo);
@@ -154,9 +153,7 @@ mps_status mpsi_pore_find_layers(mps_mpm *mpm, const char *function) {
   const mps_status status = find(&s, layers);
   if (status != MPS_OK) layers->guests = layers->blocks = 0;
   layers->searches = status == MPS_OK ? mpm->partition->searches : -1;
-  mpsi_free(mpm->context, s.list);
-  mpsi_free(mpm->context, s.rank);
-  mpsi_free(mpm->context, s.index);
+  MPSI_FREE(mpm->context, s.list, s.rank, s.index);
   return status;
 }
 
@@ -165,12 +162,8 @@ void mpsi_pore_free_layers(mps_context *context, mpsi_pore_layers **pointer) {
   *pointer = NULL;
   if (!layers) return;
   mpsi_halo_destroy(context, &layers->halo);
-  mpsi_free(context, layers->block_room.item);
-  mpsi_free(context, layers->direction_room.item);
-  mpsi_free(context, layers->at_room.item);
-  mpsi_free(context, layers->out_room.item);
-  mpsi_free(context, layers->in_room.item);
-  mpsi_free(context, layers);
+  MPSI_FREE(context, layers->block_room.item, layers->direction_room.item, layers->at_room.item,
+            layers->out_room.item, layers->in_room.item, layers);
 }
 
 /* ---- layers ---------------------------------------------------------------------------------- */

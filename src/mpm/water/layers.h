@@ -6,8 +6,7 @@
  * layers of other blocks at their faces, which the rank that counts such a block sends in each
  * stage of a step. Their blocks stand behind the rank's own in the lists of cells.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_LAYERS_H
-#define MPSI_MPM_WATER_LAYERS_H
+#pragma once
 
 #include "core/base/room.h"
 #include "domain/halo.h"
@@ -49,5 +48,3 @@ static inline int64_t mpsi_pore_sum_doubles(const mpsi_pore_layers *layers) {
 void mpsi_pore_exchange(mps_mpm *mpm, mpsi_pore_stage stage);
 /* Not collective; accepts none. */
 void mpsi_pore_free_layers(mps_context *context, mpsi_pore_layers **layers);
-
-#endif

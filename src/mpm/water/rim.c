@@ -1,6 +1,7 @@
 /* rim.c - see rim.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "rim.h"
 
+#include "core/base/order.h"
 #include "core/base/room_array.h"
 #include "layers.h"
 #include "mpm/ranks/messages.h"
@@ -111,27 +112,17 @@ static void take_notice(search *s, mpsi_pore_rim *rim, const mpsi_notice *from) 
   rim->shared_block[rim->shared_blocks++] = same;
 }
 
-static int compare_blocks(const void *left, const void *right) {
-  const mpsi_pore_rim_block *a = left, *b = right;
-  return mpsi_block_before(a->at, b->at) ? -1 : mpsi_block_before(b->at, a->at) ? 1 : 0;
-}
-
 static mps_status choose(search *s, mpsi_pore_rim *rim) {
   if (!make_lists(s, rim)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
   for (int64_t k = 0; k < s->found; k++) take_notice(s, rim, &s->list[k]);
-  if (rim->blocks > 1) qsort(rim->block, (size_t)rim->blocks, sizeof *rim->block, compare_blocks);
+  if (rim->blocks > 1)
+    qsort(rim->block, (size_t)rim->blocks, sizeof *rim->block, mpsi_compare_blocks);
   return MPS_OK;
 }
 
 int32_t mpsi_pore_rim_block_at(const mpsi_pore_rim *rim, const int32_t *at) {
-  int64_t low = 0, high = rim ? rim->blocks : 0;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(rim->block[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, rim ? rim->blocks : 0, middle, mpsi_block_before(rim->block[middle].at, at));
   const bool found = rim && low < rim->blocks && !mpsi_block_before(at, rim->block[low].at);
   return found ? rim->block[low].number : -1;
 }
@@ -175,12 +166,11 @@ static double most_particles(const mps_mpm *mpm) {
 
 static mps_status find(search *s, mpsi_pore_rim *rim) {
   const mpsi_grid *grid = &s->mpm->grid;
-  mps_domain *domain = s->mpm->partition->domain;
+  mps_domain *domain = s->mpm->domain;
   double most = most_particles(s->mpm);
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
   if (status == MPS_OK) status = choose(s, rim);
-  status = mpsi_domain_agree_max(domain, s->function, status, 1, &most);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree_max(domain, s->function, status, 1, &most));
   rim->particles = (int64_t)most;
   const mpsi_halo_def cells = {.guests = rim->cells,
                                .rank = s->rank,
@@ -205,8 +195,7 @@ mps_status mpsi_pore_find_rim(mps_mpm *mpm, const char *function) {
     else
       status = mpsi_fail_memory(mpm->context, function, sizeof *system->rim);
   }
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   mpsi_pore_rim *rim = system->rim;
   mpsi_halo_destroy(mpm->context, &rim->halo);
   mpsi_halo_destroy(mpm->context, &rim->shared);
@@ -214,8 +203,7 @@ mps_status mpsi_pore_find_rim(mps_mpm *mpm, const char *function) {
   status = find(&s, rim);
   if (status != MPS_OK) rim->blocks = rim->cells = rim->shared_blocks = 0;
   rim->searches = status == MPS_OK ? mpm->partition->searches : -1;
-  void *parts[] = {s.list, s.rank, s.index, s.shared_rank, s.shared_index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  MPSI_FREE(mpm->context, s.list, s.rank, s.index, s.shared_rank, s.shared_index);
   return status;
 }
 
@@ -225,9 +213,8 @@ void mpsi_pore_free_rim(mps_context *context, mpsi_pore_rim **pointer) {
   if (!rim) return;
   mpsi_halo_destroy(context, &rim->halo);
   mpsi_halo_destroy(context, &rim->shared);
-  const mpsi_room room[] = {rim->block_room,        rim->cell_room, rim->reached_room,
-                            rim->shared_block_room, rim->out_room,  rim->in_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  MPSI_FREE(context, rim->block_room.item, rim->cell_room.item, rim->reached_room.item,
+            rim->shared_block_room.item, rim->out_room.item, rim->in_room.item);
   mpsi_free(context, rim);
 }
 
@@ -237,7 +224,6 @@ static void pack_particles(void *data, int64_t b, int32_t worker, double *messag
   const mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_pore_particle *out = (void *)message;
-  (void)worker;
   *out = (mpsi_pore_particle){.place = (int32_t)(cells->end - cells->begin)};
   for (int64_t k = cells->begin; k < cells->end; k++) *++out = mpsi_pore_particle_of(mpm, cells, k);
 }
@@ -317,8 +303,8 @@ mps_status mpsi_pore_send_nodes(mps_mpm *mpm, const char *function) {
 mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function) {
   mpsi_halo *halo = mpm->water->system->rim->halo;
   double *const column[] = {mpm->water->system->direction};
-  const mps_status status = mpsi_halo_begin(halo, function, 1, column);
-  return status == MPS_OK ? mpsi_halo_end(halo, function, column) : status;
+  MPSI_TRY(mpsi_halo_begin(halo, function, 1, column));
+  return mpsi_halo_end(halo, function, column);
 }
 
 static void copy_changes(const mps_mpm *mpm, int64_t g, double *message, bool to) {

@@ -9,8 +9,7 @@
  * vectors of the system. The cells of blocks that a rank computes but does not count are in the rim
  * as well; what such blocks need after the solution comes whole: they are shared.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_RIM_H
-#define MPSI_MPM_WATER_RIM_H
+#pragma once
 
 #include "core/base/room.h"
 #include "domain/halo.h"
@@ -57,5 +56,3 @@ mps_status mpsi_pore_send_changes(mps_mpm *mpm, const char *function);
 
 /* Not collective; accepts none. */
 void mpsi_pore_free_rim(mps_context *context, mpsi_pore_rim **rim);
-
-#endif

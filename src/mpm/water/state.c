@@ -1,6 +1,5 @@
 /* state.c - the water of a solver between steps: values that the caller has written, its mass, and
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit.h"
 #include "layers.h"
 #include "solve/coarse.h"
 #include "solve/outside.h"
@@ -43,10 +42,9 @@ void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum) {
 void mpsi_pore_free(mps_mpm *mpm) {
   if (!mpm->water) return;
   const mpsi_water *w = mpm->water;
-  const mpsi_room rooms[] = {w->cell_room,   w->column_room, w->edge_room,
-                             w->block_room,  w->linked_room, w->outflow_room,
-                             w->former_room, w->rest_room,   w->place_room};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k].item);
+  MPSI_FREE(mpm->context, w->cell_room.item, w->column_room.item, w->edge_room.item,
+            w->block_room.item, w->linked_room.item, w->outflow_room.item, w->former_room.item,
+            w->rest_room.item, w->place_room.item);
   mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
   if (mpm->water->system) mpsi_pore_free_coarse(mpm->context, &mpm->water->system->coarse);
   mpsi_pore_free_system(mpm->context, &mpm->water->system);

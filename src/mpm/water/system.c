@@ -71,10 +71,9 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
 
 /* On several ranks, with another rim than in the last step: all agree on their room. */
 static mps_status renew(mps_mpm *mpm, const char *function, mps_status status) {
-  mps_domain *domain = mpm->partition->domain;
-  status = mpsi_domain_agree(domain, function, status);
-  if (status == MPS_OK) status = mpsi_pore_find_rim(mpm, function);
-  if (status != MPS_OK) return status;
+  mps_domain *domain = mpm->domain;
+  MPSI_TRY(mpsi_domain_agree(domain, function, status));
+  MPSI_TRY(mpsi_pore_find_rim(mpm, function));
   status = mpsi_domain_agree(domain, function, make_room(mpm, function));
   if (status != MPS_OK) mpm->water->system->rim->searches = -1;
   return status;
@@ -98,12 +97,11 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   if (!s) return;
   mpsi_pore_free_rim(context, &s->rim);
   const mpsi_pore_contacts *c = &s->contacts;
-  const mpsi_room room[] = {s->around_room, s->inertia_room, s->velocity_room, s->held_room,
-                            s->row_room,    s->force_room,   s->vector_room,   s->conductance_room,
-                            s->reach_room,  s->part_room,    s->turned_room,   c->contact_room,
-                            c->entry_room,  c->node_room,    c->index_room,    c->word_room,
-                            c->known_room,  c->mover_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  MPSI_FREE(context, s->around_room.item, s->inertia_room.item, s->velocity_room.item,
+            s->held_room.item, s->row_room.item, s->force_room.item, s->vector_room.item,
+            s->conductance_room.item, s->reach_room.item, s->part_room.item, s->turned_room.item,
+            c->contact_room.item, c->entry_room.item, c->node_room.item, c->index_room.item,
+            c->word_room.item, c->known_room.item, c->mover_room.item);
   mpsi_free(context, s);
 }
 
@@ -150,7 +148,6 @@ typedef struct block_loop {
 static void run_block(void *data, int64_t g, int32_t worker) {
   const block_loop *loop = data;
   const mpsi_grid *grid = &loop->mpm->grid;
-  (void)worker;
   if (g < grid->node_count && loop->which != MPSI_PORE_ALL)
     if (loop->which == MPSI_PORE_COMPUTED ? grid->nodes[g].foreign
                                           : !mpsi_mpm_counts_node_block(grid, g))
@@ -178,7 +175,7 @@ mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_ta
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, task, factor);
   for (int64_t g = 0; g < grid->node_count; g++)
     if (mpsi_mpm_counts_node_block(grid, g)) mpsi_exact_add(&sum, mpm->water->system->part[g]);
-  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, 1, &sum);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->domain, function, 1, &sum);
   *out = mpsi_exact_value(&sum);
   return status;
 }
@@ -186,7 +183,6 @@ mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_ta
 static void find_reach(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
-  (void)factor;
   for (int t = 0; t < mpsi_pore_box_places(grid); t++) {
     int offset[3];
     mpsi_unravel(t, MPSI_PORE_BOX, offset);

@@ -1,8 +1,7 @@
 /* system.h - the system of pressures that are implicit in time (implicit.c): its memory, which
  * nodes and cells are in reach of which, and loops and sums over its blocks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_SYSTEM_H
-#define MPSI_MPM_WATER_SYSTEM_H
+#pragma once
 
 #include "water.h"
 
@@ -187,5 +186,3 @@ void mpsi_pore_for_blocks(mps_mpm *mpm, mpsi_pore_blocks which, mpsi_pore_task t
  * exact, so that it does not depend on their number. Collective. */
 mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_task task,
                                 double factor, double *out);
-
-#endif

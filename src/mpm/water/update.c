@@ -72,7 +72,7 @@ static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status st
     if (!water->layers) status = mpsi_fail_memory(mpm->context, function, sizeof *water->layers);
     if (water->layers) *water->layers = (mpsi_pore_layers){.searches = -1};
   }
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  status = mpsi_domain_agree(mpm->domain, function, status);
   if (status == MPS_OK) status = mpsi_pore_find_layers(mpm, function);
   water->linked = -1;
   return status;

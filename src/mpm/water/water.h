@@ -1,9 +1,9 @@
 /* water.h - water in the pores (mps/experimental/pore_water.h): pressures of cells, the flow
  * between them, and what the particles carry. A cell is the box above its node of the grid, and has
  * the node's number. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_H
-#define MPSI_MPM_WATER_H
+#pragma once
 
+#include "core/base/order.h"
 #include "core/base/exact.h"
 #include "mpm/base/mpm_solver.h"
 
@@ -111,14 +111,8 @@ struct mpsi_water {
 
 /* Number of the rank's own block of nodes at `at`, or -1: the list is in order. */
 static inline int32_t mpsi_pore_own_block(const mpsi_grid *grid, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
+  int64_t low;
+  MPSI_BISECT(low, grid->node_count, middle, mpsi_block_before(grid->nodes[middle].at, at));
   const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
   return found && !grid->nodes[low].foreign ? (int32_t)low : -1;
 }
@@ -251,5 +245,3 @@ void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum);
 /* state.c: the state besides the fields; what is freed with the solver. */
 void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water);
 void mpsi_pore_free(mps_mpm *mpm);
-
-#endif

@@ -55,44 +55,20 @@ typedef struct place_of_tile {
 
 /* ---- the list of blocks ---------------------------------------------------------------------- */
 
-static int compare_places(const void *left, const void *right) {
-  const int32_t *a = left, *b = right;
-  return mpsi_block_before(a, b) ? -1 : mpsi_block_before(b, a) ? 1 : 0;
-}
-
 static int32_t find_place(const coarse_of *c, const int32_t *at) {
   const int32_t(*found)[3] =
-      c->blocks > 0 ? bsearch(at, c->at, (size_t)c->blocks, sizeof *c->at, compare_places) : NULL;
+      c->blocks > 0 ? bsearch(at, c->at, (size_t)c->blocks, sizeof *c->at, mpsi_compare_blocks)
+                    : NULL;
   return found ? (int32_t)(found - (const int32_t(*)[3])c->at) : -1;
 }
 
-/* Blocks of all ranks, from `first` on those of this one; `counts` of each rank. */
+/* Blocks of all ranks, from `first` on those of this one. */
 static mps_status count_blocks(const mps_mpm *mpm, const char *function, int64_t *first,
                                int64_t *all) {
-  mps_domain *domain = mpm->partition ? mpm->partition->domain : NULL;
-  const int64_t ranks = domain ? mps_domain_size(domain) : 1,
-                rank = domain ? mps_domain_rank(domain) : 0;
   int64_t own = 0;
-  *first = *all = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++)
     own += mpsi_mpm_counts_node_block(&mpm->grid, g);
-  *all = own;
-  if (!domain) return MPS_OK;
-  int64_t *counts = mpsi_alloc(mpm->context, ranks, sizeof *counts);
-  mps_status status = counts ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)ranks * 8);
-  status = mpsi_domain_agree(domain, function, status);
-  if (status == MPS_OK) {
-    memset(counts, 0, (size_t)ranks * sizeof *counts);
-    counts[rank] = own;
-    status = mpsi_domain_sum(domain, function, (int32_t)ranks, counts);
-  }
-  *all = 0;
-  for (int64_t r = 0; status == MPS_OK && r < ranks; r++) {
-    if (r < rank) *first += counts[r];
-    *all += counts[r];
-  }
-  mpsi_free(mpm->context, counts);
-  return status;
+  return mpsi_domain_count(mpm->domain, function, own, first, all);
 }
 
 static mps_status make_room(mps_mpm *mpm, const char *function, int64_t blocks) {
@@ -122,16 +98,14 @@ static mps_status send_places(mps_mpm *mpm, const char *function, int64_t first,
     for (int a = 0; a < 3; a++) place[3 * own + a] = mpm->grid.nodes[g].at[a];
     own++;
   }
-  const mps_status status = mpm->partition ? mpsi_domain_max(mpm->partition->domain, function,
-                                                             (int32_t)(3 * blocks), place)
-                                           : MPS_OK;
+  const mps_status status = mpsi_domain_max(mpm->domain, function, (int32_t)(3 * blocks), place);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++)
     for (int a = 0; a < 3; a++) c->at[b][a] = (int32_t)place[3 * b + a];
   return status;
 }
 
 static void join_list(const mpsi_grid *grid, coarse_of *c) {
-  qsort(c->at, (size_t)c->blocks, sizeof *c->at, compare_places);
+  qsort(c->at, (size_t)c->blocks, sizeof *c->at, mpsi_compare_blocks);
   for (int64_t b = 0; b < c->blocks; b++)
     for (int k = 0; k < MPSI_PORE_AROUND; k++) {
       int32_t at[3], step[3];
@@ -148,10 +122,9 @@ static mps_status find_list(mps_mpm *mpm, const char *function) {
   int64_t first, blocks;
   if (mpm->partition && c->searches == mpm->partition->searches) return MPS_OK;
   c->searches = -1;
-  mps_status status = count_blocks(mpm, function, &first, &blocks);
-  if (status != MPS_OK) return status;
-  status = make_room(mpm, function, blocks);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  MPSI_TRY(count_blocks(mpm, function, &first, &blocks));
+  mps_status status = make_room(mpm, function, blocks);
+  status = mpsi_domain_agree(mpm->domain, function, status);
   if (status == MPS_OK) status = send_places(mpm, function, first, blocks);
   if (status != MPS_OK) return status;
   c->blocks = blocks;
@@ -183,7 +156,6 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
   const int nodes = mpsi_pore_span_nodes(grid), dim = grid->dim, corners = 1 << dim;
   const int32_t *tile = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -258,7 +230,6 @@ static void add_flow(const mps_mpm *mpm, const system_of *s, int64_t g, int k, d
 static void find_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t b = s->coarse->number[g];
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -270,8 +241,7 @@ static void find_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 /* Values of the blocks of this rank to all: [blocks][size]. */
 static mps_status send_blocks(mps_mpm *mpm, const char *function, int64_t size, double *values) {
   const coarse_of *c = mpm->water->system->coarse;
-  if (!mpm->partition) return MPS_OK;
-  return mpsi_domain_max(mpm->partition->domain, function, (int32_t)(c->blocks * size), values);
+  return mpsi_domain_max(mpm->domain, function, (int32_t)(c->blocks * size), values);
 }
 
 /* The memory of [blocks][size] values where this rank's are to be written. */
@@ -291,8 +261,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
   if (!MPSI_ENSURE(mpm->context, c, velocity, numbers))
     status = mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *c->velocity);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   clear_blocks(mpm, c->tiles * c->beside, c->row);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_rows, 0.0);
@@ -371,7 +340,6 @@ static void for_entries(coarse_of *c, entry_task *task) {
 }
 
 static void widen(mpsi_envelope *e, int32_t row, int32_t column, double value) {
-  (void)value;
   if (column < e->first[row]) e->first[row] = column;
 }
 
@@ -405,7 +373,7 @@ static mps_status count_unknowns(mps_mpm *mpm, const char *function) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; mpsi_mpm_counts_node_block(grid, g) && k < grid->block_nodes; k++)
       *unknowns += mpsi_pore_is_unknown(mpm->water, g, k);
-  return mpm->partition ? mpsi_domain_sum(mpm->partition->domain, function, 1, unknowns) : MPS_OK;
+  return mpsi_domain_sum(mpm->domain, function, 1, unknowns);
 }
 
 static mps_status make_first(mps_mpm *mpm, const char *function) {
@@ -421,25 +389,22 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
     else
       status = mpsi_fail_memory(mpm->context, function, sizeof *s->coarse);
   }
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+  return mpsi_domain_agree(mpm->domain, function, status);
 }
 
 mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
-  mps_status status = make_first(mpm, function);
-  if (status == MPS_OK) status = count_unknowns(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_first(mpm, function));
+  MPSI_TRY(count_unknowns(mpm, function));
   coarse_of *c = mpm->water->system->coarse;
   c->used = false;
   if (mpsi_pore_solved_outside(mpm)) return MPS_OK;
   if (mpm->water->system->unknowns <
       LEAST_TILES * (mpm->grid.dim == 3 ? TILE * TILE * TILE : TILE * TILE))
     return MPS_OK;
-  status = find_list(mpm, function);
-  if (status == MPS_OK) status = make_rows(mpm, function);
-  if (status != MPS_OK) return status;
-  status = number_tiles(mpm, function);
-  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_list(mpm, function));
+  MPSI_TRY(make_rows(mpm, function));
+  mps_status status = number_tiles(mpm, function);
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, status));
   for_entries(c, add);
   mpsi_envelope_factor(&c->matrix);
   if (mpm->partition) clear_blocks(mpm, c->tiles, c->sum);
@@ -467,8 +432,7 @@ mps_status mpsi_pore_coarse_solve(mps_mpm *mpm, const char *function, double *pr
   double *sum = c->sum;
   if (mpm->partition) { /* a copy: this rank's places stay those that are to be sent */
     sum = memcpy(c->sum + tiles, c->sum, (size_t)tiles * sizeof *sum);
-    const mps_status status = send_blocks(mpm, function, c->tiles, sum);
-    if (status != MPS_OK) return status;
+    MPSI_TRY(send_blocks(mpm, function, c->tiles, sum));
   }
   memset(c->right, 0, (size_t)c->matrix.rows * sizeof *c->right);
   for (int64_t t = 0; t < tiles; t++)
@@ -489,10 +453,9 @@ void mpsi_pore_free_coarse(mps_context *context, mpsi_pore_coarse **pointer) {
   coarse_of *c = *pointer;
   *pointer = NULL;
   if (!c) return;
-  const mpsi_room room[] = {c->at_room,       c->around_room, c->number_room,
-                            c->row_room,      c->sum_room,    c->unknown_room,
-                            c->velocity_room, c->value_room,  c->order_room};
-  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  MPSI_FREE(context, c->at_room.item, c->around_room.item, c->number_room.item, c->row_room.item,
+            c->sum_room.item, c->unknown_room.item, c->velocity_room.item, c->value_room.item,
+            c->order_room.item);
   mpsi_envelope_drop(context, &c->matrix);
   mpsi_free(context, c);
 }

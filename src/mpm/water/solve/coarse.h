@@ -8,8 +8,7 @@
  * the same factors. So the bits are those of any number of threads and ranks. Where the factors of
  * E cost too much, tiles are joined to larger ones, of twice the side each time.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_SOLVE_COARSE_H
-#define MPSI_MPM_WATER_SOLVE_COARSE_H
+#pragma once
 
 #include "core/base/envelope.h"
 #include "mpm/water/system.h"
@@ -43,5 +42,3 @@ mps_status mpsi_pore_coarse_solve(mps_mpm *mpm, const char *function, double *pr
 /* Z e of cell k of block g, which this rank counts. */
 double mpsi_pore_coarse_at(const mps_mpm *mpm, int64_t g, int k);
 void mpsi_pore_free_coarse(mps_context *context, mpsi_pore_coarse **coarse); /* accepts none */
-
-#endif

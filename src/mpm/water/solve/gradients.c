@@ -20,7 +20,6 @@ typedef struct mpsi_pore_system system_of;
 static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(&mpm->grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
@@ -64,7 +63,7 @@ static mps_status refuse(mps_mpm *mpm, const char *function, double rest, double
                 (long long)mpm->run.steps, sqrt(rest), (long long)mpm->water->system->iterations,
                 sqrt(least));
   /* all ranks have the same sums, and fail alike */
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+  return mpsi_domain_agree(mpm->domain, function, status);
 }
 
 /* Squares of the residual: r.D^-1 r, and r.z. */
@@ -86,17 +85,16 @@ static mps_status renew(mps_mpm *mpm, const char *function, mpsi_pore_task task,
 static mps_status iterate(mps_mpm *mpm, const char *function, double before, squares *now) {
   double along;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, turn, before > 0.0 ? now->all / before : 0.0);
-  const mps_status status = mpsi_pore_apply(mpm, function, &along);
-  return status == MPS_OK ? renew(mpm, function, advance, now->all / along, now) : status;
+  MPSI_TRY(mpsi_pore_apply(mpm, function, &along));
+  return renew(mpm, function, advance, now->all / along, now);
 }
 
 /* The solution of the caller's solver, and whether it is one. */
 static mps_status ask_outside(mps_mpm *mpm, const char *function, double before, squares *now) {
   double along;
-  mps_status status = mpsi_pore_solve_outside(mpm, function, TOLERANCE);
-  if (status == MPS_OK) status = mpsi_pore_apply(mpm, function, &along);
-  if (status == MPS_OK) status = renew(mpm, function, advance, 1.0, now);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_solve_outside(mpm, function, TOLERANCE));
+  MPSI_TRY(mpsi_pore_apply(mpm, function, &along));
+  MPSI_TRY(renew(mpm, function, advance, 1.0, now));
   return mpsi_linear_check(&mpm->base, function, TOLERANCE, 0.0, now->rest, before);
 }
 
@@ -117,9 +115,8 @@ static mps_status run_iterations(mps_mpm *mpm, const char *function, double leas
 
 mps_status mpsi_pore_find_changes(mps_mpm *mpm, const char *function) {
   squares now;
-  mps_status status = mpsi_pore_find_coarse(mpm, function);
-  if (status == MPS_OK) status = renew(mpm, function, start, 0.0, &now);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_pore_find_coarse(mpm, function));
+  MPSI_TRY(renew(mpm, function, start, 0.0, &now));
   if (mpsi_pore_solved_outside(mpm) && isfinite(now.rest))
     return ask_outside(mpm, function, now.rest, &now);
   return run_iterations(mpm, function, TOLERANCE * TOLERANCE * now.rest, &now);

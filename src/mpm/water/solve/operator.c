@@ -13,7 +13,6 @@ void mpsi_pore_find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double fac
   const int nodes = mpsi_pore_span_nodes(grid);
   const int32_t *reach = s->reach + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -65,7 +64,6 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(grid, g);
   const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < grid->block_nodes; k++) {
@@ -94,13 +92,12 @@ double mpsi_pore_diagonal_of(const mps_mpm *mpm, const system_of *s, int64_t g, 
 }
 
 mps_status mpsi_pore_find_motion(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, mpsi_pore_find_velocities, 0.0);
   return mpsi_pore_hold_contacts(mpm, function);
 }
 
 mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along) {
-  const mps_status status = mpsi_pore_find_motion(mpm, function);
-  return status == MPS_OK ? mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along) : status;
+  MPSI_TRY(mpsi_pore_find_motion(mpm, function));
+  return mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along);
 }

@@ -1,7 +1,6 @@
 /* operator.h - the matrix of the pressures that are implicit in time (implicit.c), as a product
  * with `direction`. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_SOLVE_OPERATOR_H
-#define MPSI_MPM_WATER_SOLVE_OPERATOR_H
+#pragma once
 
 #include "mpm/water/system.h"
 
@@ -18,5 +17,3 @@ double mpsi_pore_squeeze_of(const mps_mpm *mpm, const mpsi_pore_system *s, int64
                             const int *shift);
 /* `product`: the matrix times `direction`; `*along`: their product. Collective. */
 mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along);
-
-#endif

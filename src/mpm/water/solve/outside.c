@@ -23,11 +23,8 @@ bool mpsi_pore_solved_outside(const mps_mpm *mpm) {
 
 void mpsi_pore_free_outside(mps_context *context, mpsi_pore_outside *o) {
   if (!o) return;
-  mpsi_free(context, o->start_room.item);
-  mpsi_free(context, o->column_room.item);
-  mpsi_free(context, o->value_room.item);
-  mpsi_free(context, o->vector_room.item);
-  mpsi_free(context, o);
+  MPSI_FREE(context, o->start_room.item, o->column_room.item, o->value_room.item,
+            o->vector_room.item, o);
 }
 
 /* ---- numbers of rows ------------------------------------------------------------------------- */
@@ -46,14 +43,11 @@ static int64_t for_unknowns(mps_mpm *mpm, unknown_task *task) {
   return number;
 }
 
-static void count(mps_mpm *mpm, int64_t cell, int64_t number) {
-  (void)mpm, (void)cell, (void)number;
-}
+static void count(mps_mpm *mpm, int64_t cell, int64_t number) {}
 
 /* The root of the reciprocal diagonal. */
 static void set_root(mps_mpm *mpm, int64_t cell, int64_t number) {
   system_of *s = mpm->water->system;
-  (void)number;
   s->direction[cell] = s->product[cell] = sqrt(s->inverse[cell]);
 }
 
@@ -77,27 +71,8 @@ static void take_solution(mps_mpm *mpm, int64_t cell, int64_t number) {
 /* This rank's rows among those of all. */
 static mps_status find_place(mps_mpm *mpm, const char *function) {
   outside_of *o = mpm->water->outside;
-  mps_domain *domain = mpm->partition ? mpm->partition->domain : NULL;
-  o->rows = o->all = for_unknowns(mpm, count);
-  o->first = 0;
-  if (!domain) return MPS_OK;
-  const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
-  int64_t *rows = mpsi_alloc(mpm->context, ranks, sizeof *rows);
-  mps_status status =
-      rows ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)ranks * sizeof *rows);
-  status = mpsi_domain_agree(domain, function, status);
-  if (status == MPS_OK) {
-    memset(rows, 0, (size_t)ranks * sizeof *rows);
-    rows[rank] = o->rows;
-    status = mpsi_domain_sum(domain, function, ranks, rows);
-  }
-  o->all = 0;
-  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
-    if (r < rank) o->first += rows[r];
-    o->all += rows[r];
-  }
-  mpsi_free(mpm->context, rows);
-  return status;
+  o->rows = for_unknowns(mpm, count);
+  return mpsi_domain_count(mpm->domain, function, o->rows, &o->first, &o->all);
 }
 
 /* `product`: roots of the reciprocal diagonals, `direction`: numbers of the rows, or -1; both in
@@ -188,7 +163,6 @@ static void count_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const outside_of *o = mpm->water->outside;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   int64_t cell[MOST];
-  (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
     if (mpsi_pore_is_unknown(mpm->water, g, k))
       o->start[(int64_t)s->direction[first + k] - o->first + 1] =
@@ -202,7 +176,6 @@ static void fill_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   int shift[MPSI_PORE_MOST_SPAN];
   int64_t cell[MOST];
   double row[MOST];
-  (void)factor;
   mpsi_pore_list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k)) continue;
@@ -240,21 +213,15 @@ static mps_status make_entries(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-static mps_status agree(mps_mpm *mpm, const char *function, mps_status status) {
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
-}
-
 static mps_status make_rows(mps_mpm *mpm, const char *function) {
   outside_of *o = mpm->water->outside;
-  mps_status status = find_place(mpm, function);
-  if (status != MPS_OK) return status;
-  status = agree(mpm, function, make_vectors(mpm, function));
-  if (status == MPS_OK) status = send_numbers(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(find_place(mpm, function));
+  MPSI_TRY(mpsi_domain_agree(mpm->domain, function, make_vectors(mpm, function)));
+  MPSI_TRY(send_numbers(mpm, function));
   o->start[0] = 0;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, count_rows, 0.0);
   for (int64_t k = 0; k < o->rows; k++) o->start[k + 1] += o->start[k];
-  status = agree(mpm, function, make_entries(mpm, function));
+  mps_status status = mpsi_domain_agree(mpm->domain, function, make_entries(mpm, function));
   if (status == MPS_OK) mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, fill_rows, 0.0);
   return status;
 }
@@ -264,13 +231,13 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
 static mps_status make_memory(mps_mpm *mpm, const char *function) {
   outside_of **o = &mpm->water->outside;
   if (!*o) *o = mpsi_alloc(mpm->context, 1, sizeof **o);
-  return agree(mpm, function, *o ? MPS_OK : mpsi_fail_memory(mpm->context, function, sizeof **o));
+  return mpsi_domain_agree(mpm->domain, function,
+                           *o ? MPS_OK : mpsi_fail_memory(mpm->context, function, sizeof **o));
 }
 
 mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance) {
-  mps_status status = make_memory(mpm, function);
-  if (status == MPS_OK) status = make_rows(mpm, function);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(make_memory(mpm, function));
+  MPSI_TRY(make_rows(mpm, function));
   const outside_of *o = mpm->water->outside;
   mps_linear_matrix matrix = {.all = o->all,
                               .first = o->first,
@@ -279,11 +246,9 @@ mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double to
                               .start = o->start,
                               .column = o->column,
                               .value = o->value};
-  status = mpsi_linear_hand(&mpm->base, function, &matrix);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_hand(&mpm->base, function, &matrix));
   (void)for_unknowns(mpm, set_right);
-  status = mpsi_linear_solve(&mpm->base, function, tolerance, o->right, o->solution);
-  if (status != MPS_OK) return status;
+  MPSI_TRY(mpsi_linear_solve(&mpm->base, function, tolerance, o->right, o->solution));
   mpm->water->system->iterations = mpm->linear->result.iterations;
   (void)for_unknowns(mpm, take_solution);
   return MPS_OK;

@@ -1,7 +1,6 @@
 /* outside.h - the equation of pressures that are implicit in time for a linear solver of the
  * caller. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_WATER_SOLVE_OUTSIDE_H
-#define MPSI_MPM_WATER_SOLVE_OUTSIDE_H
+#pragma once
 
 #include "mpm/water/system.h"
 
@@ -20,5 +19,3 @@ bool mpsi_pore_solved_outside(const mps_mpm *mpm);
  * at most `tolerance` is asked for. Collective. */
 mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance);
 void mpsi_pore_free_outside(mps_context *context, mpsi_pore_outside *outside);
-
-#endif
