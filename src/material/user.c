@@ -45,11 +45,15 @@ static mps_status check_frictional(mps_context *context, const char *function,
   return MPS_OK;
 }
 
+/* "user" begins the names of the caller's fields. */
+static bool is_law_name(const char *name) { return is_name(name) && strcmp(name, "user") != 0; }
+
 static mps_status check_user_law(mps_context *context, const char *function,
                                  const mps_material_user_def *def) {
-  if (!is_name(def->name))
+  if (!is_law_name(def->name))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
+                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters, "
+                     "and not user, of the caller's own fields",
                      def->name);
   const mps_status named = check_history(context, function, def);
   return named == MPS_OK ? check_frictional(context, function, def) : named;
@@ -61,10 +65,9 @@ static mps_status check_moduli(mps_context *context, const char *function,
   const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
   if (isnan(least) || isnan(def->wave_modulus) || def->wave_modulus >= least * (1.0 - 1e-12))
     return MPS_OK;
-  return mpsi_fail(
-      context, function, MPS_ERROR_ARGUMENT,
-      "wave_modulus is %g Pa, must be NaN or at least K + 4G/3 of its moduli, %g Pa",
-      def->wave_modulus, least);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "wave_modulus is %g Pa, must be NaN or at least K + 4G/3 of its moduli, %g Pa",
+                   def->wave_modulus, least);
 }
 
 mps_status mpsi_define_user(mps_context *context, const char *function, const void *values,

@@ -69,13 +69,9 @@ bool api_field_acts(mps_particles *set) {
   static const char *const names[] = {"external_force", "body_acceleration", "damping"};
   mps_view view;
   for (int k = 0; k < API_COUNT(names); k++) {
-    bool there = false;
-    for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-      mps_particles_field_info info;
-      there = there || (mps_particles_get_field_info(set, f, &info) == MPS_OK &&
-                        strcmp(info.name, names[k]) == 0);
-    }
-    if (!there || mps_particles_view(set, names[k], &view) != MPS_OK) continue;
+    if (!mps_particles_has_field(set, names[k]) ||
+        mps_particles_view(set, names[k], &view) != MPS_OK)
+      continue;
     for (int64_t i = 0; i < view.shape[0]; i++)
       for (int64_t c = 0; c < view.shape[1]; c++)
         if (*mps_view_f64(&view, i, c) != 0.0) return true;

@@ -23,8 +23,10 @@ typedef struct known_field {
   int components, width; /* in 2D: in the set, in the file */
   int column;
 } known_field;
-static const known_field known[] = {
-    {"displacement", 2, 3, 1}, {"pressure", 1, 0, 3}, {"four", 4, 4, 4}, {"pair", 2, 3, 8}};
+static const known_field known[] = {{"displacement", 2, 3, 1},
+                                    {"pressure", 1, 0, 3},
+                                    {"user.four", 4, 4, 4},
+                                    {"user.pair", 2, 3, 8}};
 #define KNOWN ((int)(sizeof known / sizeof *known))
 
 static void fill(mps_particles *set, double time) {
@@ -293,7 +295,7 @@ TEST(in_three_dimensions_nothing_is_padded) {
   const int64_t id[] = {0, 1, 2, 3};
   check_values(file, "VTKHDF/Points", 20, 3, 3, 0, 4, id, 3.0);
   check_values(file, "VTKHDF/PointData/displacement", 1, 3, 3, 0, 4, id, 3.0);
-  check_values(file, "VTKHDF/PointData/pair", 8, 2, 2, 0, 4, id, 3.0);
+  check_values(file, "VTKHDF/PointData/user.pair", 8, 2, 2, 0, 4, id, 3.0);
   H5Fclose(file);
 }
 

@@ -151,8 +151,8 @@ TEST(refused_allocations_change_nothing) {
   OK(mps_mpm_step(x.s.mpm, 120));
   OK(mps_mpm_step(twin.s.mpm, 120));
   assert_true(mps_particles_epoch(x.s.particles) != epoch);
-  OK(mps_particles_add_field(x.s.particles, "own", 2)); /* larger than it was */
-  OK(mps_particles_add_field(twin.s.particles, "own", 2));
+  OK(mps_particles_add_field(x.s.particles, "user.own", 2)); /* larger than it was */
+  OK(mps_particles_add_field(twin.s.particles, "user.own", 2));
   for (int what = 0; what < 2; what++) {
     mps_status status = MPS_ERROR_MEMORY;
     for (int64_t k = 1; status != MPS_OK; k++) {
