@@ -361,6 +361,21 @@ static int occurrences(const char *path, const char *text, const char *end) {
 /* After each frame the text beside the series is whole; a frame at the same time is replaced, a
  * shorter one too, and one without particles is left out. tests/vtk compares what it names with the
  * values. */
+TEST(the_fields_of_a_recorder_stay) {
+  static const char path[] = TEST_TMP "/recorder-stay.vtkhdf";
+  const char *const fields[] = {"pressure"};
+  scoped_particles *set = make_set(4);
+  DEF(recorder, def, .path = path, .fields = fields, .field_count = 1);
+  mps_recorder *recorder = NULL;
+  OK(mps_recorder_create(context, set, &def, &recorder));
+  FAILS(mps_particles_remove_field(set, "pressure"), MPS_ERROR_STATE, "is used by a recorder");
+  OK(mps_particles_remove_field(set, "user.four"));
+  OK(mps_particles_remove_field(set, "displacement"));
+  OK(mps_recorder_write(recorder, 0.0));
+  OK(mps_recorder_close(&recorder));
+  OK(mps_particles_remove_field(set, "pressure"));
+}
+
 TEST(the_text_beside_it_is_whole_after_each_frame) {
   static const char text[] = TEST_TMP "/recorder-text.xdmf",
                     end[] = "</Grid>\n</Domain>\n</Xdmf>\n";

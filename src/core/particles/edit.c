@@ -251,7 +251,7 @@ mps_status mps_particles_remove_field(mps_particles *particles, const char *name
   if (!name) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mps_status status = mpsi_particles_writable(particles, __func__);
   if (status != MPS_OK) return status;
-  const mpsi_field *field = mpsi_field_find(particles, name);
+  mpsi_field *field = mpsi_field_find(particles, name);
   if (!field) return mpsi_field_fail_unknown(particles, __func__, name);
   const mpsi_holder *user = holder_that_uses(particles, name);
   if (strcmp(name, "id") == 0 || strcmp(name, "position") == 0)

@@ -190,18 +190,15 @@ mps_status mpsi_particles_add_field(mps_particles *particles, const char *functi
 
 /* ---- removing -------------------------------------------------------------------------------- */
 
-void mpsi_field_drop(mps_particles *p, const mpsi_field *field) {
-  mpsi_field *gone = NULL;
-  for (int32_t f = 0, kept = 0; f < p->field_count; f++)
-    if (p->fields[f] == field)
-      gone = p->fields[f];
-    else
-      p->fields[kept++] = p->fields[f];
-  p->field_count--;
-  p->columns -= gone->components;
-  mpsi_free(p->context, gone->block);
-  mpsi_free(p->context, gone->former);
-  mpsi_free(p->context, gone);
+void mpsi_field_drop(mps_particles *p, mpsi_field *field) {
+  int32_t kept = 0;
+  for (int32_t f = 0; f < p->field_count; f++)
+    if (p->fields[f] != field) p->fields[kept++] = p->fields[f];
+  p->field_count = kept;
+  p->columns -= field->components;
+  mpsi_free(p->context, field->block);
+  mpsi_free(p->context, field->former);
+  mpsi_free(p->context, field);
 }
 
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {

@@ -103,7 +103,7 @@ mps_status mpsi_field_look_up(const mps_particles *particles, const char *functi
 mps_status mpsi_field_fail_unknown(const mps_particles *particles, const char *function,
                                    const char *name);
 /* The field is one of the set's. */
-void mpsi_field_drop(mps_particles *particles, const mpsi_field *field);
+void mpsi_field_drop(mps_particles *particles, mpsi_field *field);
 /* Address of a column of 8-byte items. */
 static inline void *mpsi_field_column(const mpsi_field *field, int32_t component) {
   return (char *)field->data + (size_t)component * (size_t)field->stride * 8;
