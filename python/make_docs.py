@@ -114,6 +114,8 @@ library: Any
 EXTRA = {
     "context": ["def __init__(self, {keywords}) -> None: ..."],
     "particles": ["def __len__(self) -> int: ...", "def __getitem__(self, name: str) -> Field: ...",
+                  "def __setitem__(self, name: str, values: ArrayLike) -> None: ...",
+                  "def __delitem__(self, name: str) -> None: ...", "def __contains__(self, name: str) -> bool: ...",
                   "def edit(self, name: str) -> Edit: ..."],
 }
 OWN = {"particles": ("particles_edit", "particles_commit", "particles_abandon", "particles_view")}

@@ -155,13 +155,14 @@ static mps_status look_at_section(const penetrometer *p, pen_run *r, mps_particl
   int64_t *rows = mpm_rows_by_id(set);
   mps_status status = rows ? mps_particles_add_field(set, "displacement", 0) : MPS_ERROR_MEMORY;
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(set, "start", &start);
+  if (status == MPS_OK) status = mps_particles_view(set, "user.start", &start);
   if (status == MPS_OK) status = mps_particles_edit(set, "displacement", &moved);
   if (status != MPS_OK) {
     free(rows);
     return status;
   }
-  const bool plastic = mps_particles_view(set, "plastic_strain", &strain) == MPS_OK;
+  const bool plastic = mps_particles_has_field(set, "plastic_strain") &&
+                       mps_particles_view(set, "plastic_strain", &strain) == MPS_OK;
   const double thick = mps_particles_spacing(set);
   for (int64_t i = 0; i < x.shape[0]; i++) {
     const int64_t k = rows[i];
@@ -179,7 +180,8 @@ static mps_status look_at_section(const penetrometer *p, pen_run *r, mps_particl
                     plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
   }
   free(rows);
-  return mps_particles_commit(set, &moved);
+  status = mps_particles_commit(set, &moved);
+  return status == MPS_OK ? mps_particles_remove_field(set, "user.start") : status;
 }
 
 static mps_status take_section(const penetrometer *p, pen_run *r) {

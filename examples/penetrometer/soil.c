@@ -261,14 +261,12 @@ static mps_status fill(penetrometer *p, pen_run *r, const double *lower) {
 /* The places at the start, for the displacements at the end. */
 static mps_status keep_places(pen_run *r) {
   mps_view x;
-  mps_edit start;
   const int dim = pen_up(r) + 1;
-  mps_status status = mps_particles_add_field(r->m.particles, "start", dim);
+  mps_status status = mps_particles_add_field(r->m.particles, "user.start", dim);
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_edit(r->m.particles, "start", &start);
-  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_edit_f64(&start, k, c) = *mps_view_f64(&x, k, c);
-  if (status == MPS_OK) status = mps_particles_commit(r->m.particles, &start);
+  for (int c = 0; status == MPS_OK && c < dim; c++)
+    status = mps_particles_set_array(r->m.particles, "user.start", c, mps_view_f64(&x, 0, c),
+                                     x.shape[0]);
   return status;
 }
 

@@ -3,18 +3,15 @@
 #include "bisection.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#define WIDENINGS 40  /* tries to move a first bound outwards */
-enum { COLUMNS = 6 }; /* of the initial state */
+#define WIDENINGS 40 /* tries to move a first bound outwards */
 
 typedef struct search {
   mps_dynamics *dynamics;
   const bisection_def *def;
   bisection *result;
-  double start;    /* s */
-  double *initial; /* displacement, rotation, velocity, spin of each particle */
+  double start;           /* s */
+  mps_particles *initial; /* the set as it was */
   char *why;
 } search;
 
@@ -25,28 +22,22 @@ static mps_status agree(const search *s, mps_status status) {
   return s->def->domain ? mps_domain_agree(s->def->domain, status) : status;
 }
 
-/* Copies the initial state from the fields, or back to them. */
-static mps_status copy_state(const search *s, bool back) {
+/* Particles of dynamics keep their order. */
+static mps_status put_state(const search *s) {
   static const char *const names[] = {"displacement", "rotation", "velocity", "spin"};
   mps_particles *set = mps_dynamics_particles(s->dynamics);
-  const size_t column = (size_t)mps_particles_count(set) * sizeof(double);
-  char *kept = (char *)s->initial;
-  for (int f = 0; f < 4; f++) {
-    mps_edit field;
-    mps_status status = mps_particles_edit(set, names[f], &field);
-    if (status != MPS_OK) return status;
-    for (int64_t c = 0; c < field.view.shape[1]; c++, kept += column) {
-      void *now = mps_edit_f64(&field, 0, c);
-      memcpy(back ? now : kept, back ? kept : now, column);
-    }
-    status = back ? mps_particles_commit(set, &field) : mps_particles_abandon(set, &field);
-    if (status != MPS_OK) return status;
+  mps_status status = MPS_OK;
+  for (int f = 0; f < 4 && status == MPS_OK; f++) {
+    mps_view kept;
+    status = mps_particles_view(s->initial, names[f], &kept);
+    for (int32_t c = 0; status == MPS_OK && c < (int32_t)kept.shape[1]; c++)
+      status = mps_particles_set_array(set, names[f], c, mps_view_f64(&kept, 0, c), kept.shape[0]);
   }
-  return MPS_OK;
+  return status;
 }
 
 static mps_status go_back(const search *s) {
-  const mps_status status = agree(s, copy_state(s, true));
+  const mps_status status = agree(s, put_state(s));
   return status == MPS_OK ? mps_dynamics_restart(s->dynamics, s->start) : status;
 }
 
@@ -151,19 +142,17 @@ mps_status bisection_find(mps_dynamics *dynamics, const bisection_def *def, bise
               .result = &result,
               .start = mps_dynamics_time(dynamics),
               .why = why};
-  const int64_t n = mps_particles_count(mps_dynamics_particles(dynamics));
   double lower, upper;
   why[0] = '\0';
-  s.initial = malloc((size_t)n * COLUMNS * sizeof *s.initial);
-  mps_status status = agree(&s, s.initial ? copy_state(&s, false) : MPS_ERROR_MEMORY);
+  mps_status status = agree(&s, mps_particles_copy(mps_dynamics_particles(dynamics), &s.initial));
   if (status != MPS_OK) {
-    free(s.initial);
+    mps_particles_destroy(&s.initial);
     return status;
   }
   status = choose_bounds(&s, &lower, &upper);
   if (status == MPS_OK) status = bisect(&s, lower, upper);
   const mps_status end = go_back(&s);
-  free(s.initial);
+  mps_particles_destroy(&s.initial);
   if (status == MPS_OK && end == MPS_OK) *out = result;
   return status == MPS_OK ? end : status;
 }

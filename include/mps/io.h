@@ -97,8 +97,9 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const
 
 /** Restores the fields of a checkpoint, bit for bit, in a set that has the same particles
  *  (dimension, spacing, number, ids; their order may differ), adding fields that the set lacks;
- *  fields that the file lacks keep their values. `info` is as for mps_checkpoint_info. Order and
- *  epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has
+ *  fields that the file lacks keep their values. A caller's field that libmps 0.3 wrote as NAME
+ *  becomes "user.NAME", here and in mps_solver_restore. `info` is as for mps_checkpoint_info. Order
+ * and epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has
  *  changed.
  *
  *  MPS_ERROR_IO: cannot be read. MPS_ERROR_FORMAT: not a checkpoint, cut short or damaged.

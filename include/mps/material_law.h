@@ -78,7 +78,7 @@ typedef struct mps_material_user_def {
   mps_material_fn update;     /* no default */
   void *user;                 /* passed to `update` and `moduli` */
   mps_release_fn release;     /* of `user`, once no solver has the law */
-  const char *name;           /* copied, at most 47 characters; default "user" */
+  const char *name;           /* copied, at most 47 characters, not "user"; default "law" */
   const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
                                  set the column is the field "<name>.<history>" */
   const double *history_initial; /* values before the first step; NULL: zero */

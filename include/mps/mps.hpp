@@ -34,6 +34,7 @@
 
 #include <atomic>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -414,6 +415,34 @@ void run(const handle<T> &solver,
   const mps_status status = f(solver.get(), t_end, every, callback, &state);
   if (state.exception) std::rethrow_exception(state.exception);
   check(solver.error_context(), status);
+}
+
+/** A set with the same particles, independent of `set`: mps_particles_copy. */
+inline particles copy(const particles &set) {
+  mps_particles *made = nullptr;
+  check(set.error_context(), mps_particles_copy(set.get(), &made));
+  return particles(made, set.error_context());
+}
+
+/** Sets component `component` of a field (-1: all, particle by particle) from contiguous numbers,
+ * as a std::vector<double> has: mps_particles_set_array. Throws MPS_ERROR_ARGUMENT where they are
+ * not as many as the field has. */
+template <class Values>
+void set_array(const particles &set, const char *name, const Values &values,
+               int32_t component = -1) {
+  const auto count = mps_particles_count(set.get());
+  int64_t columns = 1;
+  if (component < 0) {
+    mps_view view = {};
+    check(set.error_context(), mps_particles_view(set.get(), name, &view));
+    columns = view.shape[1];
+  }
+  if (static_cast<int64_t>(std::size(values)) != count * columns)
+    throw error(MPS_ERROR_ARGUMENT, "values of '" + std::string(name) + "' are " +
+                                        std::to_string(std::size(values)) + ", must be " +
+                                        std::to_string(count * columns));
+  check(set.error_context(),
+        mps_particles_set_array(set.get(), name, component, std::data(values), count));
 }
 
 /** A field for reading: v(i, c) is component c of the particle at present index i. `V` is double or

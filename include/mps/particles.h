@@ -36,6 +36,13 @@ static inline mps_particles_def mps_particles_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
                                                       const mps_particles_def *def,
                                                       mps_particles **out);
+/** Creates a set with the same particles, of the same context: ids, order, all fields, spacing,
+ *  origin, and the lattice sites that fills have occupied. It is independent of the first: no
+ *  solver, no recorder and no domain has it. Of a set on several ranks it has the particles of this
+ *  rank; not collective. Allowed in callbacks of a solver. MPS_ERROR_ARGUMENT: NULL;
+ *  MPS_ERROR_STATE: a field is being edited; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_particles_copy(const mps_particles *particles,
+                                                    mps_particles **out);
 /** Releases the caller's reference and nulls; accepts NULL. A solver that uses the set keeps it
  *  alive. */
 MPS_API void mps_particles_destroy(mps_particles **particles);
@@ -113,7 +120,7 @@ MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, 
 
 /* ---- fields -------------------------------------------------------------------------------- */
 
-/** Description of a field. Strings live as long as the particle set. */
+/** Description of a field. Strings live as long as the field. */
 typedef struct mps_particles_field_info {
   const char *name;
   const char *unit;
@@ -124,13 +131,24 @@ typedef struct mps_particles_field_info {
 } mps_particles_field_info;
 
 /** Adds a field, zero filled. A name of the library's field table (docs/fields.md) gets its
- *  documented type; there `components` must be 0 or the table's. Any other name
- *  ([A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a user field of `components` float64
- *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field
- *  that exists with the same shape does nothing. Keeps the epoch. MPS_ERROR_ARGUMENT: `name` is no
- *  field name; MPS_ERROR_FIELD: the field has another number of components; MPS_ERROR_MEMORY. */
+ *  documented type; there `components` must be 0 or the table's. "user.NAME" (NAME
+ *  [A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a field of the caller's own, of
+ *  `components` float64 (1..16), whose name no later version takes. Other names are refused. The
+ *  history of a law, "<law>.<column>", is added by the solver that the law is given to. Adding a
+ *  field that exists with the same shape does nothing. Keeps the epoch. On several ranks all add
+ *  the same fields. MPS_ERROR_ARGUMENT: no such name (the message says what to write);
+ *  MPS_ERROR_FIELD: the field has another number of components; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
+/** Removes a field and its memory. The epoch changes: views end. On several ranks all remove the
+ *  same fields before the next step, which is else refused. MPS_ERROR_FIELD: no such field.
+ * MPS_ERROR_STATE: `id` or `position`, which every set has; while a solver holds the set any field
+ * but the caller's own ("user.NAME"), as the solver may read it; a field that a recorder writes; a
+ * field is being edited, or a solver's callback is running. */
+MPS_API MPS_NODISCARD mps_status mps_particles_remove_field(mps_particles *particles,
+                                                            const char *name);
+/** 1 where the set has a field of that name, else 0; 0 for NULL. */
+MPS_API int32_t mps_particles_has_field(const mps_particles *particles, const char *name);
 /** Borrows a field for reading (MPS_VIEW_READONLY), until the epoch changes. MPS_ERROR_FIELD when
  *  the set has none of that name (the message lists the names it has). */
 MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
@@ -158,6 +176,19 @@ MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles,
  *  of int64; MPS_ERROR_STATE: the field is being edited, or a solver's callback is running. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
                                                    int32_t component, double value);
+/** Sets a field, or one component of it, from an array, adding a field of the table that the set
+ *  lacks; edit and commit in one: on an error nothing has changed. `count` is the number of
+ *  particles, value i that of the particle at present index i. `component` 0 and above: `values`
+ *  has `count` numbers, as a column of a view has; -1: all components, values[i * components + c].
+ *  All are in the unit and range of the field; of a field of int64 whole numbers within 2^53. They
+ *  are copied. On several ranks each gives those of its own particles; not collective.
+ *  MPS_ERROR_ARGUMENT: `component`, `count` or one of `values`, whose particle the message names,
+ *  or a value that the solver refuses that holds the set; MPS_ERROR_FIELD: no such field, or one
+ *  that only the library writes; MPS_ERROR_STATE: the field is being edited, or a solver's callback
+ *  is running; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_array(mps_particles *particles, const char *name,
+                                                         int32_t component, const double *values,
+                                                         int64_t count);
 /** Number of fields, with `id` and `position`. */
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
 /** Describes field `index` (0 to the count - 1, in order of addition). MPS_ERROR_ARGUMENT: `index`

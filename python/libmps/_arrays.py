@@ -28,7 +28,7 @@ class _Loan:
         if self.ended is None:
             if (self.owner.pointer is None or
                     library.mps_particles_epoch(self.owner.pointer) != self.epoch):
-                self.ended = "particles were added, removed or sorted: take the field again"
+                self.ended = "particles were added, removed or sorted, or a field was removed: take the field again"
             elif self.steps is not None and self.steps != self._steps():
                 self.ended = "a solver has stepped since: take the field again; numpy.array(field) is a copy that stays"
         return self.ended

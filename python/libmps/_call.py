@@ -259,7 +259,7 @@ class Call:
             shown = "" if formula.isdigit() else f" ({formula})"
             if given < wanted or (constant and given > wanted and (formula.isdigit() or formula == "dim")):
                 raise ValueError(f"{owner}: {name!r} has {given} values, and must have {wanted}{shown}")
-            if len(shape) < 2 or given == 0:
+            if len(shape) < 2 or given == 0 or wanted == 0:  # 0: C says why
                 continue
             columns = _shapes.width(formula, words)
             if shape[-1] != (columns or given):
@@ -553,11 +553,22 @@ class _Words:
 
     def _components(self):
         def components(name):
-            view = ffi.new("mps_view *")
-            status = library.mps_particles_view(self._set(), os.fspath(name).encode(), view)
-            return 0 if status else view.shape[1]  # the call itself says that there is none
+            view, text = ffi.new("mps_view *"), os.fspath(name).encode()
+            if library.mps_particles_view(self._set(), text, view):
+                self._look_up(text, view)
+            return view.shape[1]  # 0: the call itself says that there is none
 
         return self.numbers.get("components", components)  # a number where the call has one of that name
+
+    def _look_up(self, name, view):
+        """The view of a field that the call would add: an empty set has its shape."""
+        made, definition = ffi.new("mps_particles *[1]"), ffi.new("mps_particles_def *")
+        _set_defaults(definition, ffi.typeof("mps_particles_def"))
+        definition.dim, definition.spacing = self._dim(), 1.0
+        if library.mps_particles_create(self.owner.context.pointer, definition, made) == 0:
+            if library.mps_particles_add_field(made[0], name, 0) == 0:
+                library.mps_particles_view(made[0], name, view)
+            library.mps_particles_destroy(made)
 
     def _nodes(self):
         return lambda number: self.owner.lengths.get(number, 1)

@@ -200,7 +200,8 @@ class Context(Object):
 
 
 class Particles(Object):
-    """mps_particles: set["velocity"] reads a field, set.edit("velocity") writes it."""
+    """mps_particles: set["velocity"] reads a field, set.edit("velocity") writes it, set["velocity"] = values sets all of it,
+    "velocity" in set asks for it, del set["user.dose"] removes it."""
 
     def __len__(self):
         return self.count()
@@ -209,6 +210,16 @@ class Particles(Object):
         view = ffi.new("mps_view *")
         self._invoke("particles_view", (name, view), {})
         return lend(self, view[0], False)
+
+    def __setitem__(self, name, values):
+        """mps_particles_set_array of all components, from (particles, components) values, of one component (particles,)."""
+        self.set_array(name, -1, values, len(values))
+
+    def __delitem__(self, name):
+        self.remove_field(name)
+
+    def __contains__(self, name):
+        return self.has_field(name) == 1
 
     def __iter__(self):
         raise TypeError("a set of particles is not iterated: set['position'] has a row for each of them")

@@ -48,6 +48,7 @@ FUNCTIONS = {
     "mps_domain_get_field": {"ids": "count", "values": "count * components(name)"},
     "mps_material_point_drive": {"gradient": "9"},
     "mps_particles_set_table": {"positions": "dim * count", "values": "components * count"},
+    "mps_particles_set_array": {"values": "count if component >= 0 else count * components(name)"},
     "mps_particles_set_profile": {"depth": "count", "value": "count"},
     "mps_material_point_control": {"gradient": "9", "target": "6", "found": "9"},
     "mps_dynamics_set_material": {"ids": "count"},

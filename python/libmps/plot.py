@@ -35,10 +35,6 @@ if TYPE_CHECKING:  # of the stubs: what the package makes of the headers has no 
 AXES = "xyz"
 
 
-def _has(particles, name):
-    return any(found == name for found, _, _ in _show.fields(particles))
-
-
 def _values(particles, field):
     """(values, label) of what the particles are coloured by."""
     if isinstance(field, (str, tuple)):
@@ -82,12 +78,12 @@ def _shapes(particles, which, axes):
     """The edges (2 x 2) of each particle's square, as deformed."""
     count, dim = len(which), particles.dim()
     edges = numpy.tile(numpy.eye(2), (count, 1, 1))
-    if _has(particles, "deformation_gradient"):
+    if "deformation_gradient" in particles:
         gradient = numpy.array(particles["deformation_gradient"])[which]
         deformed = gradient.any(axis=1)  # all zero: not deformed
         square = gradient[:, :dim * dim].reshape(count, dim, dim)[:, axes][:, :, axes]
         edges[deformed] = square[deformed]
-    elif _has(particles, "volume_ratio"):
+    elif "volume_ratio" in particles:
         ratio = numpy.array(particles["volume_ratio"])[which]
         edges *= (numpy.where(ratio > 0, ratio, 1.0) ** (1.0 / dim))[:, None, None]
     return edges * particles.spacing()

@@ -354,6 +354,18 @@ static mps_status stage_field(reading *r, hid_t group, hsize_t index) {
   return status;
 }
 
+/* Callers' fields have the names of today. */
+static mps_status rename_own(reading *r) {
+  char name[NAME_SIZE];
+  for (int32_t k = 0; k < r->values.fields.count; k++) {
+    mpsi_value *field = &r->values.fields.item[k];
+    if (!mpsi_field_own_name(field->name, name, sizeof name)) continue;
+    if (mpsi_values_find(&r->values.fields, name)) return mpsi_checkpoint_malformed(r, name);
+    memcpy(field->name, name, sizeof name);
+  }
+  return MPS_OK;
+}
+
 static mps_status stage_fields(reading *r) {
   H5G_info_t info;
   const hid_t group = H5Gopen2(r->file.id, "fields", H5P_DEFAULT);
@@ -364,7 +376,7 @@ static mps_status stage_fields(reading *r) {
     status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof(mpsi_value));
   for (hsize_t k = 0; status == MPS_OK && k < info.nlinks; k++) status = stage_field(r, group, k);
   if (group >= 0) H5Gclose(group);
-  return status;
+  return status == MPS_OK ? rename_own(r) : status;
 }
 
 /* Opens the file, and reads the header, and the rest if it is for a set. */
@@ -428,7 +440,8 @@ static mps_status match_shapes(const reading *r, mps_particles *trial) {
     const bool integer = field->type == MPSI_STATE_I64;
     mps_particles_field_info info;
     if (!find_info(r->particles, field->name, &info)) {
-      const mps_status status = mps_particles_add_field(trial, field->name, field->columns);
+      const mps_status status =
+          mpsi_particles_add_field(trial, r->function, field->name, field->columns);
       if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, r->function, 1);
       info.components = 0;
       if (status == MPS_OK && !find_info(trial, field->name, &info)) return MPS_ERROR_INTERNAL;
@@ -460,7 +473,8 @@ static mps_status add_missing(const reading *r) {
   const int32_t before = mps_particles_field_count(r->particles);
   for (int32_t k = 0; k < r->values.fields.count; k++) {
     const mpsi_value *field = &r->values.fields.item[k];
-    if (mps_particles_add_field(r->particles, field->name, field->columns) == MPS_OK) continue;
+    if (mpsi_particles_add_field(r->particles, r->function, field->name, field->columns) == MPS_OK)
+      continue;
     mpsi_particles_drop_fields(r->particles, before);
     return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
                      "could not allocate field '%s' of %lld particles", field->name,

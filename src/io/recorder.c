@@ -252,6 +252,8 @@ static bool already_chosen(const mps_recorder *recorder, const char *name) {
   return found;
 }
 
+static bool uses(const void *self, const char *field) { return already_chosen(self, field); }
+
 /* Chooses id, and the fields of the list or all; finds the greatest width. */
 static mps_status choose_fields(mps_recorder *recorder, const mps_recorder_def *def,
                                 int32_t *widest) {
@@ -396,7 +398,8 @@ mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
   if (!recorder) return mpsi_fail_memory(context, __func__, sizeof *recorder);
   recorder->context = mpsi_context_retain(context);
   recorder->particles = particles;
-  recorder->holder = (mpsi_holder){.name = "a recorder", .self = recorder, .kind = MPSI_USE_LOOK};
+  recorder->holder =
+      (mpsi_holder){.name = "a recorder", .self = recorder, .kind = MPSI_USE_LOOK, .uses = uses};
   (void)mpsi_particles_hold(particles, __func__, &recorder->holder); /* checked above */
   recorder->compression = def.compression;
   const int64_t count = mps_particles_count(particles);

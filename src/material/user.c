@@ -45,11 +45,15 @@ static mps_status check_frictional(mps_context *context, const char *function,
   return MPS_OK;
 }
 
+/* "user" begins the names of the caller's fields. */
+static bool is_law_name(const char *name) { return is_name(name) && strcmp(name, "user") != 0; }
+
 static mps_status check_user_law(mps_context *context, const char *function,
                                  const mps_material_user_def *def) {
-  if (!is_name(def->name))
+  if (!is_law_name(def->name))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
+                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters, "
+                     "and not user, of the caller's own fields",
                      def->name);
   MPSI_TRY(check_history(context, function, def));
   return check_frictional(context, function, def);

@@ -187,7 +187,7 @@ int api_alive(const api *a, api_kind kind);
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
 /* Stresses have been written, which some laws replace: energies of WLS-MPM need not add up. */
 void api_loosen(api *a);
-/* A field of motion has been written, of any set. */
+/* A field of motion, or moduli, have been written, of any set. */
 void api_rewrite(api *a, const char *field);
 void api_forget(api *a, api_object *object);
 /* Calls the destroy function of the kind. */

@@ -117,6 +117,8 @@ void api_loosen(api *a) {
 void api_rewrite(api *a, const char *field) {
   static const char *const motion[] = {"displacement",     "velocity",     "rotation",     "spin",
                                        "displacement_old", "rotation_old", "restoring_old"};
+  const bool moduli = strcmp(field, "young") == 0 || strcmp(field, "poisson") == 0;
+  for (int k = 0; k < API_SLOTS && moduli; k++) a->objects[API_ELASTIC][k].loose = true;
   for (int f = 0; f < API_COUNT(motion); f++)
     for (int k = 0; k < API_SLOTS && strcmp(field, motion[f]) == 0; k++)
       a->objects[API_DYNAMICS][k].rewritten = true;

@@ -276,6 +276,7 @@ static void elastic_solve(api *a) {
   api_begin(a, "mps_elastic_solve");
   api_object *o = api_any(a, API_ELASTIC);
   api_run_solver(a, API_ELASTIC, o);
+  a->change = API_CHANGES_ORDER; /* edited moduli are read before the solution */
   (void)api_end(a, mps_elastic_solve(o->handle));
 }
 

@@ -140,9 +140,31 @@ static void particles_add_field(api *a) {
   mps_particles *set = api_any(a, API_SET)->handle;
   const char *name = api_field(a, set);
   int32_t components = 0;
-  if (strcmp(name, "my_field") == 0) components = (int32_t)api_whole(a, "components", 1, 16);
+  if (strcmp(name, "user.my_field") == 0) components = (int32_t)api_whole(a, "components", 1, 16);
   if (a->mood == API_ABSURD && api_chance(a, 20)) components = -1, api_wrong(a, "components");
   (void)api_end(a, mps_particles_add_field(set, api_null(a, "name") ? NULL : name, components));
+}
+
+static void particles_has_field(api *a) {
+  api_begin(a, "mps_particles_has_field");
+  const mps_particles *set = api_any(a, API_SET)->handle;
+  const char *name = api_field(a, (mps_particles *)set);
+  const int32_t there = mps_particles_has_field(set, api_null(a, "name") ? NULL : name);
+  if (there != 0 && (there != 1 || a->wrong > 0)) api_broken(a, "answers %d", (int)there);
+  api_end_query(a);
+}
+
+static void particles_remove_field(api *a) {
+  api_begin(a, "mps_particles_remove_field");
+  mps_particles *set = api_any(a, API_SET)->handle;
+  const char *name = api_field(a, set);
+  const uint64_t epoch = mps_particles_epoch(set);
+  const bool none = api_null(a, "name");
+  if (!a->latest && api_chance(a, 60)) name = "user.my_field", api_say(a, "or \"%s\", ", name);
+  const mps_status status = mps_particles_remove_field(set, none ? NULL : name);
+  if (status == MPS_OK && mps_particles_epoch(set) == epoch) api_broken(a, "keeps the epoch");
+  if (status == MPS_OK) a->wrong = 0;
+  (void)api_end(a, status);
 }
 
 static void particles_view(api *a) {
@@ -189,6 +211,42 @@ static void particles_set(api *a) {
   api_rewrite(a, name);
   if (isfinite(value)) a->wrong = before; /* each field has a range of its own */
   (void)api_end(a, mps_particles_set(set, api_null(a, "name") ? NULL : name, component, value));
+}
+
+static void particles_set_array(api *a) {
+  api_begin(a, "mps_particles_set_array");
+  mps_particles *set = api_any(a, API_SET)->handle;
+  const char *name = api_field(a, set);
+  const int32_t component = (int32_t)api_whole(a, "component", -1, api_chance(a, 80) ? 0 : 15);
+  if (component >= 0 && component < 16) a->wrong -= a->wrong > 0; /* a field may have so many */
+  const int before = a->wrong;
+  int64_t count = mps_particles_count(set);
+  const double value = typical(a, name);
+  double *values = malloc((size_t)(16 * count + 1) * sizeof *values);
+  for (int64_t k = 0; values && k < 16 * count; k++) values[k] = k == 0 ? value : floor(value);
+  const bool position = strcmp(name, "position") == 0;
+  if (isfinite(value) || count == 0) a->wrong = before; /* each field has a range of its own */
+  if (a->mood == API_ABSURD && api_chance(a, 20)) count += 1, api_wrong(a, "count");
+  const bool none = count > 0 && api_null(a, "values");
+  if (strcmp(name, "stress") == 0) api_loosen(a);
+  api_rewrite(a, name);
+  if (!position || component != -1) /* all particles in one place */
+    (void)api_end(a, mps_particles_set_array(set, api_null(a, "name") ? NULL : name, component,
+                                             none ? NULL : values, count));
+  else
+    (void)api_end(a, mps_particles_set_array(set, NULL, component, none ? NULL : values, count));
+  free(values);
+}
+
+static void particles_copy(api *a) {
+  api_begin(a, "mps_particles_copy");
+  mps_particles *made = NULL;
+  const mps_particles *set = api_any(a, API_SET)->handle;
+  const mps_status status = mps_particles_copy(set, api_null(a, "out") ? NULL : &made);
+  if (status == MPS_OK && (mps_particles_count(made) != mps_particles_count(set) ||
+                           mps_particles_field_count(made) != mps_particles_field_count(set)))
+    api_broken(a, "copies other numbers");
+  (void)api_end_made(a, status, API_SET, made, NULL);
 }
 
 static void particles_field_sized(api *a) {
@@ -437,11 +495,15 @@ static const api_call calls[] = {
     {"mps_particles_fill_where", 3, API_SET, particles_fill_where},
     {"mps_particles_remove", 5, API_SET, particles_remove},
     {"mps_particles_add_field", 4, API_SET, particles_add_field},
+    {"mps_particles_has_field", 1, API_SET, particles_has_field},
+    {"mps_particles_remove_field", 2, API_SET, particles_remove_field},
     {"mps_particles_view", 3, API_SET, particles_view},
     {"mps_particles_edit", 6, API_SET, particles_edit},
     {"mps_particles_commit", 10, API_SET, particles_commit},
     {"mps_particles_abandon", 4, API_SET, particles_abandon},
     {"mps_particles_set", 8, API_SET, particles_set},
+    {"mps_particles_set_array", 4, API_SET, particles_set_array},
+    {"mps_particles_copy", 1, API_SET, particles_copy},
     {"mps_particles_field_count", 1, API_SET, query_particles_field_count},
     {"mps_particles_get_field_info_sized", 2, API_SET, particles_field_sized},
     {"mps_particles_select_box", 3, API_SET, particles_select_box},

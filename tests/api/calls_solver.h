@@ -54,7 +54,7 @@ typedef struct api_state {
 } api_state;
 void api_read(api *a, api_kind kind, api_object *o, mps_particles *set, api_state *state);
 /* Says what differs, but for what a rollback leaves as it is. */
-void api_same(api *a, const api_state *x, const api_state *y, const char *when);
+void api_same(api *a, const api_state *x, const api_state *y, const char *but, const char *when);
 
 #define API_SOLVER(S, KIND)                                                                        \
   API_DESTROY(S##_destroy, KIND)                                                                   \
@@ -238,6 +238,8 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     api_read(a, KIND, o, mps_##S##_particles(s), &begin);                                          \
     const int64_t count = 1 + (int64_t)api_below(a, 3);                                            \
     bool whole = false;                                                                            \
+    /* edited moduli are read by the first step, which a rollback does not make undone */          \
+    const char *but = KIND == API_ELASTIC && o->loose ? "energies" : NULL;                         \
     for (int pass = 0; pass < 3; pass++) { /* the first goes back at once */                       \
       if (pass > 0) {                                                                              \
         api_begin(a, "mps_" #S "_step");                                                           \
@@ -247,7 +249,8 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
         api_read(a, KIND, o, mps_##S##_particles(s), pass == 1 ? &first : &second);                \
         if (pass == 1) whole = stepped;                                                            \
         if (pass == 2 && stepped != whole) api_broken(a, "fails in one of two passes");            \
-        if (pass == 2 && stepped) api_same(a, &first, &second, "after the same steps again");      \
+        if (pass == 2 && stepped)                                                                  \
+          api_same(a, &first, &second, NULL, "after the same steps again");                        \
         if (pass == 2) break;                                                                      \
       }                                                                                            \
       api_begin(a, "mps_" #S "_rollback");                                                         \
@@ -255,7 +258,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
       a->context = o->context;                                                                     \
       if (!api_end(a, mps_##S##_rollback(s, snapshot))) api_broken(a, "does not go back");         \
       api_read(a, KIND, o, mps_##S##_particles(s), &back);                                         \
-      api_same(a, &begin, &back, "after a rollback");                                              \
+      api_same(a, &begin, &back, but, "after a rollback");                                         \
       if (a->reason[0]) break;                                                                     \
     }                                                                                              \
     a->latest = false;                                                                             \

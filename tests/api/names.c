@@ -136,7 +136,7 @@ bool api_names_argument(const char *function, const char *message) {
   if (strcmp(shared, function) != 0 && strcmp(message, "solver is NULL") == 0) return true;
   /* where what was edited before is taken, particles and bodies are named */
   if (strstr(message, "lie inside the body") || strstr(message, "it overlaps body") ||
-      strstr(message, "begins outside the yield surface"))
+      strstr(message, "begins outside the yield surface") || strstr(message, "' of particle "))
     return true;
   if (!from) from = parameters_of(shared, &end);
   if (!from || names_one_of(from, end, message)) return from != NULL;

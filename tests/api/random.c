@@ -240,12 +240,28 @@ bool api_null(api *a, const char *name) {
 
 /* ---- fields and ids -------------------------------------------------------------------------- */
 
-static const char *const names[] = {
-    "id",       "position",         "density",        "velocity",     "stress",
-    "young",    "poisson",          "shear_velocity", "volume",       "external_force",
-    "reaction", "pressure",         "displacement",   "acceleration", "pressure_velocity",
-    "damping",  "temperature",      "free_field",     "mass",         "velocity_gradient",
-    "my_field", "body_acceleration"};
+static const char *const names[] = {"id",
+                                    "position",
+                                    "density",
+                                    "velocity",
+                                    "stress",
+                                    "young",
+                                    "poisson",
+                                    "shear_velocity",
+                                    "volume",
+                                    "external_force",
+                                    "reaction",
+                                    "pressure",
+                                    "displacement",
+                                    "acceleration",
+                                    "pressure_velocity",
+                                    "damping",
+                                    "temperature",
+                                    "free_field",
+                                    "mass",
+                                    "velocity_gradient",
+                                    "user.my_field",
+                                    "body_acceleration"};
 static const char *const no_names[] = {
     "",          "no such",
     "1st",       "a.b",

@@ -77,6 +77,82 @@ TEST(test_changes) { compare_teams(compute_changes, SPREAD, 24, true); }
 
 TEST(test_refused_memory) { refuse_memory(compute, SLIDE, 4, 11); }
 
+/* ---- fields of the caller's own ---------------------------------------------------------------
+ */
+
+/* Number and place of each particle, in "user.tag". */
+static mps_status put_tags(mps_particles *set) {
+  const int64_t n = mps_particles_count(set);
+  double *tags = malloc((size_t)n * 2 * sizeof *tags + 1);
+  mps_view id, x;
+  mps_status status = mps_particles_add_field(set, "user.tag", 2);
+  TRY(mps_particles_view(set, "id", &id));
+  TRY(mps_particles_view(set, "position", &x));
+  for (int64_t k = 0; status == MPS_OK && k < n; k++)
+    tags[2 * k] = (double)*mps_view_i64(&id, k, 0), tags[2 * k + 1] = *mps_view_f64(&x, k, 0);
+  TRY(mps_particles_set_array(set, "user.tag", -1, tags, n));
+  free(tags);
+  return status;
+}
+
+/* A copy has the rank's particles, and outlives nothing that it needs. */
+static mps_status compare_copy(mps_particles *set) {
+  scoped_particles *copy = NULL;
+  mps_view id, tag, velocity;
+  mps_status status = mps_particles_copy(set, &copy);
+  TRY(mps_particles_view(set, "id", &id));
+  TRY(mps_particles_view(copy, "user.tag", &tag));
+  TRY(mps_particles_view(copy, "velocity", &velocity));
+  if (status == MPS_OK && mps_particles_count(copy) != id.shape[0]) return MPS_ERROR_INTERNAL;
+  for (int64_t k = 0; status == MPS_OK && k < id.shape[0]; k++) {
+    const int64_t number = *mps_view_i64(&id, k, 0);
+    if (mps_particles_index(copy, number) != k || *mps_view_f64(&tag, k, 0) != (double)number)
+      status = MPS_ERROR_INTERNAL;
+  }
+  TRY(mps_particles_set_array(set, "velocity", 0, mps_view_f64(&velocity, 0, 0), id.shape[0]));
+  return status;
+}
+
+static mps_status compute_tags(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                               result *r) {
+  SCOPED(end_scene) scene s = {.set = NULL};
+  mps_status status = make_scene(own, domain, what, &s);
+  r->first = s.set ? mps_particles_count(s.set) : 0;
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(put_tags(s.set));
+  TRY(mps_particles_add_field(s.set, "user.gone", 3));
+  TRY(mps_mpm_step(s.mpm, steps / 2));
+  TRY(compare_copy(s.set));
+  TRY(mps_particles_remove_field(s.set, "user.gone"));
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(keep_scene(domain, what, &s, r));
+  return status;
+}
+
+TEST(test_tags) { compare_teams(compute_tags, SPREAD, 60, false); }
+
+/* A field that one rank alone has removed. */
+static mps_status remove_alone(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                               result *r) {
+  (void)r;
+  SCOPED(end_scene) scene s = {.set = NULL};
+  mps_status status = make_scene(own, domain, what, &s);
+  TRY(put_tags(s.set));
+  TRY(mps_mpm_step(s.mpm, 2));
+  if (mps_domain_rank(domain) == 1) TRY(mps_particles_remove_field(s.set, "user.tag"));
+  TRY(mps_mpm_step(s.mpm, steps));
+  return status;
+}
+
+TEST(test_removed_alone) {
+  ranks s = {.compute = remove_alone, .what = SPREAD, .length = 60, .threads = 1};
+  run_team(&s, 3);
+  for (int32_t r = 0; r < 3; r++)
+    if (s.rank[r].status != MPS_ERROR_ARGUMENT ||
+        !strstr(s.rank[r].message, "the number of columns of a particle"))
+      fail_msg("rank %d: %d %s", (int)r, (int)s.rank[r].status, s.rank[r].message);
+}
+
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 typedef struct creation { /* by rank: bytes beside those of the solver when it is made; particles */

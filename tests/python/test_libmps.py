@@ -389,6 +389,38 @@ class Arrays(unittest.TestCase):
         self.assertEqual(sand["id"].dtype, np.int64)
         self.assertEqual(sand["density"].shape, (100,))
 
+    def test_arrays_set_fields_that_come_and_go(self):
+        sand = block(mps.Context())
+        n = len(sand)
+        self.assertNotIn("user.dose", sand)
+        with self.assertRaisesRegex(mps.Error, "for a field of your own write user.dose"):
+            sand.add_field("dose", 2)
+        sand.add_field("user.dose", 2)
+        self.assertIn("user.dose", sand)
+        rows = np.arange(2.0 * n).reshape(n, 2)
+        sand["user.dose"] = rows
+        np.testing.assert_array_equal(sand["user.dose"], rows)
+        sand["velocity"] = -rows  # a field of the library is added
+        sand.set_array("velocity", 1, rows[:, 0], n)
+        np.testing.assert_array_equal(sand["velocity"], np.stack([-rows[:, 0], rows[:, 0]], axis=1))
+        sand["group"] = np.arange(n)
+        self.assertEqual(sand["group"][n - 1], n - 1)
+        twin = sand.copy()
+        del sand["user.dose"]
+        self.assertNotIn("user.dose", sand)
+        np.testing.assert_array_equal(twin["user.dose"], rows)
+        np.testing.assert_array_equal(twin["id"], sand["id"])
+        for wrong in (lambda: sand.set_array("velocity", -1, rows[:, 0], n), lambda: sand.set_array("stress", -1, rows, n),
+                      lambda: sand.set_array("velocity", -1, np.zeros((n, 3)), n)):
+            with self.assertRaisesRegex(ValueError, "'values' has "):
+                wrong()
+        for wrong, what in ((lambda: sand.set_array("velocity", 0, rows[:-1, 0], n - 1), "count is 99, must be the number"),
+                            (lambda: sand.set_array("velocty", -1, rows, n), "is 'velocity' meant"),
+                            (lambda: sand.remove_field("position"), "every set has the field"),
+                            (lambda: sand.remove_field("user.dose"), "no field 'user.dose'")):
+            with self.assertRaisesRegex(mps.Error, what):
+                wrong()
+
     def test_a_stale_array_refuses(self):
         context = mps.Context()
         sand = block(context)

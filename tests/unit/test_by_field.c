@@ -131,7 +131,7 @@ TEST(a_profile_by_depth) {
   mps_view view;
   assert_int_equal(mps_particles_view(s.particles, "stiffness_factor", &view), MPS_ERROR_FIELD);
   DEF(geostatic, low, .surface = 0.5);
-  REFUSES(mps_particles_set_profile(s.particles, "own", 3, depth, value, &low),
+  REFUSES(mps_particles_set_profile(s.particles, "user.own", 3, depth, value, &low),
           "above the surface");
   OK(mps_particles_set_profile(s.particles, "stiffness_factor", 3, depth, value, NULL));
   REFUSES(mps_particles_set_profile(s.particles, "stiffness_factor", 1, depth, negative, NULL),

@@ -79,9 +79,13 @@ static void ask_for_everything(scene *s, int from) {
   assert_null(edit.data);
   assert_non_null(strstr(mps_context_error(context)->message, "may only read"));
   REFUSED(mps_particles_set(s->set, "external_force", 0, 1.0));
+  REFUSED(mps_particles_set_array(s->set, "external_force", -1, NULL, 0));
+  REFUSED(mps_particles_remove_field(s->set, "user.own"));
   REFUSED(mps_particles_append(s->set, 1, place));
   REFUSED(mps_particles_remove(s->set, &id, 1));
   OK(mps_particles_view(s->set, "position", &view));
+  scoped_particles *copy = NULL;
+  OK(mps_particles_copy(s->set, &copy));
   if (from == FROM_RUN) { /* between two steps: what only reads the state is allowed */
     OK(v->snapshot(s->solver, &s->now));
   } else {

@@ -83,7 +83,7 @@ TEST(views_are_for_reading_and_edits_for_writing) {
 TEST(commit_checks_values_and_names_the_particle) {
   scoped_particles *set = make_set(context, 2.0);
   OK(mps_particles_add_field(set, "poisson", 0));
-  OK(mps_particles_add_field(set, "mine", 1));
+  OK(mps_particles_add_field(set, "user.mine", 1));
   const struct {
     const char *field;
     double bad[3];
@@ -91,7 +91,7 @@ TEST(commit_checks_values_and_names_the_particle) {
   } rows[] = {{"density", {-1.0, NAN, 1e13}, 1e12},
               {"poisson", {-1.1, 0.51, INFINITY}, 0.5},
               {"position", {2e15, NAN, -INFINITY}, -1e15},
-              {"mine", {NAN, 1e101, -INFINITY}, -1e99}};
+              {"user.mine", {NAN, 1e101, -INFINITY}, -1e99}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     for (int b = 0; b < 3; b++) {
       assert_int_equal(write_one(set, rows[k].field, 5, rows[k].bad[b]), MPS_ERROR_ARGUMENT);
@@ -318,10 +318,10 @@ TEST(one_solver_moves_a_set) {
 
 TEST(particles_are_removed_and_keep_their_ids) {
   scoped_particles *set = make_set(context, 2.0);
-  OK(mps_particles_add_field(set, "mine", 2));
+  OK(mps_particles_add_field(set, "user.mine", 2));
   mps_view x;
   mps_edit mine;
-  OK(mps_particles_edit(set, "mine", &mine));
+  OK(mps_particles_edit(set, "user.mine", &mine));
   for (int64_t k = 0; k < 16; k++)
     for (int c = 0; c < 2; c++) *mps_edit_f64(&mine, k, c) = 10.0 * (double)k + c;
   OK(mps_particles_commit(set, &mine));
@@ -337,14 +337,14 @@ TEST(particles_are_removed_and_keep_their_ids) {
   assert_int_equal(mps_particles_count(set), 13);
   assert_true(mps_particles_epoch(set) != epoch);
   for (int k = 0; k < 3; k++) assert_int_equal(mps_particles_index(set, ids[k]), -1);
-  OK(mps_particles_view(set, "mine", &mine.view));
+  OK(mps_particles_view(set, "user.mine", &mine.view));
   for (int64_t id = 0; id < 16; id++) {
     const int64_t at = mps_particles_index(set, id);
     if (at < 0) continue;
     for (int c = 0; c < 2; c++) NEAR(*mps_view_f64(&mine.view, at, c), 10.0 * (double)id + c, 0.0);
   }
   /* Vector loops read zeros behind the last particle. */
-  const double *column = mpsi_particles_column(set, "mine", 1);
+  const double *column = mpsi_particles_column(set, "user.mine", 1);
   for (int k = 0; k < MPSI_PARTICLES_PADDING; k++) NEAR(column[13 + k], 0.0, 0.0);
   REFUSES(mps_particles_remove(set, ids, 1), "no such");
 

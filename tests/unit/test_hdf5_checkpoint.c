@@ -33,7 +33,7 @@ static void add_fields(mps_particles *set) {
   OK(mps_particles_add_field(set, "velocity", 0));
   OK(mps_particles_add_field(set, "group", 0));
   OK(mps_particles_add_field(set, "restoring_old", 0));
-  OK(mps_particles_add_field(set, "my_strain", 4));
+  OK(mps_particles_add_field(set, "user.my_strain", 4));
 }
 
 /* 64 bits from where they belong: every kind of double comes up, NaNs with a payload too. */
@@ -142,8 +142,8 @@ TEST(every_bit_comes_back_into_any_order) {
     mps_checkpoint info = mps_checkpoint_defaults();
     if (k & 1) reverse(set);
     if (k & 2) add_fields(set); /* else they are added */
-    OK(mps_particles_add_field(set, "own", 1));
-    field_bits(set, "own", true); /* not in the file: stays */
+    OK(mps_particles_add_field(set, "user.own", 1));
+    field_bits(set, "user.own", true); /* not in the file: stays */
     const uint64_t epoch = mps_particles_epoch(set);
     OK(mps_checkpoint_read(set, path, &info));
     assert_int_equal(mps_particles_epoch(set), epoch);
@@ -290,8 +290,8 @@ TEST(another_set_is_refused) {
   refused(path, fewer, MPS_ERROR_ARGUMENT, "has 37 particles in 2D, the set has 36 in 2D");
   refused(path, space, MPS_ERROR_ARGUMENT, "has 37 particles in 2D, the set has 37 in 3D");
   refused(path, finer, MPS_ERROR_ARGUMENT, "has spacing 0.5 m, the set has 0.25 m");
-  OK(mps_particles_add_field(same, "my_strain", 3));
-  refused(path, same, MPS_ERROR_FIELD, "field 'my_strain' with 4 components of float64");
+  OK(mps_particles_add_field(same, "user.my_strain", 3));
+  refused(path, same, MPS_ERROR_FIELD, "field 'user.my_strain' with 4 components of float64");
   WITH_DEFAULTS(mps_checkpoint, info, .user_key[0] = 'x');
   REFUSES(mps_checkpoint_read(same, path, &info), "has user_key 'wave --layers 3', wanted is 'x'");
   assert_int_equal(mps_checkpoint_read(NULL, path, &info), MPS_ERROR_ARGUMENT);
@@ -523,9 +523,9 @@ static bool bend_file(hid_t f, int way, bend *out) {
   case 27: put_dataset(f, "fields/9_lives", H5T_NATIVE_DOUBLE, 2, 2, COUNT);
     *out = (bend){"'9_lives'", MPS_ERROR_FIELD}; return true;
   case 28: put_dataset(f, "fields/wide", H5T_NATIVE_DOUBLE, 2, 17, COUNT);
-    *out = (bend){"'wide' with 17 components", MPS_ERROR_FIELD}; return true;
+    *out = (bend){"'user.wide' with 17 components", MPS_ERROR_FIELD}; return true;
   case 29: put_dataset(f, "fields/whole", H5T_NATIVE_INT64, 2, 1, COUNT);
-    *out = (bend){"'whole' with 1 components of int64", MPS_ERROR_FIELD}; return true;
+    *out = (bend){"'user.whole' with 1 components of int64", MPS_ERROR_FIELD}; return true;
   case 30: put_dataset(f, "fields/a_name_of_more_than_95_characters_is_too_long_for_a_field_even_for_one_of_the_history_of_a_material", H5T_NATIVE_DOUBLE, 2, 2, COUNT); out->text = "the name of a field"; return true;
   case 31: H5Gclose(H5Gcreate2(f, "fields/nested", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     out->text = "nested"; return true;
@@ -539,6 +539,19 @@ static bool bend_file(hid_t f, int way, bend *out) {
 }
 /* clang-format on */
 
+/* A checkpoint in memory as a file without its seal, to be bent. */
+static hid_t open_bent(const unsigned char *data, size_t size) {
+  store(bent, data, size - 32);
+  return H5Fopen(bent, H5F_ACC_RDWR, H5P_DEFAULT);
+}
+
+static void seal_bent(void) {
+  size_t size;
+  unsigned char *data = load(bent, &size);
+  store_sealed(bent, data, size);
+  free(data);
+}
+
 TEST(wrong_content_is_refused) {
   size_t size;
   write_checkpoint();
@@ -547,15 +560,11 @@ TEST(wrong_content_is_refused) {
   const int64_t handles = test_hdf5_handles();
   bend bent_way;
   for (int way = 0;; way++) {
-    store(bent, data, size - 32); /* without the seal */
-    const hid_t file = H5Fopen(bent, H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t file = open_bent(data, size);
     const bool more = bend_file(file, way, &bent_way);
     assert_true(H5Fclose(file) >= 0);
     if (!more) break;
-    size_t bent_size;
-    unsigned char *bent_data = load(bent, &bent_size);
-    store_sealed(bent, bent_data, bent_size);
-    free(bent_data);
+    seal_bent();
     mps_checkpoint info = mps_checkpoint_defaults();
     if (bent_way.status != MPS_OK)
       refused(bent, set, bent_way.status, bent_way.text);
@@ -564,6 +573,28 @@ TEST(wrong_content_is_refused) {
     assert_int_equal(test_hdf5_open(), 0);
   }
   assert_int_equal(test_hdf5_handles(), handles);
+  free(data);
+}
+
+/* libmps 0.3 wrote a caller's field without "user." before its name. */
+TEST(a_callers_field_of_a_former_version_gets_the_name_of_today) {
+  size_t size;
+  write_checkpoint();
+  unsigned char *data = load(path, &size);
+  scoped_particles *set = make_set(context, 2, 0.5, COUNT);
+  hid_t file = open_bent(data, size);
+  assert_true(H5Lmove(file, "fields/user.my_strain", file, "fields/my_strain", H5P_DEFAULT,
+                      H5P_DEFAULT) >= 0);
+  assert_true(H5Fclose(file) >= 0);
+  seal_bent();
+  mps_checkpoint info = mps_checkpoint_defaults();
+  OK(mps_checkpoint_read(set, bent, &info));
+  each_bit(set, false);
+  file = open_bent(data, size); /* which of the two should it be? */
+  put_dataset(file, "fields/my_strain", H5T_NATIVE_DOUBLE, 2, 4, COUNT);
+  assert_true(H5Fclose(file) >= 0);
+  seal_bent();
+  refused(bent, set, MPS_ERROR_FORMAT, "user.my_strain");
   free(data);
 }
 

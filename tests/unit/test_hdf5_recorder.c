@@ -23,8 +23,10 @@ typedef struct known_field {
   int components, width; /* in 2D: in the set, in the file */
   int column;
 } known_field;
-static const known_field known[] = {
-    {"displacement", 2, 3, 1}, {"pressure", 1, 0, 3}, {"four", 4, 4, 4}, {"pair", 2, 3, 8}};
+static const known_field known[] = {{"displacement", 2, 3, 1},
+                                    {"pressure", 1, 0, 3},
+                                    {"user.four", 4, 4, 4},
+                                    {"user.pair", 2, 3, 8}};
 #define KNOWN ((int)(sizeof known / sizeof *known))
 
 static void fill(mps_particles *set, double time) {
@@ -293,7 +295,7 @@ TEST(in_three_dimensions_nothing_is_padded) {
   const int64_t id[] = {0, 1, 2, 3};
   check_values(file, "VTKHDF/Points", 20, 3, 3, 0, 4, id, 3.0);
   check_values(file, "VTKHDF/PointData/displacement", 1, 3, 3, 0, 4, id, 3.0);
-  check_values(file, "VTKHDF/PointData/pair", 8, 2, 2, 0, 4, id, 3.0);
+  check_values(file, "VTKHDF/PointData/user.pair", 8, 2, 2, 0, 4, id, 3.0);
   H5Fclose(file);
 }
 
@@ -359,6 +361,21 @@ static int occurrences(const char *path, const char *text, const char *end) {
 /* After each frame the text beside the series is whole; a frame at the same time is replaced, a
  * shorter one too, and one without particles is left out. tests/vtk compares what it names with the
  * values. */
+TEST(the_fields_of_a_recorder_stay) {
+  static const char path[] = TEST_TMP "/recorder-stay.vtkhdf";
+  const char *const fields[] = {"pressure"};
+  scoped_particles *set = make_set(4);
+  DEF(recorder, def, .path = path, .fields = fields, .field_count = 1);
+  mps_recorder *recorder = NULL;
+  OK(mps_recorder_create(context, set, &def, &recorder));
+  FAILS(mps_particles_remove_field(set, "pressure"), MPS_ERROR_STATE, "is used by a recorder");
+  OK(mps_particles_remove_field(set, "user.four"));
+  OK(mps_particles_remove_field(set, "displacement"));
+  OK(mps_recorder_write(recorder, 0.0));
+  OK(mps_recorder_close(&recorder));
+  OK(mps_particles_remove_field(set, "pressure"));
+}
+
 TEST(the_text_beside_it_is_whole_after_each_frame) {
   static const char text[] = TEST_TMP "/recorder-text.xdmf",
                     end[] = "</Grid>\n</Domain>\n</Xdmf>\n";

@@ -213,6 +213,7 @@ TEST(bad_users_laws_are_refused) {
   LAW(name, "", "name is \"\"");
   LAW(name, "2fast", "name is \"2fast\"");
   LAW(name, "a_name_that_has_more_than_forty_seven_characters_in", "at most 47");
+  LAW(name, "user", "name is \"user\", must be");
   LAW(history, twice, "history[0] and history[1] are both \"a\"");
   LAW(history, bad, "history[1] is \"b c\"");
   LAW(history, missing, "history[1] is \"(NULL)\"");

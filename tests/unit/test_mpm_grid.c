@@ -99,10 +99,10 @@ TEST(linear_fields_are_reproduced) {
       def.spline = spline;
       mps_mpm_destroy(&s.mpm);
       OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-      OK(mps_particles_add_field(s.particles, "tracer", 2));
+      OK(mps_particles_add_field(s.particles, "user.tracer", 2));
       mps_view x = mpm_scene_view(&s, "position");
       mps_edit tracer;
-      OK(mps_particles_edit(s.particles, "tracer", &tracer));
+      OK(mps_particles_edit(s.particles, "user.tracer", &tracer));
       for (int64_t k = 0; k < x.shape[0]; k++)
         for (int c = 0; c < 2; c++) {
           double value = 3.0 + c;
@@ -117,8 +117,8 @@ TEST(linear_fields_are_reproduced) {
       for (int64_t i = 0; i < POINTS; i++)
         for (int c = 0; c < 3; c++) points[3 * i + c] = size[c] * filling(i, c);
       mps_grid *grid = mps_mpm_grid(s.mpm);
-      OK(mps_grid_evaluate(grid, "tracer", -1, POINTS, points, both, states));
-      OK(mps_grid_evaluate(grid, "tracer", 1, POINTS, points, one, NULL));
+      OK(mps_grid_evaluate(grid, "user.tracer", -1, POINTS, points, both, states));
+      OK(mps_grid_evaluate(grid, "user.tracer", 1, POINTS, points, one, NULL));
       for (int64_t i = 0; i < POINTS; i++) {
         assert_int_equal(states[i], MPS_GRID_POINT_INSIDE);
         for (int c = 0; c < 2; c++) {

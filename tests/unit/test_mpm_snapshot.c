@@ -104,6 +104,30 @@ TEST(belongs_to_its_solver) {
   mps_context_destroy(&context); /* and its context's last share */
 }
 
+/* The caller's own field may go while the solver holds the set, and comes back with the state. */
+TEST(a_removed_field_comes_back) {
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  SCOPED(drop)
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
+  scoped_snapshot *snapshot = NULL;
+  mps_particles *set = x.s.particles;
+  OK(mps_particles_add_field(set, "user.own", 1));
+  OK(mps_particles_add_field(set, "user.rest", 1));
+  OK(mps_particles_set(set, "user.own", 0, 7.0));
+  OK(mps_mpm_snapshot(x.s.mpm, &snapshot));
+  FAILS(mps_particles_remove_field(set, "stress"), MPS_ERROR_STATE, "used by a WLS-MPM solver");
+  OK(mps_particles_remove_field(set, "user.own"));
+  OK(mps_mpm_step(x.s.mpm, 120)); /* sorts */
+  OK(roll(&x, snapshot));
+  mps_view own;
+  OK(mps_particles_view(set, "user.own", &own));
+  for (int64_t k = 0; k < own.shape[0]; k++) assert_true(*mps_view_f64(&own, k, 0) == 7.0);
+  OK(mps_particles_remove_field(set, "user.own"));
+  OK(mps_particles_remove_field(set, "user.rest"));
+  follows(&x, &twin, 20);
+}
+
 /* What the caller has built since is not undone: it is named. */
 TEST(another_build_is_refused) {
   scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
@@ -151,8 +175,8 @@ TEST(refused_allocations_change_nothing) {
   OK(mps_mpm_step(x.s.mpm, 120));
   OK(mps_mpm_step(twin.s.mpm, 120));
   assert_true(mps_particles_epoch(x.s.particles) != epoch);
-  OK(mps_particles_add_field(x.s.particles, "own", 2)); /* larger than it was */
-  OK(mps_particles_add_field(twin.s.particles, "own", 2));
+  OK(mps_particles_add_field(x.s.particles, "user.own", 2)); /* larger than it was */
+  OK(mps_particles_add_field(twin.s.particles, "user.own", 2));
   for (int what = 0; what < 2; what++) {
     mps_status status = MPS_ERROR_MEMORY;
     for (int64_t k = 1; status != MPS_OK; k++) {

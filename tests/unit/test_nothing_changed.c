@@ -167,7 +167,7 @@ static mps_status remove_some(scene *s) {
   const int64_t corner[2] = {30, 31};
   return mps_particles_remove(s->set, corner, 2);
 }
-static mps_status add_field(scene *s) { return mps_particles_add_field(s->set, "mine", 3); }
+static mps_status add_field(scene *s) { return mps_particles_add_field(s->set, "user.mine", 3); }
 static mps_status set_field(scene *s) {
   return mps_particles_set(s->set, "external_force", 1, 2.0);
 }
@@ -178,6 +178,15 @@ static mps_status edit_field(scene *s) {
   *mps_edit_f64(&edit, 0, 0) = 0.5;
   OK(mps_particles_commit(s->set, &edit));
   return MPS_OK;
+}
+static mps_status set_array(scene *s) {
+  double values[400] = {0.0};
+  values[3] = 0.5;
+  return mps_particles_set_array(s->set, "velocity", 1, values, mps_particles_count(s->set));
+}
+static mps_status copy_set(scene *s) {
+  scoped_particles *copy = NULL;
+  return mps_particles_copy(s->set, &copy);
 }
 static mps_status set_geostatic(scene *s) {
   const mps_geostatic_layer layer = {.thickness = 1.0, .k0 = 0.5, .density = 1800.0};
@@ -524,6 +533,8 @@ static const row rows[] = {
     {make_bare, add_field, "mps_particles_add_field", false},
     {make_bare, set_field, "mps_particles_set", false},
     {make_bare, edit_field, "mps_particles_edit", false},
+    {make_bare, set_array, "mps_particles_set_array", false},
+    {make_bare, copy_set, "mps_particles_copy", false},
     {make_bare, set_geostatic, "mps_particles_set_geostatic", false},
     {make_bare, set_stress, "mps_particles_set_stress", false},
     {make_bare, set_table, "mps_particles_set_table", false},
@@ -536,6 +547,7 @@ static const row rows[] = {
     {make_mpm, fill_box, "mps_particles_fill_box", false},
     {make_mpm, remove_some, "mps_particles_remove", false},
     {make_mpm, set_field, "mps_particles_set", false},
+    {make_mpm, set_array, "mps_particles_set_array", false},
     {make_mpm, mpm_step, "mps_mpm_step", true},
     {make_mpm, mpm_run, "mps_mpm_run", true},
     {make_mpm, mpm_settle, "mps_mpm_settle", true},

@@ -149,7 +149,7 @@ TEST(fields_of_the_table_get_their_documented_shape) {
     mps_particles *set = make_set(dim);
 #define I64 0
 #define F64 2
-#define CHECK(field, type, comps, unit_, meaning_, writer, valid)                                  \
+#define CHECK(field, type, comps, unit_, meaning_, writer, valid, since)                           \
   OK(mps_particles_add_field(set, #field, 0));                                                     \
   OK(mps_particles_add_field(set, #field, mpsi_field_components(comps, dim)));                     \
   assert_int_equal(view_of(set, #field).dtype.code, type);                                         \
@@ -170,39 +170,61 @@ TEST(fields_of_the_table_get_their_documented_shape) {
 TEST(the_callers_own_fields_follow_their_rules) {
   scoped_particles *set = make_five();
   const uint64_t epoch = mps_particles_epoch(set);
-  const char *longest = "a23456789_123456789_123456789_123456789_1234567";
-  const char *bad[] = {"",    "2d",       "a-b",
-                       "a b", "\xc3\xa9", "a23456789_123456789_123456789_123456789_12345678"};
+  const char *longest = "user.a23456789_123456789_123456789_123456789_1234567";
+  const char *bad[] = {"",         "2d",
+                       "a-b",      "a b",
+                       "\xc3\xa9", "user.",
+                       "user.2d",  "user.a.b",
+                       ".a",       "user.a23456789_123456789_123456789_123456789_12345678"};
   OK(mps_particles_add_field(set, longest, 16));
-  OK(mps_particles_add_field(set, "_T2", 2));
-  OK(mps_particles_add_field(set, "_T2", 2));
+  OK(mps_particles_add_field(set, "user._T2", 2));
+  OK(mps_particles_add_field(set, "user._T2", 2));
   assert_int_equal(mps_particles_field_count(set), 4);
-  for (int b = 0; b < 6; b++) REFUSES(mps_particles_add_field(set, bad[b], 1), "name is '");
+  for (int b = 0; b < 10; b++) REFUSES(mps_particles_add_field(set, bad[b], 1), "name is '");
   REFUSES(mps_particles_add_field(set, NULL, 1), "NULL");
-  FAILS(mps_particles_add_field(set, "_T2", 3), MPS_ERROR_FIELD, "exists with 2");
-  REFUSES(mps_particles_add_field(set, "_T2", 0), "is 0");
-  REFUSES(mps_particles_add_field(set, "new", 17), "is 17");
+  FAILS(mps_particles_add_field(set, "user._T2", 3), MPS_ERROR_FIELD, "exists with 2");
+  REFUSES(mps_particles_add_field(set, "user._T2", 0), "is 0");
+  REFUSES(mps_particles_add_field(set, "user.new", 17), "is 17");
   assert_int_equal(mps_particles_epoch(set), epoch);
-  const mps_view t = view_of(set, "_T2");
+  const mps_view t = view_of(set, "user._T2");
   assert_int_equal(t.shape[0], 5);
   for (int c = 0; c < 2; c++)
     for (int i = 0; i < 5; i++) assert_true(*mps_view_f64(&t, i, c) == 0.0);
+}
+
+TEST(another_name_is_refused_with_what_to_write) {
+  scoped_particles *set = make_five();
+  mps_view view;
+  mps_status (*add)(mps_particles *, const char *, int32_t) = mps_particles_add_field;
+  REFUSES(add(set, "own", 1), "name is 'own', no field of the library's table: for a field of your "
+                              "own write user.own");
+  assert_null(strstr(mps_context_error(context)->message, "nearest"));
+  REFUSES(add(set, "Velocity", 2), "write user.Velocity; the nearest of the table is 'velocity'");
+  REFUSES(add(set, "presure", 1), "write user.presure; the nearest of the table is 'pressure'");
+  REFUSES(add(set, "sand.damage", 1), "name is 'sand.damage', the history of a law, which the "
+                                      "solver adds");
+  REFUSES(add(set, "sand.damage", 1), "write user.damage");
+  assert_int_equal(mps_particles_field_count(set), 2);
+  OK(add(set, "user.own", 1));
+  FAILS(mps_particles_view(set, "own", &view), MPS_ERROR_FIELD, "no field 'own' (write user.own)");
+  FAILS(mps_particles_set(set, "own", 0, 1.0), MPS_ERROR_FIELD, "(write user.own)");
+  FAILS(mps_particles_view(set, "none_such", &view), MPS_ERROR_FIELD, "no field 'none_such'; the");
 }
 
 TEST(an_unknown_field_is_an_error_that_lists_the_known) {
   scoped_particles *set = make_five();
   mps_view view;
   FAILS(mps_particles_view(set, "preasure", &view), MPS_ERROR_FIELD,
-        "no field 'preasure'; the set has: id, position");
+        "no field 'preasure' (is 'pressure' meant?); the set has: id, position");
   assert_null(view.data);
   REFUSES(mps_particles_view(set, NULL, &view), "name");
   REFUSES(mps_particles_view(set, "id", NULL), "out");
   char name[16];
   for (int f = 0; f < 100; f++) { /* a list longer than the record is cut, not overrun */
-    snprintf(name, sizeof name, "own_field_%d", f);
+    snprintf(name, sizeof name, "user.f_%d", f);
     OK(mps_particles_add_field(set, name, 1));
   }
-  FAILS(mps_particles_view(set, "x", &view), MPS_ERROR_FIELD, "own_field_0");
+  FAILS(mps_particles_view(set, "x", &view), MPS_ERROR_FIELD, "user.f_0");
 }
 
 TEST(setting_adds_a_known_field_and_fills_one_component) {
@@ -214,7 +236,8 @@ TEST(setting_adds_a_known_field_and_fills_one_component) {
     assert_true(*mps_view_f64(&v, i, 1) == -2.5);
   }
   REFUSES(mps_particles_set(set, NULL, 0, 1.0), "name");
-  FAILS(mps_particles_set(set, "mine", 0, 1.0), MPS_ERROR_FIELD, "'mine'");
+  FAILS(mps_particles_set(set, "user.mine", 0, 1.0), MPS_ERROR_FIELD,
+        "no field 'user.mine' (mps_particles_add_field adds it)");
   FAILS(mps_particles_set(set, "id", 0, 1.0), MPS_ERROR_FIELD, "int64");
   REFUSES(mps_particles_set(set, "spin", 1, 1.0), "is 1, and the field has one alone");
   REFUSES(mps_particles_set(set, "spin", -1, 1.0), "is -1");
@@ -227,10 +250,10 @@ TEST(sorting_takes_every_field_along) {
   const int64_t order[] = {4, 2, 0, 1, 3};
   const double x2[2] = {2.1, -1.0};
   int64_t ids[5], count;
-  OK(mps_particles_add_field(set, "mine", 2));
+  OK(mps_particles_add_field(set, "user.mine", 2));
   OK(mps_particles_add_field(set, "group", 0));
   mps_edit mine, group;
-  OK(mps_particles_edit(set, "mine", &mine));
+  OK(mps_particles_edit(set, "user.mine", &mine));
   OK(mps_particles_edit(set, "group", &group));
   for (int i = 0; i < 5; i++) {
     *mps_edit_f64(&mine, i, 1) = 10.0 * i;
@@ -314,7 +337,7 @@ static mps_status build_all(mps_context *c, mps_particles **set) {
   const double lo[2] = {0, 0}, hi[2] = {40, 80}, triangle[] = {0, -9, 9, -9, 0, 0};
   int64_t order[3 + 3200 + 40], added;
   mps_status status = mps_particles_create(c, &def, set);
-  if (status == MPS_OK) status = mps_particles_add_field(*set, "mine", 3);
+  if (status == MPS_OK) status = mps_particles_add_field(*set, "user.mine", 3);
   if (status == MPS_OK) status = mps_particles_append(*set, 3, triangle);
   if (status == MPS_OK) status = mps_particles_set(*set, "density", 0, 5.0);
   if (status == MPS_OK) status = mps_particles_fill_box(*set, lo, hi, &added);
@@ -371,11 +394,11 @@ TEST(the_documentation_shows_the_table) {
   while (strncmp(line, "|---", 4) != 0);
 #define I64 "int64"
 #define F64 "float64"
-#define CHECK(name, type, comps, unit, meaning, writer, valid)                                     \
+#define CHECK(name, type, comps, unit, meaning, writer, valid, since)                              \
   assert_non_null(fgets(line, sizeof line, file));                                                 \
-  snprintf(expected, sizeof expected, "| %s | %s | %d | %d | %s | %s | %s | %s |\n", #name, type,  \
-           mpsi_field_components(comps, 2), mpsi_field_components(comps, 3), unit, meaning,        \
-           writer, valid);                                                                         \
+  snprintf(expected, sizeof expected, "| %s | %s | %d | %d | %s | %s | %s | %s | %s |\n", #name,   \
+           type, mpsi_field_components(comps, 2), mpsi_field_components(comps, 3), unit, meaning,  \
+           writer, valid, #since);                                                                 \
   assert_string_equal(line, expected);
   MPSI_FIELD_TABLE(CHECK)
   assert_true(!fgets(line, sizeof line, file) || line[0] != '|'); /* no row too many */

@@ -135,10 +135,10 @@ TEST(the_nearest_point_is_found) {
       scoped_particles *set = block(context, dim, 0.125, -0.5, 1.5);
       scatter(dim, POINTS, x, values, 2 * dim);
       for (int k = 0; lattice && k < POINTS * dim; k++) x[k] = floor(8.0 * x[k]) / 8.0;
-      OK(mps_particles_add_field(set, "number", 1));
-      OK(mps_particles_set_table(set, "number", POINTS, x, 1, number, NULL, &outside));
+      OK(mps_particles_add_field(set, "user.number", 1));
+      OK(mps_particles_set_table(set, "user.number", POINTS, x, 1, number, NULL, &outside));
       assert_int_equal(outside, 0);
-      const mps_view at = view_of(set, "position"), found = view_of(set, "number");
+      const mps_view at = view_of(set, "position"), found = view_of(set, "user.number");
       for (int64_t k = 0; k < at.shape[0]; k++) {
         double place[3] = {0.0};
         for (int c = 0; c < dim; c++) place[c] = *mps_view_f64(&at, k, c);

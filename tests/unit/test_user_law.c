@@ -134,7 +134,7 @@ TEST(laws_do_not_share_columns) {
   static const char *const names[] = {"damage"};
   scoped_mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
   scoped_material *silt = make_law(context, "silt", 1, names, NULL);
-  OK(mps_particles_add_field(s.particles, "damage", 3));
+  OK(mps_particles_add_field(s.particles, "user.damage", 3));
   const int64_t ids[] = {5};
   OK(mps_mpm_set_material(s.mpm, silt, ids, 1));
   OK(mps_mpm_step(s.mpm, 10));

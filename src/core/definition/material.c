@@ -163,7 +163,7 @@ MPSI_DEFINITION_RULED(mps_material_cyclic_sand_def, "material_cyclic_sand", MATE
   X(S, CALL,    update,            1, "",     NEEDED,                       NULL,   OWN) \
   X(S, ADDRESS, user,              1, "",     ANY,                          NULL,   OWN) \
   X(S, CALL,    release,           1, "",     ANY,                          NULL,   OWN) \
-  X(S, ADDRESS, name,              1, "",     NEEDED,                       "user", OWN) \
+  X(S, ADDRESS, name,              1, "",     NEEDED,                       "law", OWN) \
   X(S, ADDRESS, history,           1, "",     ANY,                          NULL,   OWN) \
   X(S, ADDRESS, history_initial,   1, "",     ANY,                          NULL,   OWN) \
   X(S, REAL,    wave_modulus,      1, "Pa",   OR_NAN MODULUS,               UNSET,  OWN) \

@@ -90,14 +90,14 @@ static range range_of(const char *name) {
   return (range){name, -MPSI_LARGEST, MPSI_LARGEST};
 }
 
-static mps_status check_value(const mps_particles *p, const char *function, const mpsi_field *field,
-                              range r, double value, int64_t particle) {
+/* `what`: the argument; `particle`: -1 of all of them. */
+static mps_status check_value(const mps_particles *p, const char *function, const char *what,
+                              const mpsi_field *field, range r, double value, int64_t particle) {
   if (value >= r.lower && value <= r.upper) return MPS_OK;
   char whose[48] = "";
   if (particle >= 0) snprintf(whose, sizeof whose, " of particle %lld", (long long)particle);
   (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                  "%s of field '%s'%s is %s%s%s, allowed are %g to %g",
-                  particle >= 0 ? "edit" : "value", field->name, whose,
+                  "%s of field '%s'%s is %s%s%s, allowed are %g to %g", what, field->name, whose,
                   mpsi_outside(value, r.lower, r.upper).text, *field->unit ? " " : "",
                   strcmp(field->unit, "-") == 0 ? "" : field->unit, r.lower, r.upper);
   mpsi_fail_where(p->context, -1, particle);
@@ -108,7 +108,7 @@ static mps_status check_value(const mps_particles *p, const char *function, cons
 /* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
 static mps_status check_field_value(const mps_particles *p, const char *function,
                                     const mpsi_field *field, double value) {
-  return check_value(p, function, field, range_of(field->name), value, -1);
+  return check_value(p, function, "value", field, range_of(field->name), value, -1);
 }
 
 static mps_status check_field(const mps_particles *p, const char *function,
@@ -119,7 +119,7 @@ static mps_status check_field(const mps_particles *p, const char *function,
   for (int32_t c = 0; c < field->components; c++) {
     const double *value = mpsi_field_column(field, c);
     for (int64_t k = 0; k < p->count; k++) {
-      MPSI_TRY(check_value(p, function, field, r, value[k], id[k]));
+      MPSI_TRY(check_value(p, function, "edit", field, r, value[k], id[k]));
     }
   }
   return MPS_OK;
@@ -230,23 +230,62 @@ mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit) {
   return MPS_OK;
 }
 
-/* ---- one value for all -------------------------------------------------------------------- */
+/* ---- removing a field ------------------------------------------------------------------------ */
 
-/* Fills a column; on a holder's error the column is as before. */
-static mps_status set_column(mps_particles *p, const char *function, const char *name,
-                             int32_t component, double value) {
-  double *column = mpsi_particles_column(p, name, component), *former = NULL;
-  if (p->holders) {
-    former = mpsi_alloc(p->context, p->count, sizeof *former);
-    if (!former) return mpsi_fail_memory(p->context, function, (size_t)p->count * sizeof *former);
-    memcpy(former, column, (size_t)p->count * sizeof *former);
+/* Solvers look up fields of the table and histories when they please. */
+static const mpsi_holder *holder_that_uses(const mps_particles *p, const char *name) {
+  const bool own = mpsi_field_owner_of(name) == MPSI_FIELD_OF_CALLER;
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->uses ? h->uses(h->self, name) : !own) return h;
+  return NULL;
+}
+
+mps_status mps_particles_remove_field(mps_particles *particles, const char *name) {
+  if (!particles) return mpsi_null(__func__, "particles");
+  mps_context *context = particles->context;
+  if (!name) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mps_status status = mpsi_particles_writable(particles, __func__);
+  if (status != MPS_OK) return status;
+  mpsi_field *field = mpsi_field_find(particles, name);
+  if (!field) return mpsi_field_fail_unknown(particles, __func__, name);
+  const mpsi_holder *user = holder_that_uses(particles, name);
+  if (strcmp(name, "id") == 0 || strcmp(name, "position") == 0)
+    status = mpsi_fail(context, __func__, MPS_ERROR_STATE, "every set has the field '%s'", name);
+  else if (user)
+    status = mpsi_fail(context, __func__, MPS_ERROR_STATE,
+                       "field '%s' is used by %s, which holds the set: destroy that first", name,
+                       user->name);
+  if (status != MPS_OK) {
+    mpsi_fail_object(context, "field '%s'", name);
+    return status;
   }
-  for (int64_t i = 0; i < p->count; i++) column[i] = value;
-  const mpsi_field *field = mpsi_field_find(p, name);
-  const mps_status status =
-      mpsi_particles_notify(p, function, name, field->components == 1 ? former : NULL);
-  if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
-  mpsi_free(p->context, former);
+  mpsi_field_drop(particles, field);
+  particles->epoch++;
+  return MPS_OK;
+}
+
+/* ---- values without an edit ------------------------------------------------------------------ */
+
+/* Writes `columns` columns from `first` on, of values[i * step] and the following ones; on a
+ * holder's error they are as before. */
+static mps_status write_columns(mps_particles *p, const char *function, mpsi_field *field,
+                                int32_t first, int32_t columns, const double *values,
+                                int64_t step) {
+  mps_status status = p->holders ? keep_former(p, function, field) : MPS_OK;
+  if (status != MPS_OK) return status;
+  for (int32_t c = 0; c < columns; c++) {
+    void *column = mpsi_field_column(field, first + c);
+    for (int64_t i = 0; i < p->count; i++) {
+      const double value = values[i * step + c];
+      if (field->dtype.code == 2)
+        ((double *)column)[i] = value;
+      else
+        ((int64_t *)column)[i] = (int64_t)value;
+    }
+  }
+  if (!p->holders) return MPS_OK;
+  status = mpsi_particles_notify(p, function, field->name, field->former);
+  if (status != MPS_OK) copy_former(p, field, true);
   return status;
 }
 
@@ -282,9 +321,72 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   mps_status status = check_field_value(particles, __func__, &shape, value);
   if (status == MPS_OK && !present)
     status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
-  if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);
+  if (status == MPS_OK)
+    status = write_columns(particles, __func__, mpsi_field_find(particles, name), component, 1,
+                           &value, 0);
   if (status == MPS_OK && particles->deal)
     particles->deal->constants = note_constant(particles->deal->constants, name, component, value);
   if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
   return status;
+}
+
+/* Finite, in the field's range, and whole where the field is of whole numbers. */
+static mps_status check_values(const mps_particles *p, const char *function,
+                               const mpsi_field *field, int32_t columns, const double *values) {
+  static const range whole = {"", -0x1p53, 0x1p53};
+  const bool integers = field->dtype.code == 0;
+  const range r = integers ? whole : range_of(field->name);
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = 0; k < p->count * columns; k++) {
+    const int64_t particle = id[k / columns];
+    const mps_status status = check_value(p, function, "values", field, r, values[k], particle);
+    if (status != MPS_OK) return status;
+    if (!integers || values[k] == nearbyint(values[k])) continue;
+    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                    "values of field '%s' of particle %lld is %g, must be a whole number",
+                    field->name, (long long)particle, values[k]);
+    mpsi_fail_where(p->context, -1, particle);
+    return MPS_ERROR_ARGUMENT;
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_field_write(mps_particles *p, const char *function, const char *name,
+                            const mpsi_field *shape, int32_t component, const double *values) {
+  const int32_t fields = p->field_count, first = component < 0 ? 0 : component;
+  const int32_t columns = component < 0 ? shape->components : 1;
+  if (shape->open) return mpsi_particles_committed(p, function);
+  if (shape->flags & MPS_VIEW_READONLY)
+    return mpsi_fail(p->context, function, MPS_ERROR_FIELD,
+                     "field '%s' is written by the library only", name);
+  mps_status status = check_values(p, function, shape, columns, values);
+  if (status == MPS_OK) status = mpsi_particles_add_field(p, function, name, shape->components);
+  if (status == MPS_OK)
+    status = write_columns(p, function, mpsi_field_find(p, name), first, columns, values, columns);
+  if (status != MPS_OK) mpsi_particles_drop_fields(p, fields);
+  return status;
+}
+
+mps_status mps_particles_set_array(mps_particles *particles, const char *name, int32_t component,
+                                   const double *values, int64_t count) {
+  if (!particles) return mpsi_null(__func__, "particles");
+  mps_context *context = particles->context;
+  if (!name) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mpsi_field shape;
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status == MPS_OK) status = mpsi_field_look_up(particles, __func__, name, &shape);
+  if (status != MPS_OK) return status;
+  if (component < -1 || component >= shape.components)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "component of field '%s' is %d, allowed are -1 (all) to %d", name, component,
+                     shape.components - 1);
+  if (count != particles->count)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, must be the number of particles, %lld", (long long)count,
+                     (long long)particles->count);
+  if (count > 0 && !values)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "values is NULL");
+  status = check_values(particles, __func__, &shape, component < 0 ? shape.components : 1, values);
+  return status == MPS_OK ? mpsi_field_write(particles, __func__, name, &shape, component, values)
+                          : status;
 }

@@ -1,4 +1,4 @@
-/* fields.c - named fields of a particle set: the table, the storage of a field, and views of it.
+/* fields.c - fields of a particle set: the storage of a field, and views of it.
  *
  * Storage: a loop over particles reads many columns side by side. Columns that start at the same
  * offset in a 4 KiB page would compete for the same few lines of the first-level cache, and a load
@@ -6,8 +6,6 @@
  * each column starts STAGGER lines later in its page than the previous one.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
-
-#include "fields.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -29,31 +27,6 @@ _Static_assert(offsetof(mps_view, data) == 0 && offsetof(mps_view, shape) == 8 &
 _Static_assert(offsetof(mps_edit, data) == 0 && offsetof(mps_edit, view) == 8 &&
                    sizeof(mps_edit) == 88,
                "mps_edit has a frozen layout");
-
-/* ---- the table ------------------------------------------------------------------------------- */
-
-typedef struct table_row {
-  const char *name, *unit, *meaning;
-  mps_dtype dtype;
-  int32_t components; /* or a code */
-} table_row;
-
-#define I64                                                                                        \
-  { 0, 64, 1 }
-#define F64                                                                                        \
-  { 2, 64, 1 }
-#define ROW(name, type, components, unit, meaning, writer, valid)                                  \
-  {#name, unit, meaning, type, components},
-static const table_row table[] = {MPSI_FIELD_TABLE(ROW)};
-#undef ROW
-
-static const table_row *table_find(const char *name) {
-  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-    if (strcmp(table[i].name, name) == 0) return &table[i];
-  return NULL;
-}
-
-bool mpsi_field_is_known(const char *name) { return table_find(name) != NULL; }
 
 static bool is_f64(mps_dtype dtype) { return dtype.code == 2; }
 
@@ -147,38 +120,30 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   return MPS_OK;
 }
 
-/* The rule for other names than the table's: an identifier is the caller's, two with a dot between
- * are the history of a material. */
-static bool good_name(const char *name) {
-  const size_t length = mpsi_identifier(name, MPSI_FIELD_NAME_PART);
-  if (length == 0 || name[length] == '\0') return length > 0;
-  const char *column = name + length + 1;
-  const size_t rest = mpsi_identifier(column, MPSI_FIELD_NAME_PART);
-  return name[length] == '.' && rest > 0 && column[rest] == '\0';
-}
-
-static mps_status describe_user_field(const mps_particles *p, const char *function,
-                                      const char *name, int32_t components, mpsi_field *out) {
-  if (!good_name(name))
-    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                     "name is '%.60s', must be letters, digits and _, not begin with a digit, and "
-                     "have 1 to %d characters",
-                     name, MPSI_FIELD_NAME_PART - 1);
+static mps_status describe_other_field(const mps_particles *p, const char *function,
+                                       const char *name, int32_t components, bool of_law,
+                                       mpsi_field *out) {
   if (components < 1 || components > MAX_COMPONENTS)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                     "components of the caller's field '%s' is %d, allowed are 1 to %d", name,
-                     components, MAX_COMPONENTS);
-  *out = (mpsi_field){
-      .unit = "", .meaning = "field of the caller", .dtype = F64, .components = components};
+                     "components of field '%s' is %d, allowed are 1 to %d", name, components,
+                     MAX_COMPONENTS);
+  *out = (mpsi_field){.unit = "",
+                      .meaning = of_law ? "history of a law" : "field of the caller",
+                      .dtype = {2, 64, 1},
+                      .components = components};
   return MPS_OK;
 }
 
-/* Description of a field of this name and number of components (0: the table's). */
+/* Description of a field of this name and number of components (0: the table's). `histories`: that
+ * of a law is one, too. */
 static mps_status describe_field(const mps_particles *p, const char *function, const char *name,
-                                 int32_t components, mpsi_field *out) {
-  const table_row *row = table_find(name);
+                                 int32_t components, bool histories, mpsi_field *out) {
+  const mpsi_field_row *row = mpsi_field_row_of(name);
+  const mpsi_field_owner owner = mpsi_field_owner_of(name);
+  if (owner == MPSI_FIELD_UNKNOWN || (owner == MPSI_FIELD_OF_LAW && !histories))
+    return mpsi_field_refuse_name(p->context, function, name);
   if (row) {
-    const int32_t expected = mpsi_field_components(row->components, p->def.dim);
+    const int32_t expected = mpsi_field_row_components(row, p->def.dim);
     if (components != 0 && components != expected)
       return mpsi_fail(
           p->context, function, MPS_ERROR_FIELD,
@@ -188,44 +153,76 @@ static mps_status describe_field(const mps_particles *p, const char *function, c
         .unit = row->unit, .meaning = row->meaning, .dtype = row->dtype, .components = expected};
     if (strcmp(name, "id") == 0 || strcmp(name, "material") == 0) out->flags = MPS_VIEW_READONLY;
   } else {
-    MPSI_TRY(describe_user_field(p, function, name, components, out));
+    MPSI_TRY(describe_other_field(p, function, name, components, owner == MPSI_FIELD_OF_LAW, out));
   }
   snprintf(out->name, sizeof out->name, "%s", name);
+  return MPS_OK;
+}
+
+static mps_status add_field(mps_particles *p, const char *function, const char *name,
+                            int32_t components, bool histories) {
+  mpsi_field field = {0};
+  const mpsi_field *present = mpsi_field_find(p, name);
+  MPSI_TRY(describe_field(p, function, name, components, histories || present, &field));
+  if (!present) return insert_field(p, function, &field);
+  if (present->components != field.components)
+    return mpsi_fail(p->context, function, MPS_ERROR_FIELD,
+                     "components is %d, but field '%s' exists with %d", components, name,
+                     present->components);
   return MPS_OK;
 }
 
 mps_status mps_particles_add_field(mps_particles *particles, const char *name, int32_t components) {
   if (!particles) return mpsi_null(__func__, "particles");
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
-  mpsi_field field = {0};
-  MPSI_TRY(describe_field(particles, __func__, name, components, &field));
-  const mpsi_field *present = mpsi_field_find(particles, name);
-  if (!present) return insert_field(particles, __func__, &field);
-  if (present->components != field.components)
-    return mpsi_fail(particles->context, __func__, MPS_ERROR_FIELD,
-                     "components is %d, but field '%s' exists with %d", components, name,
-                     present->components);
-  return MPS_OK;
+  return add_field(particles, __func__, name, components, false);
+}
+
+mps_status mpsi_particles_add_field(mps_particles *particles, const char *function,
+                                    const char *name, int32_t components) {
+  return add_field(particles, function, name, components, true);
+}
+
+/* ---- removing -------------------------------------------------------------------------------- */
+
+void mpsi_field_drop(mps_particles *p, mpsi_field *field) {
+  int32_t kept = 0;
+  for (int32_t f = 0; f < p->field_count; f++)
+    if (p->fields[f] != field) p->fields[kept++] = p->fields[f];
+  p->field_count = kept;
+  p->columns -= field->components;
+  mpsi_free(p->context, field->block);
+  mpsi_free(p->context, field->former);
+  mpsi_free(p->context, field);
 }
 
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {
-  while (particles->field_count > keep) {
-    mpsi_field *field = particles->fields[--particles->field_count];
-    particles->columns -= field->components;
-    MPSI_FREE(particles->context, field->block, field->former, field);
-  }
+  while (particles->field_count > keep)
+    mpsi_field_drop(particles, particles->fields[particles->field_count - 1]);
 }
 
 /* ---- looking --------------------------------------------------------------------------------- */
 
-static mps_status fail_unknown(const mps_particles *p, const char *function, const char *name) {
-  char names[360] = "";
+mps_status mpsi_field_fail_unknown(const mps_particles *p, const char *function, const char *name) {
+  char names[260] = "", own[MPSI_FIELD_NAME], advice[120] = "";
   size_t used = 0;
   for (int32_t f = 0; f < p->field_count && used < sizeof names; f++)
     used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", f ? ", " : "",
                              p->fields[f]->name);
-  return mpsi_fail(p->context, function, MPS_ERROR_FIELD, "no field '%.60s'; the set has: %s", name,
-                   names);
+  const char *near = mpsi_field_nearest(name);
+  (void)snprintf(own, sizeof own, MPSI_FIELD_OWN "%.60s", name);
+  if (mpsi_field_find(p, own))
+    (void)snprintf(advice, sizeof advice, " (write %s)", own);
+  else if (mpsi_field_owner_of(name) == MPSI_FIELD_OF_CALLER)
+    (void)snprintf(advice, sizeof advice, " (mps_particles_add_field adds it)");
+  else if (near)
+    (void)snprintf(advice, sizeof advice, " (is '%s' meant?)", near);
+  return mpsi_fail(p->context, function, MPS_ERROR_FIELD, "no field '%.60s'%s; the set has: %s",
+                   name, advice, names);
+}
+
+int32_t mps_particles_has_field(const mps_particles *particles, const char *name) {
+  return particles && name && mpsi_field_find(particles, name) != NULL;
 }
 
 mps_status mps_particles_view(mps_particles *particles, const char *name, mps_view *out) {
@@ -235,7 +232,7 @@ mps_status mps_particles_view(mps_particles *particles, const char *name, mps_vi
                      name ? "out" : "name");
   memset(out, 0, sizeof *out);
   const mpsi_field *field = mpsi_field_find(particles, name);
-  if (!field) return fail_unknown(particles, __func__, name);
+  if (!field) return mpsi_field_fail_unknown(particles, __func__, name);
   *out = (mps_view){.data = field->data,
                     .shape = {particles->count, field->components, 1},
                     .stride = {1, field->stride, 1},
@@ -248,8 +245,8 @@ mps_status mps_particles_view(mps_particles *particles, const char *name, mps_vi
 mps_status mpsi_field_look_up(const mps_particles *p, const char *function, const char *name,
                               mpsi_field *out) {
   const mpsi_field *field = mpsi_field_find(p, name);
-  if (!field && !table_find(name)) return fail_unknown(p, function, name);
-  if (!field) return describe_field(p, function, name, 0, out);
+  if (!field && !mpsi_field_row_of(name)) return mpsi_field_fail_unknown(p, function, name);
+  if (!field) return describe_field(p, function, name, 0, false, out);
   *out = *field;
   return MPS_OK;
 }

@@ -20,6 +20,15 @@ int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
 /* Whether `name` is a field of the library's own, a row of fields.h. */
 bool mpsi_field_is_known(const char *name);
 
+/* Writes the present name of a caller's field that a file of libmps 0.3 has as `former`, without
+ * "user."; false: `former` is not such a name. */
+bool mpsi_field_own_name(const char *former, char *out, size_t size);
+
+/* mps_particles_add_field for a solver that has been given a law, and for what restores a state:
+ * the name may be that of a law's history. */
+mps_status mpsi_particles_add_field(mps_particles *particles, const char *function,
+                                    const char *name, int32_t components);
+
 /* Whether `ids` are particles of the set. The second takes NULL with a count of 0 for all of them,
  * as functions that assign materials do. */
 mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
@@ -108,6 +117,8 @@ struct mpsi_holder {
   /* After both, also on an error of another holder: columns, count and order may have changed. May
    * be NULL. Readers are notified too when the set is restored to a former state. */
   void (*renew)(void *self);
+  /* Whether it needs the field. NULL: all but those of the caller's own. */
+  bool (*uses)(const void *self, const char *field);
   /* Of a set that lies on several ranks: its rows in runs, with their place in the order of the
    * whole (`out` NULL: how many). NULL: rank after rank. */
   int64_t (*runs)(const void *self, mpsi_row_run *out);

@@ -1,13 +1,13 @@
-/* particles_private.h - the members of a particle set, for particles.c, edit.c, fields.c, fill.c
- * and population.c only. SPDX-License-Identifier: BSD-3-Clause */
+/* particles_private.h - the members of a particle set, for the files of this folder and
+ * the state of a set (core/state) only. SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
 #include "ids.h"
 #include "particles_internal.h"
 
 #define MPSI_MAX_PARTICLES (INT64_C(1) << 40)
-#define MPSI_FIELD_NAME 96      /* bytes, with the terminating zero: <material>.<column> */
-#define MPSI_FIELD_NAME_PART 48 /* of each of both, and of a caller's field */
+#define MPSI_FIELD_NAME 96      /* bytes, with the terminating zero: <law>.<column>, user.NAME */
+#define MPSI_FIELD_NAME_PART 48 /* of each of both parts */
 
 /* A field: its columns lie one behind the other in one block, `stride` items apart. */
 typedef struct mpsi_field {
@@ -63,6 +63,32 @@ struct mps_particles {
   mpsi_site_runs sites; /* sites occupied by lattice fills */
 };
 
+/* ---- names.c --------------------------------------------------------------------------------- */
+
+#define MPSI_FIELD_OWN "user." /* begins the name of a caller's field */
+
+/* A row of the library's table, fields.h. */
+typedef struct mpsi_field_row {
+  const char *name, *unit, *meaning;
+  mps_dtype dtype;
+  int32_t components; /* or a code */
+} mpsi_field_row;
+
+const mpsi_field_row *mpsi_field_row_of(const char *name); /* or NULL */
+int32_t mpsi_field_row_components(const mpsi_field_row *row, int32_t dim);
+
+typedef enum mpsi_field_owner {
+  MPSI_FIELD_UNKNOWN, /* no name of a field */
+  MPSI_FIELD_OF_TABLE,
+  MPSI_FIELD_OF_CALLER,
+  MPSI_FIELD_OF_LAW
+} mpsi_field_owner;
+mpsi_field_owner mpsi_field_owner_of(const char *name);
+/* The field of the table that a misspelt name may stand for, or NULL. */
+const char *mpsi_field_nearest(const char *name);
+/* Records why a caller cannot add a field of this name, and what to write. */
+mps_status mpsi_field_refuse_name(mps_context *context, const char *function, const char *name);
+
 /* ---- fields.c -------------------------------------------------------------------------------- */
 
 #define MPSI_FIELD_ID 0
@@ -72,6 +98,11 @@ mpsi_field *mpsi_field_find(const mps_particles *particles, const char *name); /
 /* The field of that name, or its description in the table of fields; MPS_ERROR_FIELD otherwise. */
 mps_status mpsi_field_look_up(const mps_particles *particles, const char *function,
                               const char *name, mpsi_field *out);
+/* Records that the set has no such field, what may be meant, and which it has. */
+mps_status mpsi_field_fail_unknown(const mps_particles *particles, const char *function,
+                                   const char *name);
+/* The field is one of the set's. */
+void mpsi_field_drop(mps_particles *particles, mpsi_field *field);
 /* Address of a column of 8-byte items. */
 static inline void *mpsi_field_column(const mpsi_field *field, int32_t component) {
   return (char *)field->data + (size_t)component * (size_t)field->stride * 8;
@@ -82,6 +113,12 @@ void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
 
 /* ---- edit.c ---------------------------------------------------------------------------------- */
+
+/* The values of all particles become those of a field, or of one component of it (-1: of all), once
+ * they are checked; a field that is not there is added. A holder may refuse them: nothing has
+ * changed on an error. `shape`: of mpsi_field_look_up. */
+mps_status mpsi_field_write(mps_particles *particles, const char *function, const char *name,
+                            const mpsi_field *shape, int32_t component, const double *values);
 
 /* ---- population.c ---------------------------------------------------------------------------- */
 

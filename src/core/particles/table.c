@@ -31,6 +31,7 @@ typedef struct table {
   mps_context *context;
   mps_table_def def;
   mpsi_nearest tree;
+  mpsi_field shape;
   int32_t components, rank;           /* of the field; directions in which the points extend */
   const double *values, *position[3]; /* position: of the particles */
   double *out;                        /* components values a particle */
@@ -282,41 +283,20 @@ static mps_status check_points(const table *t, const double *positions) {
   return MPS_OK;
 }
 
-static mps_status check_shape(const table *t, const char *field) {
-  mpsi_field shape;
+static mps_status check_shape(table *t, const char *field) {
   if (!field) return mpsi_fail(t->context, function, MPS_ERROR_ARGUMENT, "field is NULL");
-  MPSI_TRY(mpsi_field_look_up(t->set, function, field, &shape));
-  if (shape.dtype.code != 2 || shape.flags & MPS_VIEW_READONLY)
+  MPSI_TRY(mpsi_field_look_up(t->set, function, field, &t->shape));
+  if (t->shape.dtype.code != 2 || t->shape.flags & MPS_VIEW_READONLY)
     return mpsi_fail(t->context, function, MPS_ERROR_FIELD, "field '%s' is %s", field,
-                     shape.dtype.code != 2 ? "of int64, must be float64"
-                                           : "written by the library only");
-  if (shape.components != t->components)
+                     t->shape.dtype.code != 2 ? "of int64, must be float64"
+                                              : "written by the library only");
+  if (t->shape.components != t->components)
     return mpsi_fail(t->context, function, MPS_ERROR_FIELD, "components is %d, field '%s' has %d",
-                     (int)t->components, field, (int)shape.components);
+                     (int)t->components, field, (int)t->shape.components);
   return MPS_OK;
 }
 
 /* ---- the field ------------------------------------------------------------------------------- */
-
-/* The values of all particles become the field's, by an edit that checks and notifies. */
-static mps_status write_field(const table *t, const char *field) {
-  mps_particles *set = t->set;
-  const int32_t fields = set->field_count;
-  mps_edit edit;
-  mps_status status =
-      mpsi_as(t->context, function, mps_particles_add_field(set, field, t->components));
-  if (status == MPS_OK)
-    status = mpsi_as(t->context, function, mps_particles_edit(set, field, &edit));
-  if (status == MPS_OK) {
-    for (int64_t i = 0; i < set->count; i++)
-      for (int32_t c = 0; c < t->components; c++)
-        *mps_edit_f64(&edit, i, c) = t->out[i * t->components + c];
-    status = mpsi_as(t->context, function, mps_particles_commit(set, &edit));
-    if (status != MPS_OK && mps_particles_abandon(set, &edit) != MPS_OK) return MPS_ERROR_INTERNAL;
-  }
-  if (status != MPS_OK) mpsi_particles_drop_fields(set, fields);
-  return status;
-}
 
 static mps_status read_table(table *t, const char *field, const double *positions,
                              int64_t *outside) {
@@ -331,7 +311,8 @@ static mps_status read_table(table *t, const char *field, const double *position
   mps_status status =
       t->def.interpolation == MPS_TABLE_INTERPOLATION_LINEAR ? find_rank(t, positions) : MPS_OK;
   if (status == MPS_OK) status = find_values(t, outside);
-  return status == MPS_OK ? write_field(t, field) : status;
+  return status == MPS_OK ? mpsi_field_write(t->set, function, field, &t->shape, -1, t->out)
+                          : status;
 }
 
 mps_status mps_particles_set_table(mps_particles *particles, const char *field, int64_t count,

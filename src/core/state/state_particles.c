@@ -190,7 +190,7 @@ static mps_status add_missing(mps_particles *p, const char *function, const mps_
   for (int32_t f = 0; f < from->fields.count; f++) {
     const mpsi_value *then = &from->fields.item[f];
     if (mpsi_field_find(p, then->name) ||
-        mps_particles_add_field(p, then->name, then->columns) == MPS_OK)
+        mpsi_particles_add_field(p, function, then->name, then->columns) == MPS_OK)
       continue;
     mpsi_particles_drop_fields(p, before);
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,

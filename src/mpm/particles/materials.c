@@ -6,13 +6,14 @@
 
 /* ---- one law --------------------------------------------------------------------------------- */
 
-static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
+static mps_status add_fields(mps_particles *set, const char *function, const mpsi_law_use *law) {
   mps_status status = MPS_OK;
   if (law->reads_volume) status = mps_particles_add_field(set, "volume_ratio", 0);
   if (status == MPS_OK && law->needs_deformation)
     status = mps_particles_add_field(set, "deformation_gradient", 0);
   for (int32_t h = 0; h < law->columns && status == MPS_OK; h++)
-    status = mps_particles_add_field(set, mpsi_material_history_field(law->material, h), 1);
+    status =
+        mpsi_particles_add_field(set, function, mpsi_material_history_field(law->material, h), 1);
   return status;
 }
 
@@ -76,7 +77,7 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
   if (!law.history)
     return mpsi_fail_memory(context, function, (size_t)law.columns * sizeof *law.history);
   const int32_t fields = mps_particles_field_count(set);
-  const mps_status status = mpsi_as(context, function, add_fields(set, &law));
+  const mps_status status = mpsi_as(context, function, add_fields(set, function, &law));
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);
     mpsi_free(context, law.history);

@@ -206,7 +206,16 @@ def same_field(name, then, now):
     then, now = then.split("\t"), now.split("\t")
     found = [f"field '{name}': its {what} was {then[k]} and is {now[k]}"
              for k, what in enumerate(("type", "number of components in 2D", "number of components in 3D", "unit")) if then[k] != now[k]]
+    if then[6] != now[6]:
+        found.append(f"field '{name}': its first release was {then[6]} and is {now[6]}")
     return found + narrower(f"field '{name}'", then[4:6], now[4:6])
+
+
+def new_fields(then, now, release):
+    """A field that the release lacks has a later one."""
+    number = lambda text: [int(part) for part in text.split(".")]  # noqa: E731
+    return [f"field '{name}' is not in {release}, and its first release is {value.split(chr(9))[6]}"
+            for name, value in now.items() if name not in then and number(value.split("\t")[6]) <= number(release)]
 
 
 def same_status(name, then, now):

@@ -1,7 +1,7 @@
 /* tables.c - prints what the library's tables say of definitions and fields, a line each:
  *
  *   definition  struct  member  type  count  unit  lower  upper  allowed besides  default  choices
- *   field  name  type  components in 2D  in 3D  unit  lower  upper
+ *   field  name  type  components in 2D  in 3D  unit  lower  upper  first release
  *
  * "(" before, and ")" behind an end of a range: without that end. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/definition/definition.h"
@@ -31,10 +31,10 @@ static void print_member(const mpsi_definition *d, const mpsi_def_member *m) {
 /* Every field, with the range that it has by default. */
 static void print_fields(void) {
   static const struct {
-    const char *name, *type, *unit;
+    const char *name, *type, *unit, *since;
     int32_t components;
   } fields[] = {
-#define FIELD(name, type, components, unit, meaning, writer, valid) {#name, #type, unit, components},
+#define FIELD(name, type, components, unit, meaning, writer, valid, since) {#name, #type, unit, #since, components},
       MPSI_FIELD_TABLE(FIELD)
 #undef FIELD
   };
@@ -50,9 +50,9 @@ static void print_fields(void) {
     double lower = -MPSI_LARGEST, upper = MPSI_LARGEST;
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
       if (strcmp(ranges[r].name, fields[k].name) == 0) lower = ranges[r].lower, upper = ranges[r].upper;
-    printf("field\t%s\t%s\t%d\t%d\t%s\t%.17g\t%.17g\n", fields[k].name, fields[k].type,
+    printf("field\t%s\t%s\t%d\t%d\t%s\t%.17g\t%.17g\t%s\n", fields[k].name, fields[k].type,
            (int)mpsi_field_components(fields[k].components, 2), (int)mpsi_field_components(fields[k].components, 3),
-           fields[k].unit, lower, upper);
+           fields[k].unit, lower, upper, fields[k].since);
   }
 }
 

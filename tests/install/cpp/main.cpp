@@ -10,6 +10,7 @@
 #include <memory>
 #include <numeric>
 #include <stdexcept>
+#include <vector>
 
 static mps::particles ground(const mps::context &context) {
   mps::particles sand = block(context);
@@ -113,6 +114,27 @@ static void ranges(const mps::context &context) {
   EXPECT(*std::lower_bound(y.begin(), y.end(), 41.5) == 42.0);
   EXPECT(y.begin()[7] == v(7, 1) && *(y.begin() + 7) == 7.0 && *--y.end() == 99.0);
   for (const int64_t id : mps::view<int64_t>(sand, "id").column()) EXPECT(id >= 0 && id < 100);
+}
+
+static void values(const mps::context &context) {
+  const mps::particles sand = ground(context);
+  std::vector<double> dose(200);
+  for (size_t k = 0; k < dose.size(); k++) dose[k] = double(k);
+  mps::call(sand, mps_particles_add_field, "user.dose", 2);
+  mps::set_array(sand, "user.dose", dose);
+  mps::particles twin = mps::copy(sand);
+  mps::set_array(sand, "user.dose", std::vector<double>(100, -1.0), 0);
+  EXPECT(mps::view(sand, "user.dose")(99, 0) == -1.0 &&
+         mps::view(sand, "user.dose")(99, 1) == 199.0);
+  EXPECT(mps::view(twin, "user.dose")(99, 0) == 198.0);
+  mps::call(sand, mps_particles_remove_field, "user.dose");
+  EXPECT(!mps_particles_has_field(sand, "user.dose") && mps_particles_has_field(twin, "user.dose"));
+  try {
+    mps::set_array(twin, "user.dose", std::vector<double>(100));
+    EXPECT(!"too few values were taken");
+  } catch (const mps::error &e) {
+    EXPECT(std::strstr(e.what(), "are 100, must be 200") != nullptr);
+  }
 }
 
 static void errors(const mps::context &context) {
@@ -329,6 +351,7 @@ int main() {
     free_fall(context);
     writing(context);
     ranges(context);
+    values(context);
     errors(context);
     callbacks(context);
     mps_context_def two = mps_context_defaults();
