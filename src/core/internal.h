@@ -54,6 +54,15 @@ mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *arg
 int64_t mpsi_failures(const mps_context *context); /* number of records so far */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 
+/* What a message says of a choice: the name of its enumerator ("MPS_BOUNDARY_HELD" of
+ * "mps_boundary_kind" and 0); the number of a value that has none. */
+typedef struct mpsi_name {
+  char text[64];
+} mpsi_name;
+mpsi_name mpsi_name_of(const char *enumeration, int32_t value);
+/* The enumeration that an enumerator belongs to; NULL for another name. */
+const char *mpsi_enumeration_of(const char *name);
+
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
  * `room` characters or more. The rest is not checked. */
 size_t mpsi_identifier(const char *name, size_t room);

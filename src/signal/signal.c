@@ -142,7 +142,7 @@ static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
     const double sample[3] = {m.u, m.v, m.a};
     hash = mpsi_hash(hash, sample, sizeof sample);
   }
-  const double numbers[] = {signal->start, signal->end,   signal->amplitude, signal->rate,
+  const double numbers[] = {signal->start, signal->end,   signal->amplitude,    signal->rate,
                             signal->shift, signal->coast, (double)signal->count};
   hash = mpsi_hash(hash, numbers, sizeof numbers);
   return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
@@ -215,11 +215,10 @@ static mpsi_signal_motion ramp_at(const mps_signal *signal, double t) {
 static mps_status check_quantity(mps_context *context, const char *function, int32_t quantity) {
   if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT || quantity == MPS_SIGNAL_QUANTITY_VALUE)
     return MPS_OK;
-  return mpsi_fail(
-      context, function, MPS_ERROR_ARGUMENT,
-      "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_DISPLACEMENT (2), a motion, and "
-      "MPS_SIGNAL_QUANTITY_VALUE (3), a number",
-      quantity);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "quantity is %s, allowed are MPS_SIGNAL_QUANTITY_DISPLACEMENT, a motion, and "
+                   "MPS_SIGNAL_QUANTITY_VALUE, a number",
+                   mpsi_name_of("mps_signal_quantity", quantity).text);
 }
 
 /* Checks shared by the analytic kinds; `peaks` are the largest |u|, |v|, |a| of the motion. */

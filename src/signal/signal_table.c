@@ -125,8 +125,8 @@ static mps_status check_table(mps_context *context, const char *function, int32_
                               int64_t count, const double *times, const double *values) {
   if (quantity < MPS_SIGNAL_QUANTITY_ACCELERATION || quantity > MPS_SIGNAL_QUANTITY_VALUE_STEPS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_ACCELERATION (0), _VELOCITY "
-                     "(1), _DISPLACEMENT (2), _VALUE (3) and _VALUE_STEPS (4)",
+                     "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_ACCELERATION, _VELOCITY, "
+                     "_DISPLACEMENT, _VALUE and _VALUE_STEPS",
                      quantity);
   if (count < 2 || count >= INT32_MAX)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",

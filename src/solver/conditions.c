@@ -63,8 +63,7 @@ static void *copy_def(mps_context *context, const mpsi_condition_kind *kind, con
     if (signal[c]) (void)mpsi_signal_retain(signal[c]);
   for (LISTS(k, kind)) {
     const size_t bytes = bytes_of(kind, def, k);
-    void *list = *list_of(kind, copy, k) =
-        bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
+    void *list = *list_of(kind, copy, k) = bytes > 0 && good ? mpsi_alloc(context, 1, bytes) : NULL;
     if (list) memcpy(list, *list_of(kind, def, k), bytes);
     good = good && (list || bytes == 0);
   }
@@ -80,7 +79,7 @@ static void give(const mpsi_condition_kind *kind, const void *def, mpsi_given *l
   const mpsi_definition *d = kind->definition;
   for (const mpsi_def_member *m = d->member; m < d->member + d->count; m++)
     for (int32_t c = 0; m->type <= MPSI_MEMBER_REAL && c < m->count; c++)
-      mpsi_give(list, m->name, mpsi_member_value(m, def, c));
+      mpsi_give_member(list, m, def, c);
   for (LISTS(k, kind))
     mpsi_give_bytes(list, kind->list[k].member, *list_of(kind, def, k), bytes_of(kind, def, k));
   for (int32_t c = 0; c < count; c++) mpsi_signal_give(list, "a hash of signal", signal[c]);
@@ -213,12 +212,10 @@ static mpsi_conditions *find_list(const mps_solver *s, int32_t kind) {
 }
 
 static mps_status fail_kind(const mps_solver *s, const char *function, int32_t kind) {
-  const mpsi_definition *given = mpsi_definition_of(kind);
   return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                   "kind is %d%s%s%s, this solver has %d (%s) and %d (%s)", kind, given ? " (" : "",
-                   given ? given->type : "", given ? ")" : "", s->conditions[0].kind->kind,
-                   s->conditions[0].kind->definition->type, s->conditions[1].kind->kind,
-                   s->conditions[1].kind->definition->type);
+                   "kind is %s, this solver has %s and %s", mpsi_name_of("mps_def_kind", kind).text,
+                   mpsi_name_of("mps_def_kind", s->conditions[0].kind->kind).text,
+                   mpsi_name_of("mps_def_kind", s->conditions[1].kind->kind).text);
 }
 
 static bool is_there(const mps_solver *s, const mpsi_conditions *list, int32_t number) {

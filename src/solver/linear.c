@@ -10,8 +10,6 @@
 #define UNTOUCHED -3e-301 /* behind the solution */
 enum { BEHIND = 8 };      /* entries there */
 
-static const char *const equations[] = {"none", "STIFFNESS", "PRESSURE", "PORE_PRESSURE"};
-
 /* ---- the solver that is set ------------------------------------------------------------------ */
 
 /* Whether it is of the processes that the solver has. */
@@ -30,8 +28,10 @@ static mps_status check(mps_solver *s, const char *function, int32_t equation,
                         const mps_linear_solver_def *user, mps_linear_solver_def *def) {
   if (equation < 1 || equation != s->kind->equation)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "equation is %d, that of the solver is %d (%s)", (int)equation,
-                     (int)s->kind->equation, equations[s->kind->equation]);
+                     s->kind->equation ? "equation is %s, that of the solver is %s"
+                                       : "equation is %s, and the solver has none to solve",
+                     mpsi_name_of("mps_linear_equation", equation).text,
+                     mpsi_name_of("mps_linear_equation", s->kind->equation).text);
   mps_status status = s->kind->linear_ready ? s->kind->linear_ready(s, function) : MPS_OK;
   if (status == MPS_OK && user)
     status = MPSI_DEF_READ(s->context, function, mps_linear_solver_def, user, def);

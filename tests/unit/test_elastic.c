@@ -125,8 +125,9 @@ TEST(bad_supports_and_loads_are_refused) {
   REFUSE(test_prescribe(e, 0, 2, good, nan_values), "values[3] is nan");
   REFUSE(test_roller(e, zero, 2, good, NULL), "length of normal is 0");
   REFUSE(test_roller(e, nan_values, 2, good, NULL), "length of normal is nan");
-  REFUSE(mps_elastic_cut(e, MPS_SIDE_Z_UPPER, good, 2), "side is 5, allowed are 0 to 3");
-  REFUSE(mps_elastic_cut(e, MPS_SIDE_ANY, good, 2), "side is -1");
+  REFUSE(mps_elastic_cut(e, MPS_SIDE_Z_UPPER, good, 2),
+         "side is MPS_SIDE_Z_UPPER, allowed are MPS_SIDE_X_LOWER to MPS_SIDE_Y_UPPER");
+  REFUSE(mps_elastic_cut(e, MPS_SIDE_ANY, good, 2), "side is MPS_SIDE_ANY");
   REFUSE(mps_elastic_cut(e, MPS_SIDE_X_LOWER, bad, 2), "ids[1] is 9");
   FAILS(mps_elastic_cut(e, MPS_SIDE_X_UPPER, good, 2), MPS_ERROR_STATE,
         "particle 0 has a neighbour");

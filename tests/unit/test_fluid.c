@@ -151,7 +151,7 @@ TEST(takes_a_kernel) {
   assert_true(most > 1e-3);
   OK(mps_kernel_create(context, MPS_KERNEL_MPS, 0.29, &def.kernel));
   REFUSES(mps_fluid_create(context, p, &def, &f),
-          "its kind is 0, and that of a fluid must be MPS_KERNEL_SMOOTH");
+          "its kind is MPS_KERNEL_MPS, and that of a fluid must be MPS_KERNEL_SMOOTH");
   mps_kernel_destroy(&def.kernel);
   OK(mps_kernel_create(context, MPS_KERNEL_SMOOTH, 0.5, &def.kernel));
   REFUSES(mps_fluid_create(context, p, &def, &f),
@@ -387,7 +387,7 @@ TEST(bodies_come_and_go) {
   REFUSES(mps_fluid_add_contact(t.fluid, disc, NULL, &contact), "no polygon");
   REFUSES(mps_fluid_add_contact(t.fluid, small, NULL, &contact), "edge 1 of the body");
   REFUSES(mps_fluid_add_contact(t.fluid, corner, NULL, &contact), "edge 1 of the body");
-  REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is 1");
+  REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is MPS_BOUNDARY_DRIVEN, ");
   assert_null(contact);
   OK(mps_body_name_part(box, "bottom", 0, 1, NULL));
   OK(mps_fluid_add_contact(t.fluid, box, NULL, &contact));
@@ -699,7 +699,8 @@ TEST(water_leaves_by_an_open_side) {
   /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
   REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number 2");
   def.nodes = x, def.node_count = 1;
-  REFUSES(mps_fluid_set_boundary(t.fluid, number, &def), "must be 0 where kind is MPS_BOUNDARY_OPEN");
+  REFUSES(mps_fluid_set_boundary(t.fluid, number, &def),
+          "must be 0 where kind is MPS_BOUNDARY_OPEN");
   /* To the last particle but one. */
   def.nodes = NULL, def.node_count = 0, def.point[0] = -1.0;
   OK(mps_fluid_remove_boundary(t.fluid, number));

@@ -187,9 +187,8 @@ void mpsi_definition_fill(const mpsi_definition *definition, void *def, size_t s
 /* Component `c` of a number. */
 double mpsi_member_value(const mpsi_def_member *member, const void *def, int32_t c);
 void mpsi_member_set(const mpsi_def_member *member, void *def, int32_t c, double value);
+/* A value in a message: the name of a choice, else (and where `member` is NULL) the number. */
+struct mpsi_name mpsi_member_text(const mpsi_def_member *member, double value);
 const mpsi_def_member *mpsi_member_find(const mpsi_definition *definition, const char *name);
-/* "height is -1 m, must be in ...": what a refusal of component `c` says. */
-void mpsi_member_refuse(const mpsi_def_member *member, const void *def, int32_t c,
-                        char why[MPSI_WHY]);
 
 #endif

@@ -35,7 +35,7 @@ MPSI_DEFINITION_RULED(mps_fluid_def, "fluid", FLUID, FLUID_RULES)
   X(S, ADDRESS, corners,      1, "",  ANY,                                                  NULL, OWN) \
   X(S, LONG,    corner_count, 1, "",  OR_ZERO IN(2, 10000),                                 0,    OWN)
 #define FLUID_BOUNDARY_RULES(X, S) \
-  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN, or ROLLER for slip")) \
+  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN, or MPS_BOUNDARY_ROLLER for slip")) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
   X(S, signal, NOT_GIVEN, WITH(S, corner_count), BECAUSE("a polyline does not move")) \
   X(S, node_count, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \

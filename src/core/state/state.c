@@ -181,6 +181,10 @@ static mps_status compare(const way_back *w, const mpsi_state_item *now, const m
   if (now->type == MPSI_STATE_I64) {
     const int64_t value = *(const int64_t *)then->data;
     if (value == now->own.integer) return MPS_OK;
+    if (now->enumeration)
+      return mpsi_fail(context, w->function, w->status, "in %s %s is %s, in this solver %s",
+                       w->source, now->name, mpsi_name_of(now->enumeration, (int32_t)value).text,
+                       mpsi_name_of(now->enumeration, (int32_t)now->own.integer).text);
     return mpsi_fail(context, w->function, w->status, "in %s %s is %lld, in this solver %lld",
                      w->source, now->name, (long long)value, (long long)now->own.integer);
   }

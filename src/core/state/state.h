@@ -61,6 +61,9 @@ void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);
 /* Construction or setup of the solver: where it differs, a rollback is an error that names the item
  * and both values. */
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value);
+/* Of an enumeration: a message names the enumerators. */
+void mpsi_state_agree_choice(mpsi_state *state, const char *name, const char *enumeration,
+                             int32_t value);
 void mpsi_state_agree_number(mpsi_state *state, const char *name, double value);
 void mpsi_state_agree_text(mpsi_state *state, const char *name, const char *value);
 

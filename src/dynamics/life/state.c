@@ -93,11 +93,11 @@ static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dash
 
 static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   const mps_dynamics_def *def = &dynamics->def;
-  mpsi_state_agree_integer(s, "integrator", def->integrator);
-  mpsi_state_agree_integer(s, "rotation", def->rotation);
-  mpsi_state_agree_integer(s, "damping", def->damping);
+  mpsi_state_agree_choice(s, "integrator", "mps_dynamics_integrator", def->integrator);
+  mpsi_state_agree_choice(s, "rotation", "mps_dynamics_rotation", def->rotation);
+  mpsi_state_agree_choice(s, "damping", "mps_dynamics_damping", def->damping);
   mpsi_state_agree_integer(s, "watch_damping", def->watch_damping);
-  mpsi_state_agree_integer(s, "kernel", mps_kernel_get_kind(dynamics->kernel));
+  mpsi_state_agree_choice(s, "kernel", "mps_kernel_kind", mps_kernel_get_kind(dynamics->kernel));
   mpsi_state_agree_number(s, "radius_ratio", def->radius_ratio);
   mpsi_state_agree_number(s, "f1", def->f1);
   mpsi_state_agree_number(s, "f2", def->f2);
@@ -109,7 +109,7 @@ static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
 
 static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
   mpsi_state_enter(s, "boundary%d", (int)number);
-  mpsi_state_agree_integer(s, "kind", b->kind);
+  mpsi_state_agree_choice(s, "kind", "mps_boundary_kind", b->kind);
   mpsi_state_agree_integer(s, "dofs", b->dofs);
   mpsi_state_i64(s, "particles", &b->part.count, 1);
   mpsi_state_exact(s, "pushed", b->pushed, 3);

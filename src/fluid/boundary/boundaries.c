@@ -19,8 +19,8 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   (void)number;
   if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
-                     d->kind, mpsi_boundary_kind_name(d->kind));
+                     "kind is %s, that of a polyline is MPS_BOUNDARY_HELD or MPS_BOUNDARY_ROLLER",
+                     mpsi_name_of("mps_boundary_kind", d->kind).text);
   if (d->corner_count != 0)
     return mpsi_fluid_check_corners(f, function, d->corner_count, d->corners);
   if (length > 1e-150 && length < 1e150) return MPS_OK;

@@ -10,7 +10,7 @@
 #include "core/state/state.h"
 
 static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
-  mpsi_state_agree_integer(s, "kind", w->motion ? w->kind : -1);
+  mpsi_state_agree_choice(s, "kind", "mps_boundary_kind", w->motion ? w->kind : -1);
   if (!w->motion) return;
   for (int c = 0; c < 2 && !w->of_body; c++) {
     mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);

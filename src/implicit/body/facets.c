@@ -54,7 +54,9 @@ mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t side, const d
   if (!e) return mpsi_null(__func__, "elastic");
   if (side < MPS_SIDE_ANY || side >= 2 * e->dim)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "side is %d, allowed are MPS_SIDE_ANY (-1) and 0 to %d", side, 2 * e->dim - 1);
+                     "side is %s, allowed are MPS_SIDE_ANY and MPS_SIDE_X_LOWER to %s",
+                     mpsi_name_of("mps_side", side).text,
+                     mpsi_name_of("mps_side", 2 * e->dim - 1).text);
   if (capacity < 0)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                      (long long)capacity);

@@ -74,7 +74,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
     if (e->def.solver != MPS_ELASTIC_SOLVER_AUTO)
       return mpsi_fail(e->context, function, MPS_ERROR_MEMORY,
                        "the factor takes %.4g bytes, memory_limit is %.4g: raise it, or set solver "
-                       "to AUTO or CG",
+                       "to MPS_ELASTIC_SOLVER_AUTO or _CG",
                        e->symbolic.bytes, e->def.memory_limit);
     e->use_cg = true;
     mpsi_cholesky_destroy(&e->cholesky);

@@ -56,19 +56,21 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      "of the domain",
                      (long long)def->id_count, def->all, def->dofs);
   if (grid->standard && def->kind == MPS_BOUNDARY_ABSORBING)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is 4 (ABSORBING), which the standard method does not allow: its splines "
-                     "reach over the side");
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "kind is MPS_BOUNDARY_ABSORBING, which the standard method does not allow: its "
+        "splines reach over the side");
   if (on_axis(grid, definition, number) && (def->kind > MPS_BOUNDARY_ROLLER || def->signal[0]))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %s with signal[0] %s on the axis r = 0: allowed are HELD, DRIVEN and "
-                     "ROLLER, without a signal[0], as the radial velocity is 0",
-                     mpsi_boundary_kind_name(def->kind), def->signal[0] ? "given" : "NULL");
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "kind is %s with signal[0] %s on the axis r = 0: allowed are MPS_BOUNDARY_HELD, "
+        "_DRIVEN and _ROLLER, without a signal[0], as the radial velocity is 0",
+        mpsi_name_of("mps_boundary_kind", def->kind).text, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < grid->dim; c++)
     if (def->signal[c] && def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "signal[%d] is given, and a side of the kind ROLLER does not hold that "
-                       "component",
+                       "signal[%d] is given, and a side of kind MPS_BOUNDARY_ROLLER prescribes the "
+                       "component across it alone",
                        c);
   return check_motion(context, grid, run, function, number, def);
 }
@@ -103,8 +105,9 @@ static mps_status check_prescribed(const mpsi_boundary_setup *setup, const char 
   const uint32_t all = grid->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d (%s), boxes of nodes and particles are 0 (HELD) or 1 (DRIVEN)",
-                     def->kind, mpsi_boundary_kind_name(def->kind));
+                     "kind is %s, boxes of nodes and particles are MPS_BOUNDARY_HELD or "
+                     "MPS_BOUNDARY_DRIVEN",
+                     mpsi_name_of("mps_boundary_kind", def->kind).text);
   if (def->dofs & ~all)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
@@ -165,15 +168,11 @@ mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
                                 mpsi_boundaries *boundaries, const char *function) {
   mpsi_boundary *hold = boundaries->hold;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind == MPS_BOUNDARY_ABSORBING)
+    if (hold[k].kind == MPS_BOUNDARY_ABSORBING || hold[k].kind == MPS_BOUNDARY_FREE_FIELD)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "mpm: boundary %d is absorbing, which the standard method does not allow",
-                       k);
-    else if (hold[k].kind == MPS_BOUNDARY_FREE_FIELD)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "mpm: boundary %d is of kind 5 (FREE_FIELD), which the standard method does "
-                       "not allow",
-                       k);
+                       "mpm: %s is of kind %s, which the standard method does not allow",
+                       mpsi_name_of("mps_side", k).text,
+                       mpsi_name_of("mps_boundary_kind", hold[k].kind).text);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(grid, boundaries, k, hold[k].kind);
   boundaries->outdated = true;
@@ -299,7 +298,7 @@ mps_status mpsi_mpm_remove_boundary(const mpsi_boundary_setup *setup, const char
                                     int32_t number) {
   if (on_axis(setup->grid, setup->def, number))
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "number: boundary is 0, the axis r = 0, which cannot be free");
+                     "number is MPS_SIDE_X_LOWER, the axis r = 0, which cannot be free");
   drop(setup->context, &setup->boundaries->hold[number]);
   setup->boundaries->outdated = true;
   return MPS_OK;

@@ -71,8 +71,8 @@ static mps_status refuse_place(mps_context *context, const mpsi_run *run, const 
                                int32_t number, double y) {
   return mpsi_fail(context, function, MPS_ERROR_DIVERGED,
                    "step %lld: ground at y = %g m has left the nodes of the free-field column at "
-                   "side %d: set the side again, which makes the column of the present ground",
-                   (long long)run->steps, y, number);
+                   "%s: set the side again, which makes the column of the present ground",
+                   (long long)run->steps, y, mpsi_name_of("mps_side", number).text);
 }
 
 /* ---- water ----------------------------------------------------------------------------------- */
@@ -488,9 +488,9 @@ mps_status mpsi_mpm_move_free_fields(const mpsi_boundary_setup *setup, const cha
   if (!mpsi_mpm_has_free_field(setup->boundaries)) return status;
   if (setup->water && !mpsi_pore_responds(setup->water))
     return mpsi_fail(setup->context, function, MPS_ERROR_STATE,
-                     "there is a free-field side (5) and pressures of pore water are implicit "
-                     "(scheme 1), which its column has not: choose explicit ones (0), or rollers "
-                     "(2) or absorbing sides (4)");
+                     "a side is of kind MPS_BOUNDARY_FREE_FIELD, whose column has no implicit pore "
+                     "pressures: choose MPS_PORE_SCHEME_EXPLICIT, or the kind MPS_BOUNDARY_ROLLER "
+                     "or MPS_BOUNDARY_ABSORBING");
   for (int32_t k = 0; k < 2; k++) {
     mpsi_free_field *f = setup->boundaries->hold[k].field;
     if (f) memcpy(f->kept, f->state, (size_t)f->doubles * sizeof *f->state);

@@ -40,9 +40,10 @@ static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
   if (d->spline == 0) d->spline = 3;
   if (!d->kernel) return MPS_OK;
   if (kind != MPS_KERNEL_SPLINE2 && kind != MPS_KERNEL_SPLINE3)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "kernel is of kind %d, allowed are 1 and 2 (quadratic and cubic B-spline)",
-                     kind);
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "kernel: its kind is %s, allowed are MPS_KERNEL_SPLINE2 and MPS_KERNEL_SPLINE3",
+        mpsi_name_of("mps_kernel_kind", kind).text);
   d->spline = kind == MPS_KERNEL_SPLINE2 ? 2 : 3;
   const double wanted = radius_of(d), radius = mps_kernel_radius(d->kernel);
   if (fabs(radius - wanted) <= ON_NODE * wanted) return MPS_OK;
@@ -343,10 +344,12 @@ static mps_status complete(mps_context *context, mps_particles *particles, mps_m
                            int64_t *low, int64_t *high) {
   mps_status status = check_set(context, particles);
   if (status == MPS_OK && mps_particles_dim(particles) != dim_of(def))
-    status = mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                       "geometry is %d, and the set has %d dimensions: it needs %s", def->geometry,
-                       mps_particles_dim(particles),
-                       dim_of(def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
+    status = mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "geometry is %s, and the set has %d dimensions: it needs %s",
+        mpsi_name_of("mps_mpm_geometry", def->geometry).text, mps_particles_dim(particles),
+        dim_of(def) == 3 ? "MPS_MPM_GEOMETRY_PLANE_STRAIN or MPS_MPM_GEOMETRY_AXISYMMETRIC"
+                         : "MPS_MPM_GEOMETRY_SPACE");
   if (status == MPS_OK) status = read_kernel(context, def);
   if (isnan(def->measure))
     def->measure = def->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 8.0 * atan(1.0) : 1.0;
@@ -606,7 +609,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
 
 mps_solver *mps_mpm_solver(const mps_mpm *mpm) { return mpm ? (mps_solver *)&mpm->base : NULL; }
 
-
 /* ---- variants for comparison ----------------------------------------------------------------- */
 
 /* Checks that a variant is chosen before the first step, the same on all ranks. */
@@ -628,14 +630,18 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (status != MPS_OK) return status;
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+                     "transfer is %d, allowed are MPS_EXPERIMENTAL_TRANSFER_SHAPE and _WEIGHT",
+                     transfer);
   if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpm->def.flip_time > 0.0)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is 1 (weight), but flip_time of the definition is %g s: must be 0",
-                     mpm->def.flip_time);
+    return mpsi_fail(
+        mpm->context, __func__, MPS_ERROR_ARGUMENT,
+        "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT, but flip_time of the definition "
+        "is %g s: must be 0",
+        mpm->def.flip_time);
   if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpsi_mpm_has_free_field(&mpm->boundaries))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is 1 (weight), which a side of kind 5 (FREE_FIELD) does not allow");
+                     "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT, which a side of kind "
+                     "MPS_BOUNDARY_FREE_FIELD does not allow");
   mpm->grid.by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
   return MPS_OK;
 }
@@ -647,7 +653,8 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (status != MPS_OK) return status;
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
+                     "strain is %d, allowed are MPS_EXPERIMENTAL_STRAIN_DERIVATIVE and _FIT",
+                     strain);
   mpm->grid.strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
   return MPS_OK;
 }

@@ -253,9 +253,9 @@ static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads 
                          const mpsi_contacts *contacts, const mps_mpm_def *def) {
   int64_t loads = 0;
   for (int32_t k = 0; k < all_loads->list->room; k++) loads += mpsi_load_of(all_loads, k) != NULL;
-  mpsi_state_agree_integer(s, "geometry", grid->geometry);
+  mpsi_state_agree_choice(s, "geometry", "mps_mpm_geometry", (int32_t)grid->geometry);
   mpsi_state_agree_integer(s, "scheme", grid->standard);
-  mpsi_state_agree_integer(s, "walls", def->edge);
+  mpsi_state_agree_choice(s, "walls", "mps_mpm_edge", def->edge);
   mpsi_state_agree_integer(s, "spline", grid->spline);
   mpsi_state_agree_number(s, "cell", grid->cell);
   for (int c = 0; c < grid->dim; c++) {
@@ -298,7 +298,7 @@ static void list_state(mpsi_state *s, void *solver) {
   for (int32_t k = 0; k < numbers; k++) {
     mpsi_boundary *hold = k < mpm->boundaries.holds ? &mpm->boundaries.hold[k] : NULL;
     mpsi_state_enter(s, "boundary%d", k);
-    mpsi_state_agree_integer(s, "kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
+    mpsi_state_agree_choice(s, "kind", "mps_boundary_kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
     /* a side that has been set free still shows its last force and what it has done */
     if (hold && hold->field) mpsi_mpm_list_free_field(s, hold->field);
     if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
