@@ -6,7 +6,6 @@
 #include "fluid/boundary/clearance.h"
 #include "fluid/ranks/partition.h"
 
-#include "core/base/boundary_kind.h"
 #include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
@@ -17,10 +16,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   const mps_fluid_boundary_def *d = known;
   const double length = hypot(d->normal[0], d->normal[1]);
   (void)number;
-  if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %s, that of a polyline is MPS_BOUNDARY_HELD or MPS_BOUNDARY_ROLLER",
-                     mpsi_name_of("mps_boundary_kind", d->kind).text);
   if (d->corner_count != 0)
     return mpsi_fluid_check_corners(f, function, d->corner_count, d->corners);
   if (length > 1e-150 && length < 1e150) return MPS_OK;

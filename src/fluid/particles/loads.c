@@ -28,12 +28,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
     return mpsi_fail(
         f->context, function, MPS_ERROR_UNSUPPORTED,
         "a pressure load acts on the surface, which the classical scheme does not have");
-  if (d->kind == MPS_FLUID_LOAD_DAMPING && d->rise != 0 &&
-      !(isfinite(d->lower[0]) && isfinite(d->upper[0]) && d->upper[0] > d->lower[0]))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "lower[0] and upper[0] of the load are %g and %g m: with a rise both must be "
-                     "finite and ascending",
-                     d->lower[0], d->upper[0]);
   return MPS_OK;
 }
 
