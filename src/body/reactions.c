@@ -157,10 +157,12 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
                               int32_t *part) {
   if (!body) return mpsi_null(__func__, "body");
   const size_t length = name ? mpsi_identifier(name, MPSI_PART_NAME) : 0;
+  if (!name) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   if (length == 0 || name[length] != '\0')
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
-                     name ? name : "(NULL)");
+                     "name is '%.60s', must be letters, digits and _, not begin with a digit, and "
+                     "have 1 to %d characters",
+                     name, MPSI_PART_NAME - 1);
   if (body->faces == 1 && (first != 0 || count != 1))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "first is %lld and count %lld, but the surface is a single piece: 0 and 1",

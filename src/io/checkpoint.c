@@ -164,11 +164,17 @@ static mps_status open_checkpoint(writing *w, const char *path, const mps_checkp
   if (status != MPS_OK) return status;
   if (info->user_bytes > 0 && !info->user_data)
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
-                     "user_bytes is %lld and user_data NULL", (long long)info->user_bytes);
-  if (!isfinite(info->time) || info->step < 0 || !(info->dt >= 0.0 && isfinite(info->dt)))
+                     "user_data is NULL, must be given where user_bytes is %lld",
+                     (long long)info->user_bytes);
+  if (!isfinite(info->time))
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT, "time is %g s, must be finite",
+                     info->time);
+  if (info->step < 0)
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT, "step is %lld, must be >= 0",
+                     (long long)info->step);
+  if (!(info->dt >= 0.0 && isfinite(info->dt)))
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
-                     "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
-                     info->time, (long long)info->step, info->dt);
+                     "dt is %g s, must be finite and >= 0", info->dt);
   return mpsi_replace_begin(context, w->function, path, true, &w->replacement);
 }
 
@@ -193,7 +199,7 @@ static mps_status fill_checkpoint(writing *w, mpsi_row_source *from, const char 
 }
 
 mps_status mpsi_checkpoint_write(mps_particles *particles, const char *path,
-                                const mps_checkpoint *info) {
+                                 const mps_checkpoint *info) {
   if (!particles) return mpsi_null(__func__, "particles");
   writing w = {.context = mpsi_particles_context(particles), .function = __func__};
   mps_status status = mpsi_particles_committed(particles, __func__);

@@ -129,7 +129,7 @@ static mps_status check_table(mps_context *context, const char *function, int32_
                      "_DISPLACEMENT, _VALUE and _VALUE_STEPS",
                      quantity);
   if (count < 2 || count >= INT32_MAX)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2 to %d",
                      (long long)count, INT32_MAX - 1);
   if (!times || !values)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",

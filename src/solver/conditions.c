@@ -257,8 +257,8 @@ static mps_status find_number(mps_solver *s, const char *function, mpsi_conditio
   *number = at;
   if (at >= list->kind->most)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "number %d is the next, and a %s has at most number %d", at, list->kind->what,
-                     list->kind->most - 1);
+                     "there are %d numbers for a %s, and all are taken: remove one first",
+                     list->kind->most - list->kind->first, list->kind->what);
   return reserve(s, function, list, at);
 }
 

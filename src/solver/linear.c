@@ -26,10 +26,13 @@ static mps_status check_ranks(const mps_solver *s, const char *function,
 
 static mps_status check(mps_solver *s, const char *function, int32_t equation,
                         const mps_linear_solver_def *user, mps_linear_solver_def *def) {
-  if (equation < 1 || equation != s->kind->equation)
+  if (s->kind->equation == 0)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     s->kind->equation ? "equation is %s, that of the solver is %s"
-                                       : "equation is %s, and the solver has none to solve",
+                     "equation is %s, and the solver has none to solve",
+                     mpsi_name_of("mps_linear_equation", equation).text);
+  if (equation != s->kind->equation)
+    return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
+                     "equation is %s, that of the solver is %s",
                      mpsi_name_of("mps_linear_equation", equation).text,
                      mpsi_name_of("mps_linear_equation", s->kind->equation).text);
   mps_status status = s->kind->linear_ready ? s->kind->linear_ready(s, function) : MPS_OK;

@@ -71,7 +71,7 @@ TEST(bad_fields_are_refused_and_can_be_mended) {
     refuse_value("pressure_velocity", 0, bad[k], "pressure_velocity of particle 4 is");
   }
   refuse_value("pressure_velocity", 0, 141.0, "is 141 m/s, must be at least sqrt(2) times");
-  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be in 0..1000");
+  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be in 0 to 1000");
   refuse_value("damping", 0, NAN, "damping of particle 4 is nan");
   refuse_value("position", 0, NAN, "position of particle 4 is nan, must be finite");
   refuse_value("position", 1, 1e12, "to 1e+12 m in y, allowed are 1e+09 spacings");

@@ -123,8 +123,8 @@ TEST(bad_supports_and_loads_are_refused) {
   REFUSE(test_prescribe(e, 0, -2, good, NULL), "id_count is -2");
   REFUSE(test_prescribe(e, 0, 2, NULL, NULL), "id_count is 2 and ids is NULL");
   REFUSE(test_prescribe(e, 0, 2, good, nan_values), "values[3] is nan");
-  REFUSE(test_roller(e, zero, 2, good, NULL), "length of normal is 0");
-  REFUSE(test_roller(e, nan_values, 2, good, NULL), "length of normal is nan");
+  REFUSE(test_roller(e, zero, 2, good, NULL), "normal has the length 0");
+  REFUSE(test_roller(e, nan_values, 2, good, NULL), "normal has the length nan");
   REFUSE(mps_elastic_cut(e, MPS_SIDE_Z_UPPER, good, 2),
          "side is MPS_SIDE_Z_UPPER, allowed are MPS_SIDE_X_LOWER to MPS_SIDE_Y_UPPER");
   REFUSE(mps_elastic_cut(e, MPS_SIDE_ANY, good, 2), "side is MPS_SIDE_ANY");

@@ -198,7 +198,7 @@ TEST(other_files_and_bad_arguments) {
   info.user_bytes = -1;
   REFUSES(mps_mpm_save(x.s.mpm, path, &info), "user_bytes is -1");
   info.user_bytes = 3;
-  REFUSES(mps_mpm_save(x.s.mpm, path, &info), "user_data NULL");
+  REFUSES(mps_mpm_save(x.s.mpm, path, &info), "user_data is NULL");
   info.user_bytes = 0;
   OK(mpsi_checkpoint_write(x.s.particles, path, &info));
   FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "no solver");

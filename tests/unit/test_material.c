@@ -215,7 +215,7 @@ TEST(bad_users_laws_are_refused) {
   LAW(name, "a_name_that_has_more_than_forty_seven_characters_in", "at most 47");
   LAW(history, twice, "history[0] and history[1] are both \"a\"");
   LAW(history, bad, "history[1] is \"b c\"");
-  LAW(history, missing, "history[1] is \"(NULL)\"");
+  LAW(history, missing, "history[1] is NULL");
   mps_material *m = NULL;
   REFUSES(mps_material_create_user(context, NULL, &m), "def is NULL");
   const mps_material_user_def def = dashpot_def(&seen);

@@ -42,7 +42,7 @@ TEST(refuses_bad_sides) {
   REFUSES(mps_mpm_set_boundary(m, MPS_SIDE_Y_LOWER, &def), "signal[0] is given");
   def = side_def(MPS_BOUNDARY_HELD);
   def.ids = ids, def.id_count = 1;
-  REFUSES(mps_mpm_set_boundary(m, 0, &def), "are not for sides");
+  REFUSES(mps_mpm_set_boundary(m, 0, &def), "and a side of the domain is whole");
   def = side_def(MPS_BOUNDARY_ABSORBING);
   def.settle = -1.0;
   REFUSES(mps_mpm_set_boundary(m, 0, &def), "settle is -1 s");

@@ -71,8 +71,7 @@ TEST(solvers_name_constants_and_one_argument) {
   scoped_fluid *fluid = NULL;
   OK(mps_fluid_create(context, set, NULL, &fluid));
   said(mps_fluid_set_boundary_motion(fluid, 3, NULL, &value),
-       "number is 3, and the fluid has no boundary of that number: mps_fluid_add_boundary writes "
-       "it");
+       "number is 3: there is no boundary of this number");
 }
 
 TEST(a_set_without_moduli_is_told_how_to_get_them) {

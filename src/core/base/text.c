@@ -40,8 +40,8 @@ static mps_status fail_io(mps_context *context, const char *function, const char
   char reason[128] = "unknown error";
   if (error != 0) (void)strerror_r(error, reason, sizeof reason);
   const char *tail = mpsi_path_tail(path);
-  return mpsi_fail(context, function, MPS_ERROR_IO, "%s%s: cannot %s: %s",
-                   tail == path ? "" : "...", tail, verb, reason);
+  return mpsi_fail(context, function, MPS_ERROR_IO, "cannot %s '%s%s': %s", verb,
+                   tail == path ? "" : "...", tail, reason);
 }
 
 /* ---- loading --------------------------------------------------------------------------------- */

@@ -122,9 +122,10 @@ void mps_context_clear_error(mps_context *context) {
 
 mps_status mps_context_set_error(mps_context *context, mps_status status, const char *function,
                                  const char *message) {
-  if (status <= MPS_OK || status > MPS_ERROR_INTERNAL || !message)
+  if (!message) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "message is NULL");
+  if (status <= MPS_OK || status > MPS_ERROR_INTERNAL)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "status is %d with message %s, must be one of MPS_ERROR_... with a message",
-                     (int)status, message ? "given" : "NULL");
+                     "status is %s, must be one of MPS_ERROR_...",
+                     mpsi_name_of("mps_status", status).text);
   return mpsi_fail(context, function ? function : "caller", status, "%s", message);
 }

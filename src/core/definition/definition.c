@@ -207,7 +207,7 @@ static void say_range(writing *w, const mpsi_allowed *r, bool whole) {
     say(w, "must be %s%s %.9g", finite && !whole ? "finite and " : "", above ? ">" : ">=", a);
   else if (a == -INFINITY)
     say(w, "must be %s %.9g", below ? "<" : "at most", b);
-  else if (a == -b)
+  else if (a == -b && !whole)
     say(w, "must be within +-%.9g", b);
   else if (above && below)
     say(w, "must be in (%.9g, %.9g)", a, b);
@@ -301,6 +301,8 @@ bool mpsi_case_holds(const mpsi_definition *d, const mpsi_def_case *when, const 
   }
 }
 
+static int digits_of(const mpsi_def_member *m) { return m->type == MPSI_MEMBER_REAL ? 9 : 17; }
+
 /* "kind is MPS_X_KIND_A", "alloc is given" */
 static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *when,
                      const void *known, uint32_t scene) {
@@ -320,7 +322,7 @@ static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *
       say(w, "%s is ", m->name);
       say_choice(w, &m->allowed, value);
     } else if (is_number(m) && m->count == 1 && !isnan(value))
-      say(w, "%s is %.9g%s%s", m->name, value, gap(m), m->unit);
+      say(w, "%s is %.*g%s%s", m->name, digits_of(m), value, gap(m), m->unit);
     else
       say(w, "%s is %sgiven", m->name, when->kind == MPSI_CASE_WITH ? "" : "not ");
     break;
@@ -331,7 +333,7 @@ static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *
                                    : "plane");
     break;
   default:
-    say(w, "%s is %.9g%s%s", m->name, value, gap(m), m->unit);
+    say(w, "%s is %.*g%s%s", m->name, digits_of(m), value, gap(m), m->unit);
   }
 }
 
@@ -500,9 +502,11 @@ mps_status mpsi_definition_take(const mpsi_definition *d, const void *def, void 
   fill(d, known);
   if (def) memcpy(&size, def, sizeof size);
   if (size < d->released || size > MPSI_STRUCT_MOST) {
-    say(&w, "def.struct_size is %u%s, allowed are %zu to %d: start from %s()", size,
-        size == 0 ? ", as in a definition filled with zeros" : " bytes", d->released,
-        MPSI_STRUCT_MOST, d->defaults);
+    if (size == 0)
+      say(&w, "def is filled with zeros (its struct_size is 0): start from %s()", d->defaults);
+    else
+      say(&w, "def.struct_size is %u bytes, allowed are %zu to %d: start from %s()", size,
+          d->released, MPSI_STRUCT_MOST, d->defaults);
     return MPS_ERROR_ARGUMENT;
   }
   for (size_t i = d->size; i < size; i++)

@@ -17,8 +17,8 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   (void)number;
   if (def->dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation), 0 for "
-                     "all",
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION, or-ed, and 0 "
+                     "for all",
                      def->dofs);
   return mpsi_particles_committed(dynamics->particles, function);
 }

@@ -20,8 +20,7 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
     return mpsi_fluid_check_corners(f, function, d->corner_count, d->corners);
   if (length > 1e-150 && length < 1e150) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                   "normal of the boundary is (%g, %g): it must have a length", d->normal[0],
-                   d->normal[1]);
+                   "normal is (%g, %g), must be finite and not zero", d->normal[0], d->normal[1]);
 }
 
 /* Whether the corner of the wall and boundary b lies behind another boundary. */

@@ -143,8 +143,8 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
 
 static mps_status check_rock(mps_fluid *f, const char *function, int32_t number) {
   if (number < 0 || !f->rocks || number >= f->rocks->room || !f->rocks->rock[number].used)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no rock of number %d",
-                     number);
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "number is %d: there is no rock of this number", number);
   return MPS_OK;
 }
 

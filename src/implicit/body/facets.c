@@ -155,17 +155,24 @@ mps_status mps_elastic_get_facets_sized(const mps_elastic *handle, const int64_t
   static const char function[] = "mps_elastic_get_facets";
   if (!e) return mpsi_null(__func__, "elastic");
   mps_elastic_facet_arrays a = {0};
-  if (!arrays || size == 0 || count < 0 || (!facets && count != e->facet_count))
+  if (!arrays || size == 0)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "arrays is NULL, or count is %lld (without a list of facets it must be %lld)",
-                     (long long)count, (long long)e->facet_count);
+                     arrays ? "size is 0, must be that of mps_elastic_facet_arrays"
+                            : "arrays is NULL");
+  if (!facets && count != e->facet_count)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld, must be %lld where facets is NULL (all)", (long long)count,
+                     (long long)e->facet_count);
+  if (count < 0)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
   mps_status status = mpsi_elastic_check_between(e, function);
   if (status != MPS_OK) return status;
   memcpy(&a, arrays, size < sizeof a ? size : sizeof a);
   for (int64_t k = 0; facets && k < count; k++)
     if (facets[k] < 0 || facets[k] >= e->facet_count)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "facets[%lld] is %lld, allowed are 0..%lld", (long long)k,
+                       "facets[%lld] is %lld, allowed are 0 to %lld", (long long)k,
                        (long long)facets[k], (long long)e->facet_count - 1);
   for (int64_t k = 0; k < count; k++) write_shape(e, &e->facets[facets ? facets[k] : k], k, &a);
   if (a.displacement)

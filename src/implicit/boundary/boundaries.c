@@ -31,11 +31,11 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   if (def->kind == MPS_BOUNDARY_ROLLER &&
       !(isfinite(length) && length > 1e-150)) /* its square must not underflow */
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "the length of normal is %g, must be finite and > 0", length);
+                     "normal has the length %g, must be finite and not zero", length);
   if (def->kind != MPS_BOUNDARY_ROLLER && (def->dofs & ~all))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u: a particle has only MPS_DOF_X, Y%s", def->dofs,
-                     e->dim == 3 ? ", Z" : "");
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y%s, or-ed, and 0 for all",
+                     def->dofs, e->dim == 3 ? ", MPS_DOF_Z" : "");
   return MPS_OK;
 }
 

@@ -367,9 +367,12 @@ static mps_status solve_cases(mps_elastic *e, const char *function, int64_t coun
 
 static mps_status check_cases(const mps_elastic *e, const char *function, int64_t count,
                               const double *loads, const double *displacements) {
-  if (count < 0 || (count > 0 && (!loads || !displacements)))
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld (must be >= 0) or an array is NULL", (long long)count);
+  if (count < 0)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (count > 0 && (!loads || !displacements))
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     loads ? "displacements" : "loads");
   for (int64_t k = 0; k < count * e->n * 3; k++)
     if (k % 3 < e->dim && !isfinite(loads[k]))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,

@@ -52,9 +52,11 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
   const mpsi_selection selection = MPSI_SELECTION(def, grid->dim);
   if (mpsi_selection_given(&selection) || def->dofs != 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "ids, id_count (%lld), lower, upper, all (%d) and dofs (%u) are not for sides "
-                     "of the domain",
-                     (long long)def->id_count, def->all, def->dofs);
+                     "%s given, and a side of the domain is whole: no ids, box, all or dofs",
+                     def->dofs  ? "dofs is"
+                     : def->all ? "all is"
+                     : def->ids ? "ids is"
+                                : "a box (lower, upper) is");
   if (grid->standard && def->kind == MPS_BOUNDARY_ABSORBING)
     return mpsi_fail(
         context, function, MPS_ERROR_ARGUMENT,
@@ -110,8 +112,8 @@ static mps_status check_prescribed(const mpsi_boundary_setup *setup, const char 
                      mpsi_name_of("mps_boundary_kind", def->kind).text);
   if (def->dofs & ~all)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
-                     grid->dim == 3 ? ", MPS_DOF_Z" : "");
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y%s, or-ed, and 0 for all",
+                     def->dofs, grid->dim == 3 ? ", MPS_DOF_Z" : "");
   return check_motion(context, grid, setup->run, function, number, def);
 }
 

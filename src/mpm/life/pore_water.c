@@ -164,8 +164,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   mps_pore_water_def def = mps_pore_water_defaults();
   mps_status status = check_solver(mpm);
   if (status == MPS_OK)
-    status =
-        MPSI_DEF_READ_OR_DEFAULTS(mpm->context, __func__, mps_pore_water_def, user_def, &def);
+    status = MPSI_DEF_READ_OR_DEFAULTS(mpm->context, __func__, mps_pore_water_def, user_def, &def);
   status = agree_on_water(mpm, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
@@ -241,8 +240,9 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
   mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status == MPS_OK && (number < -1 || number >= mpm->water->faces))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "number is %d, must be -1 (the free surface) to %lld", number,
-                       (long long)mpm->water->faces - 1);
+                       "number is %d: there is no pore face of this number, and the free surface "
+                       "is -1",
+                       number);
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "number", number);
   const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
@@ -354,7 +354,7 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
   if (status == MPS_OK && (number < 0 || number >= mpm->water->faces))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "number is %d, must be 0 to %lld", number, (long long)mpm->water->faces - 1);
+                       "number is %d: there is no pore face of this number", number);
   status = agree_on_face(mpm, __func__, status, &def, number);
   if (status != MPS_OK) return status;
   const bool drained = mpm->water->face[number].kind == MPS_PORE_FACE_DRAINED;
