@@ -41,6 +41,12 @@ static const mps_geostatic_layer *layer_of(const geostatic *g, int32_t k) {
 
 static mps_status check_layers(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
+  if (!d->layers)
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
+                     "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
+  if (d->layer_count < 1)
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
+                     "layer_count is %lld, must be >= 1", (long long)d->layer_count);
   if (d->layer_size != 0 && (d->layer_size < FIRST_LAYER || d->layer_size > MOST_LAYER ||
                              d->layer_size % (int32_t)sizeof(double) != 0))
     return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,

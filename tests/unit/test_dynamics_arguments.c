@@ -177,7 +177,7 @@ TEST(bad_calls_are_refused) {
   REFUSES(mps_dynamics_run(d, 1e300, 1, NULL, NULL), "1e+300");
   REFUSES(mps_dynamics_restart(d, NAN), "time is nan");
   const double bad[] = {0.0, -1.0, NAN, INFINITY};
-  for (int k = 0; k < 4; k++) REFUSES(mps_dynamics_set_dt(d, bad[k]), "must be in 1e-12..1e+09");
+  for (int k = 0; k < 4; k++) REFUSES(mps_dynamics_set_dt(d, bad[k]), "must be in 1e-12 to 1e+09");
   REFUSES(mps_dynamics_get_totals(d, NULL), "out is NULL");
   REFUSES(mps_dynamics_get_totals(d, NULL), "out is NULL");
   REFUSES(mps_dynamics_find_limit(d, 0.0, NULL), "out");

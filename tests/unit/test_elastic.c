@@ -138,7 +138,7 @@ TEST(bad_supports_and_loads_are_refused) {
   REFUSE(test_traction(e, 1, good, nan_values), "force[1] is nan");
   REFUSE(test_pressure(e, 2, good, nan_values), "values[1] is nan");
   REFUSE(test_traction_fn(e, 2, good, NULL, NULL), "function is NULL");
-  REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "an array is NULL");
+  REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "loads is NULL");
   REFUSE(mps_elastic_get_section(e, 0, NAN, NULL, NULL, NULL), "position is nan");
   assert_int_equal(mps_elastic_solve(NULL), MPS_ERROR_ARGUMENT);
   /* x + y and x - y fix a particle: a third direction is one too many. */

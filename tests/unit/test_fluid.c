@@ -384,7 +384,7 @@ TEST(bodies_come_and_go) {
   OK(mps_body_create_polygon(context, &at, 4, xy, &corner));
   OK(mps_body_create_box(context, &at, 0.2, 0.2, &box));
   REFUSES(mps_fluid_add_contact(t.fluid, NULL, NULL, &contact), "NULL");
-  REFUSES(mps_fluid_add_contact(t.fluid, disc, NULL, &contact), "no polygon");
+  REFUSES(mps_fluid_add_contact(t.fluid, disc, NULL, &contact), "must be a polygon");
   REFUSES(mps_fluid_add_contact(t.fluid, small, NULL, &contact), "edge 1 of the body");
   REFUSES(mps_fluid_add_contact(t.fluid, corner, NULL, &contact), "edge 1 of the body");
   REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is MPS_BOUNDARY_DRIVEN, ");
@@ -697,7 +697,7 @@ TEST(water_leaves_by_an_open_side) {
   assert_memory_equal(&first, &again, sizeof first);
   mps_snapshot_destroy(&before);
   /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
-  REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number 2");
+  REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number is 2");
   def.nodes = x, def.node_count = 1;
   REFUSES(mps_fluid_set_boundary(t.fluid, number, &def),
           "must be 0 where kind is MPS_BOUNDARY_OPEN");

@@ -328,7 +328,7 @@ TEST(bad_definitions_are_refused) {
     assert_null(m);                                                                                \
   } while (0)
   REFUSED(statev_names, twice, "are both \"umat_time\"");
-  REFUSED(name, "a b", "name is \"a b\"");
+  REFUSED(name, "a b", "name is 'a b'");
 }
 
 static mps_status make_and_destroy(mps_context *own, int what) {

@@ -67,7 +67,7 @@ TEST(solvers_name_constants_and_one_argument) {
   mps_mpm_destroy(&mpm);
   mps_geostatic_def ground = mps_geostatic_defaults();
   said(mps_particles_set_geostatic(set, &ground),
-       "layers is NULL, must be given: an array of mps_geostatic_layer");
+       "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
   scoped_fluid *fluid = NULL;
   OK(mps_fluid_create(context, set, NULL, &fluid));
   said(mps_fluid_set_boundary_motion(fluid, 3, NULL, &value),

@@ -245,8 +245,6 @@ MPSI_DEFINITION(mps_material_block, "material_block", MATERIAL_BLOCK)
   X(S, INT,     reserved,       1, "",     RESERVED,                  0,     OWN)
 
 #define GEOSTATIC_RULES(X, S) \
-  X(S, layers,         GIVEN,            ALWAYS, BECAUSE("an array of mps_geostatic_layer")) \
-  X(S, layer_count,    IN(1, INFINITY),  ALWAYS) \
   X(S, vertical,       IN(-1, 1),        IN_PLANE) \
   X(S, surface_points, IN(2, INT32_MAX), WITH(S, surface_line)) \
   X(S, surface_line,   GIVEN,            WITH(S, surface_points)) \
