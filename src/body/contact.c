@@ -29,7 +29,7 @@ mps_status mpsi_contact_make(mps_context *context, const char *function, mps_bod
   if (!mpsi_body_make_source(body, &contact->source)) {
     contact->references = 1;
     mpsi_contact_release(contact);
-    return mpsi_fail_memory(context, function, (size_t)body->part_room * sizeof(mps_reaction));
+    return mpsi_fail_memory(context, function, (size_t)body->part_capacity * sizeof(mps_reaction));
   }
   *out = contact;
   return MPS_OK;

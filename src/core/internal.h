@@ -64,8 +64,8 @@ mpsi_name mpsi_name_of(const char *enumeration, int32_t value);
 const char *mpsi_enumeration_of(const char *name);
 
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
- * `room` characters or more. The rest is not checked. */
-size_t mpsi_identifier(const char *name, size_t room);
+ * `capacity` characters or more. The rest is not checked. */
+size_t mpsi_identifier(const char *name, size_t capacity);
 
 /* ---- memory: zero filled, aligned to MPSI_ALIGNMENT ----------------------------------------- */
 

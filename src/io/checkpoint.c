@@ -575,7 +575,8 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   if (of->take_share) status = of->take_share(of->solver, function, status, &r.values);
   if (status == MPS_OK)
     status = mpsi_fail_of(
-        of->context, mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT), "path");
+        of->context, mpsi_state_restore_values(of, function, &r.values, source, MPS_ERROR_ARGUMENT),
+        "path");
   if (status == MPS_OK) report(&r, info);
   drop_reading(&r);
   return status;

@@ -258,9 +258,10 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   status = check_line(&g);
   if (status == MPS_OK) status = check_layers(&g);
   if (status != MPS_OK) return status;
-  const int64_t n = g.def.layer_count, room = g.count + 3 * n;
-  g.depth = mpsi_alloc(g.context, room, sizeof *g.depth);
-  if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
+  const int64_t n = g.def.layer_count, doubles = g.count + 3 * n;
+  g.depth = mpsi_alloc(g.context, doubles, sizeof *g.depth);
+  if (!g.depth)
+    return mpsi_fail_memory(g.context, set_geostatic, (size_t)doubles * sizeof *g.depth);
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
   status = weigh(&g);
   if (status == MPS_OK) status = open_stress(&g, set_geostatic);

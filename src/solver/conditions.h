@@ -73,7 +73,7 @@ typedef struct mpsi_condition_kind {
 typedef struct mpsi_conditions {
   const mpsi_condition_kind *kind;
   void **def, **own;
-  int32_t room;
+  int32_t capacity;
 } mpsi_conditions;
 
 /* Frees all, which the solver needs no more. */

@@ -120,9 +120,9 @@ mps_status mpsi_linear_hand(mps_solver *s, const char *function, mps_linear_matr
   mpsi_linear *l = s->linear;
   const uint64_t pattern = pattern_of(a);
   double changed = !l->known || pattern != l->pattern;
-  const bool room = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
+  const bool good = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
   l->valid = l->known = false;
-  mps_status status = room ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
+  mps_status status = good ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
   status = mpsi_domain_agree_max(s->domain, function, status, 1, &changed);
   if (status != MPS_OK) return status;
   a->struct_size = sizeof *a;

@@ -981,7 +981,7 @@ TEST(broken_rules_are_refused_by_name) {
           break;
         }
         for (int w = 0; w < MPSI_CASES; w++)
-          if (!mpsi_case_holds(r, &rule->when[w], def, scene))
+          if (!mpsi_case_applies(r, &rule->when[w], def, scene))
             fail_msg("%s.%s: no way to make case %d hold", r->type, name, w);
         if (mpsi_rule_check(r, rule, def, scene, why) || strncmp(why, name, strlen(name)) != 0)
           fail_msg("%s.%s, way %d: \"%s\"", r->type, name, way, why);

@@ -68,7 +68,7 @@ static inline void mpsi_give_def(mpsi_given *list, const mpsi_definition *defini
 #define MPSI_GIVE_DEF(list, type, def)                                                             \
   mpsi_give_def(list, &mpsi_definition_of_##type, 1 ? (def) : (type *)0)
 
-/* The bits of a hash that a double holds exactly. */
+/* The bits of a hash that a double has exactly. */
 static inline double mpsi_hash_short(uint64_t hash) { return (double)(hash >> 12); }
 
 static inline void mpsi_give_bytes(mpsi_given *list, const char *name, const void *data,

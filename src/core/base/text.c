@@ -187,9 +187,9 @@ bool mpsi_slice_find(mpsi_slice slice, const char *name, mpsi_slice *after) {
 
 mpsi_quote mpsi_slice_quote(mpsi_slice slice) {
   mpsi_quote quote;
-  const size_t room = sizeof quote.text - 4;
+  const size_t capacity = sizeof quote.text - 4;
   size_t length = 0;
-  while (slice.begin < slice.end && length < room) {
+  while (slice.begin < slice.end && length < capacity) {
     const char c = *slice.begin++;
     quote.text[length++] = c >= ' ' && c <= '~' ? c : '?';
   }

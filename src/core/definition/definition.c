@@ -255,7 +255,7 @@ static void say_value(writing *w, const mpsi_def_member *m, const void *def, int
     say(w, " is %.0f%s%s, ", value, gap(m), m->unit);
 }
 
-/* "height is -1 m, must be in ...": refuses component c, of which `allowed` does not hold. */
+/* "height is -1 m, must be in ...": refuses component c, which is not `allowed`. */
 static void refuse(writing *w, const mpsi_def_member *m, const mpsi_allowed *allowed,
                    const void *def, int32_t c) {
   say_value(w, m, def, c, allowed->lower, allowed->upper);
@@ -280,8 +280,8 @@ static double number_or(const mpsi_def_member *m, const void *known, double othe
   return isnan(value) ? other : value;
 }
 
-bool mpsi_case_holds(const mpsi_definition *d, const mpsi_def_case *when, const void *known,
-                     uint32_t scene) {
+bool mpsi_case_applies(const mpsi_definition *d, const mpsi_def_case *when, const void *known,
+                       uint32_t scene) {
   const mpsi_def_member *m = &d->member[when->member];
   switch (when->kind) {
   case MPSI_CASE_IS:
@@ -444,7 +444,7 @@ bool mpsi_rule_check(const mpsi_definition *d, const mpsi_def_rule *r, const voi
   const int32_t end = r->end ? r->end : all;
   bool good = true;
   for (const mpsi_def_case *k = r->when; k < r->when + MPSI_CASES; k++)
-    if (!mpsi_case_holds(d, k, known, scene)) return true;
+    if (!mpsi_case_applies(d, k, known, scene)) return true;
   if (r->demand == MPSI_DEMAND_GIVEN)
     good = check_given(&w, m, known);
   else if (r->demand == MPSI_DEMAND_EACH || r->demand == MPSI_DEMAND_RISING)

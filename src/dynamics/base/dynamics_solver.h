@@ -92,14 +92,14 @@ struct mps_dynamics {
 
 /* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
 static inline int32_t mpsi_dynamics_boundary_count(const mps_dynamics *dynamics) {
-  return dynamics->conditions[MPSI_BOUNDARIES].room;
+  return dynamics->conditions[MPSI_BOUNDARIES].capacity;
 }
 static inline mpsi_dynamics_boundary *mpsi_dynamics_boundary_of(const mps_dynamics *dynamics,
                                                                 int32_t number) {
   return dynamics->conditions[MPSI_BOUNDARIES].own[number];
 }
 static inline int32_t mpsi_dynamics_load_count(const mps_dynamics *dynamics) {
-  return dynamics->conditions[MPSI_LOADS].room;
+  return dynamics->conditions[MPSI_LOADS].capacity;
 }
 static inline mpsi_dynamics_load *mpsi_dynamics_load_of(const mps_dynamics *dynamics,
                                                         int32_t number) {

@@ -215,12 +215,12 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed, bool ot
   *l = (lists){0};
 }
 
-void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
-  for (int64_t k = 0; k < 3 * dynamics->count; k++) room->owner[k] = 0;
-  find_owners(dynamics, room->owner);
-  list_bounds(dynamics, room->owner, -1, room);
-  list_dashpots(dynamics, room->owner, room);
-  put_lists(dynamics, room, -1, other_freedoms(dynamics, room));
+void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *out) {
+  for (int64_t k = 0; k < 3 * dynamics->count; k++) out->owner[k] = 0;
+  find_owners(dynamics, out->owner);
+  list_bounds(dynamics, out->owner, -1, out);
+  list_dashpots(dynamics, out->owner, out);
+  put_lists(dynamics, out, -1, other_freedoms(dynamics, out));
 }
 
 /* Values of the signals of a driven boundary at time t. */

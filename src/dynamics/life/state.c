@@ -238,8 +238,8 @@ static mps_status save_before(mps_dynamics *dynamics, const char *function,
 }
 
 /* The steps' own state: the choice of dt stays. Collective. */
-static mps_status go_back(mps_dynamics *dynamics, const char *function,
-                          const mps_snapshot *snapshot) {
+static mps_status restore_before(mps_dynamics *dynamics, const char *function,
+                                 const mps_snapshot *snapshot) {
   const mpsi_state_of of = state_of(dynamics);
   const bool checked = dynamics->checked, chosen = dynamics->chosen;
   const mps_status status =
@@ -248,7 +248,7 @@ static mps_status go_back(mps_dynamics *dynamics, const char *function,
   return status;
 }
 
-const mpsi_dynamics_keeper mpsi_dynamics_keep = {save_before, go_back};
+const mpsi_dynamics_keeper mpsi_dynamics_keep = {save_before, restore_before};
 
 mps_status mpsi_dynamics_returned(void *solver, const char *function) {
   return agree_on_restore(solver, function, MPS_OK);
@@ -288,7 +288,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   mps_status status = mpsi_domain_agree(dynamics->domain, function,
                                         mpsi_state_snapshot(&of, function, &dynamics->present));
   if (status == MPS_OK) /* copy of the state to restore; agreed upon by all ranks */
-    status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
+    status = mpsi_state_prepare_restore(&of, function, dynamics->present, &back);
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
   mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
@@ -298,7 +298,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept, dynamics->state.ax, bytes);
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
-  mpsi_state_go(&of, &back);
+  mpsi_state_restore(&of, &back);
   const mps_status settled = agree_on_restore(dynamics, function, MPS_OK);
   if (status != MPS_OK && status != MPS_ERROR_DIVERGED) return status;
   return settled == MPS_OK ? check_kept(dynamics, function, kept) : settled;

@@ -189,7 +189,7 @@ static double *keep_velocities(const mps_dynamics *dynamics, const char *functio
   return kept;
 }
 
-static void put_velocities_back(mps_dynamics *dynamics, const double *kept) {
+static void restore_velocities(mps_dynamics *dynamics, const double *kept) {
   const int64_t n = mps_particles_count(dynamics->particles);
   for (int f = 0; f < 2; f++) {
     double *column = mpsi_particles_column(dynamics->particles, wave_fields[f], 0);
@@ -220,7 +220,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   }
   /* values of other particles, or of another rank, may be out of range */
   if (status == MPS_OK) status = read_ground(dynamics, __func__);
-  if (status != MPS_OK && agreed) put_velocities_back(dynamics, kept);
+  if (status != MPS_OK && agreed) restore_velocities(dynamics, kept);
   mpsi_free(dynamics->context, kept);
   return status;
 }

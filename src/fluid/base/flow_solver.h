@@ -236,7 +236,7 @@ static inline bool mpsi_fluid_beside(const mpsi_fluid_body *body, const double *
 
 /* Load of a number below the count; NULL where it is free. */
 static inline int32_t mpsi_fluid_load_count(const mps_fluid *f) {
-  return f->conditions[MPSI_LOADS].room;
+  return f->conditions[MPSI_LOADS].capacity;
 }
 static inline mpsi_fluid_given *mpsi_fluid_load_of(const mps_fluid *f, int32_t number) {
   return f->conditions[MPSI_LOADS].own[number];

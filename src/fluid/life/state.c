@@ -129,7 +129,7 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
   return true;
 }
 
-static bool make_room(void *solver, int64_t particles) {
+static bool reserve(void *solver, int64_t particles) {
   return particles <= MPSI_FLUID_MOST_PARTICLES && mpsi_fluid_reserve(solver, particles);
 }
 
@@ -161,7 +161,7 @@ mpsi_state_of mpsi_fluid_state(void *solver) {
                          .identity = &f->identity,
                          .list = list_state,
                          .fits = fits,
-                         .make_room = make_room,
+                         .reserve = reserve,
                          .settle = settle,
                          .take_share = have_read,
                          .after = after,

@@ -160,9 +160,9 @@ mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   if (status != MPS_OK || !any) return status;
   if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);
-  double *const room = f->push_room.item;
-  for (int64_t k = 0; k < 3 * f->count; k++) room[k] = 0.0;
-  f->push[0] = room, f->push[1] = room + f->count, f->over = room + 2 * f->count;
+  double *const scratch = f->push_room.item;
+  for (int64_t k = 0; k < 3 * f->count; k++) scratch[k] = 0.0;
+  f->push[0] = scratch, f->push[1] = scratch + f->count, f->over = scratch + 2 * f->count;
   add_forces(f);
   for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++)
     if (mpsi_fluid_load_of(f, k)) add_load(f, mpsi_fluid_load_of(f, k));

@@ -1,6 +1,6 @@
 /* implicit_solver.h - the implicit solver of thick elastic structures, put together from its parts:
  * each has a header of its own. Vectors over all particles are indexed [i * dim + c], i being the
- * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns hold the
+ * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns are the
  * local directions that no support fixes. Arrays of the operator have the particles of the window
  * (ranks/partition.h), indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IMPLICIT_SOLVER_H
@@ -110,14 +110,14 @@ struct mps_elastic {
 
 /* Boundary or load of a number; NULL where it is free. Numbers are below the counts. */
 static inline int32_t mpsi_elastic_boundary_count(const mps_elastic *e) {
-  return e->conditions[MPSI_BOUNDARIES].room;
+  return e->conditions[MPSI_BOUNDARIES].capacity;
 }
 static inline mpsi_elastic_boundary *mpsi_elastic_boundary_of(const mps_elastic *e,
                                                               int32_t number) {
   return e->conditions[MPSI_BOUNDARIES].own[number];
 }
 static inline int32_t mpsi_elastic_load_count(const mps_elastic *e) {
-  return e->conditions[MPSI_LOADS].room;
+  return e->conditions[MPSI_LOADS].capacity;
 }
 static inline mpsi_elastic_load *mpsi_elastic_load_of(const mps_elastic *e, int32_t number) {
   return e->conditions[MPSI_LOADS].own[number];

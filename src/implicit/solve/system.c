@@ -133,8 +133,8 @@ static mps_status diagnose(mps_elastic *e, const char *function, int64_t bad) {
   const mps_status status = mpsi_fail(
       e->context, function, MPS_ERROR_NUMERIC,
       "the stiffness matrix is not positive definite at direction %d of particle %lld although the "
-      "supports hold every rigid motion: a part of the body is joined by too few particles, or the "
-      "stiffnesses differ by more than double precision can resolve",
+      "supports prevent every rigid motion: a part of the body is joined by too few particles, or "
+      "the stiffnesses differ by more than double precision can resolve",
       direction, (long long)e->id[particle]);
   mpsi_fail_where(e->context, -1, e->id[particle]);
   return status;

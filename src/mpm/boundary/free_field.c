@@ -20,7 +20,8 @@ enum { MARGIN = 8, GHOSTS = 2 }; /* nodes above and below the particles; beyond 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 bool mpsi_mpm_has_free_field(const mpsi_boundaries *boundaries) {
-  return mpsi_kind_of(&boundaries->hold[0])->column || mpsi_kind_of(&boundaries->hold[1])->column;
+  return mpsi_kind_of(&boundaries->boundary[0])->column ||
+         mpsi_kind_of(&boundaries->boundary[1])->column;
 }
 
 mps_status mpsi_mpm_check_beside_field(mps_context *context, const mpsi_boundaries *boundaries,
@@ -57,7 +58,7 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
                      "%s of a domain %lld cells wide, must be at least %d", kind,
                      (long long)(grid->high[0] - grid->low[0]), MPSI_FIELD_CELLS);
   for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++)
-    if (setup->boundaries->hold[k].kind == MPS_BOUNDARY_FRICTIONAL)
+    if (setup->boundaries->boundary[k].kind == MPS_BOUNDARY_FRICTIONAL)
       return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                        "%s beside %s of kind MPS_BOUNDARY_FRICTIONAL: " BESIDE, kind,
                        mpsi_name_of("mps_side", k).text);

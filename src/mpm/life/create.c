@@ -186,7 +186,7 @@ static mps_status save_columns(mps_context *context, const mpsi_columns *p, doub
   return MPS_OK;
 }
 
-static void put_columns_back(const mpsi_columns *p, const double *copy) {
+static void restore_columns(const mpsi_columns *p, const double *copy) {
   const int64_t count = p->count;
   for (int32_t c = 0; c < written_count(p); c++)
     if (written(p, c)) memcpy(written(p, c), copy + c * count, (size_t)count * sizeof *copy);
@@ -202,8 +202,8 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     mpsi_worker *w = &grid->workers[k];
     char *memory = w->memory = mpsi_alloc(context, 1, bytes);
     if (!memory) return mpsi_fail_memory(context, create, bytes);
-    w->room = memory;
-    w->tile = (mpsi_node *)(memory + MPSI_WORKER_ROOM);
+    w->scratch = memory;
+    w->tile = (mpsi_node *)(memory + MPSI_WORKER_SCRATCH);
     w->force = w->tile + tile;
     w->strain = w->force + tile;
     w->state = (uint8_t *)(w->strain + tile); /* with a margin: rows are read as four */
@@ -284,7 +284,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     status = mpsi_fail_of(mpm->context, status, "particles");
     if (status == MPS_OK && !shared) status = save_columns(mpm->context, &mpm->p, &copy);
     if (status == MPS_OK) status = begin(mpm);
-    if (status != MPS_OK && copy) put_columns_back(&mpm->p, copy);
+    if (status != MPS_OK && copy) restore_columns(&mpm->p, copy);
     mpsi_free(mpm->context, copy);
   }
   if (shared)
@@ -416,7 +416,7 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->undo.room.item,
                    mpm->undo.dashpot_room.item,
                    mpm->undo.sums_room.item,
-                   mpm->undo.hold_room.item};
+                   mpm->undo.boundary_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
 }
 
@@ -512,8 +512,8 @@ static const mpsi_solver_kind mpm_kind = {
     .destroy = destroy,
 };
 
-static void hold(mps_mpm *mpm, const char *function, mps_context *context, mps_particles *particles,
-                 mps_domain *domain, bool shared) {
+static void enter_set(mps_mpm *mpm, const char *function, mps_context *context,
+                      mps_particles *particles, mps_domain *domain, bool shared) {
   mpsi_holder holder = {.name = "a WLS-MPM solver (mps_mpm)",
                         .kind = MPSI_USE_MOVE,
                         .commit = mpsi_mpm_note_edit,
@@ -568,20 +568,20 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
-  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.hold_room, MPSI_SIDES,
-                                                   sizeof(mpsi_boundary))))
+  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.boundary_room,
+                                                   MPSI_SIDES, sizeof(mpsi_boundary))))
     status = mpsi_fail_memory(context, __func__, sizeof *mpm + MPSI_SIDES * sizeof(mpsi_boundary));
   if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
     status = mpsi_particles_back_up(particles, __func__, &backup);
   status = mpsi_domain_agree(def.domain, __func__, status);
   if (status != MPS_OK) {
     if (backup.memory) mpsi_backup_drop(particles, &backup);
-    if (mpm) mpsi_free(context, mpm->boundaries.hold_room.item);
+    if (mpm) mpsi_free(context, mpm->boundaries.boundary_room.item);
     mpsi_free(context, mpm);
     return status;
   }
   mpm->reader.mpm = mpm;
-  hold(mpm, __func__, context, particles, def.domain, is_shared(&def)); /* checked above */
+  enter_set(mpm, __func__, context, particles, def.domain, is_shared(&def)); /* checked above */
   mpm->run.changed = mpm->run.renewed = true;
   describe(mpm, &def, low, high);
   if (!mpsi_mpm_begin_sides(mpm->context, &mpm->grid, &mpm->boundaries))

@@ -103,7 +103,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   status = renew_layers(mpm, function, status);
   int64_t column = 0;
   for (int side = 0; side < 2; side++) {
-    const mpsi_free_field *field = mpm->boundaries.hold[side].field;
+    const mpsi_free_field *field = mpm->boundaries.boundary[side].field;
     if (field && field->nodes > column) column = field->nodes;
   }
   if (status == MPS_OK)
