@@ -446,7 +446,7 @@ TEST(what_is_not_a_text_is_refused) {
   FAILS(mps_signal_create_record(context, FILE_TMP, NULL, &signal), MPS_ERROR_FORMAT,
         "record.tmp:2: a NUL byte: this is not a text file");
   FAILS(mps_signal_create_record(context, TEST_TMP, NULL, &signal), MPS_ERROR_IO,
-        "cannot read: Is a directory");
+        "': Is a directory");
   FAILS(mps_signal_create_record(context, TEST_TMP "/no/file", NULL, &signal), MPS_ERROR_IO,
         ": No such file or directory");
   char path[2000];
