@@ -203,8 +203,8 @@ static void send_values(mps_fluid *f, int64_t count, double *values, int64_t fir
   mpsi_fluid_reduce_max(f, count, values);
 }
 
-static bool fit(mps_fluid *f, mpsi_room *capacity, int64_t count, size_t size) {
-  return mpsi_room_ensure(f->context, capacity, count, size);
+static bool fit(mps_fluid *f, mpsi_room *memory, int64_t count, size_t size) {
+  return mpsi_room_ensure(f->context, memory, count, size);
 }
 
 static mps_status make_aggregates(mps_fluid *f, const char *function) {
