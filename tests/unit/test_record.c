@@ -454,7 +454,7 @@ TEST(what_is_not_a_text_is_refused) {
   path[sizeof path - 1] = '\0';
   FAILS(mps_signal_create_record(context, path, NULL, &signal), MPS_ERROR_IO,
         "xxx': File name too long");
-  assert_memory_equal(mps_context_error(context)->message, "...xxx", 6);
+  assert_non_null(strstr(mps_context_error(context)->message, "'...xxx"));
   mpsi_text text;
   write_file("0,1\n1,1\n", 8);
   FAILS(mpsi_text_load(context, "test", FILE_TMP, 7, &text), MPS_ERROR_FORMAT,
