@@ -47,7 +47,7 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
   body->faces = faces;
   body->parts = 1;
   body->part_of = mpsi_alloc(context, faces, sizeof *body->part_of);
-  body->part_room = FIRST_PARTS;
+  body->part_capacity = FIRST_PARTS;
   if (body->part_of) body->names = mpsi_alloc(context, FIRST_PARTS, sizeof *body->names);
   if (body->names) body->reaction = mpsi_alloc(context, FIRST_PARTS, sizeof *body->reaction);
   if (!body->reaction) {

@@ -88,7 +88,7 @@ struct mps_body {
   mpsi_mesh *mesh;
   int32_t *part_of; /* one a face, in the caller's order */
   char (*names)[MPSI_PART_NAME];
-  int32_t parts, part_room;         /* part_room: as many have memory here and in all sources */
+  int32_t parts, part_capacity;     /* part_room: as many have memory here and in all sources */
   mps_signal *signal[MPSI_MOTIONS]; /* of x and of the rotation vector */
   double factor[MPSI_MOTIONS];
   mpsi_load load;

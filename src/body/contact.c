@@ -28,7 +28,7 @@ mps_status mpsi_contact_make(mps_context *context, const char *function, mps_bod
   if (!mpsi_body_make_source(body, &contact->source)) {
     contact->references = 1;
     mpsi_contact_release(contact);
-    return mpsi_fail_memory(context, function, (size_t)body->part_room * sizeof(mps_reaction));
+    return mpsi_fail_memory(context, function, (size_t)body->part_capacity * sizeof(mps_reaction));
   }
   *out = contact;
   return MPS_OK;
@@ -99,9 +99,9 @@ mps_status mps_contact_get_def(const mps_contact *contact, int32_t kind, void *o
   const mpsi_contact_owner *of = contact->kind;
   const mpsi_definition *definition = mpsi_definition_of(of->def_kind);
   if (kind != of->def_kind)
-    return mpsi_fail(contact->context, __func__, MPS_ERROR_ARGUMENT,
-                     "kind is %d, that of this contact is %d (%s)", kind, of->def_kind,
-                     definition->type);
+    return mpsi_fail(
+        contact->context, __func__, MPS_ERROR_ARGUMENT, "kind is %s, that of this contact is %s",
+        mpsi_name_of("mps_def_kind", kind).text, mpsi_name_of("mps_def_kind", of->def_kind).text);
   if (!of->get_def)
     return mpsi_def_write(contact->context, __func__, out, size, &contact->def,
                           sizeof contact->def);

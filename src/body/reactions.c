@@ -119,16 +119,17 @@ mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_r
 
 /* ---- parts ----------------------------------------------------------------------------------- */
 
-static bool widen_source(mps_body *body, mpsi_body_source *source, int32_t room) {
-  return mpsi_grow(body->context, (void **)&source->reaction, body->parts, room,
+static bool widen_source(mps_body *body, mpsi_body_source *source, int32_t capacity) {
+  return mpsi_grow(body->context, (void **)&source->reaction, body->parts, capacity,
                    sizeof *source->reaction) &&
-         mpsi_grow(body->context, (void **)&source->part, body->parts, room, sizeof *source->part);
+         mpsi_grow(body->context, (void **)&source->part, body->parts, capacity,
+                   sizeof *source->part);
 }
 
 bool mpsi_body_make_source(mps_body *body, mpsi_body_source *source) {
-  source->reaction = mpsi_alloc(body->context, body->part_room, sizeof *source->reaction);
+  source->reaction = mpsi_alloc(body->context, body->part_capacity, sizeof *source->reaction);
   if (source->reaction)
-    source->part = mpsi_alloc(body->context, body->part_room, sizeof *source->part);
+    source->part = mpsi_alloc(body->context, body->part_capacity, sizeof *source->part);
   return source->part != NULL;
 }
 
@@ -138,16 +139,17 @@ void mpsi_body_free_source(mps_body *body, mpsi_body_source *source) {
 
 /* Memory for one more part, here and in all sources. */
 static mps_status ensure_part(mps_body *body, const char *function) {
-  if (body->parts < body->part_room) return MPS_OK;
-  const int32_t room = 2 * body->part_room;
+  if (body->parts < body->part_capacity) return MPS_OK;
+  const int32_t capacity = 2 * body->part_capacity;
   bool good =
-      mpsi_grow(body->context, (void **)&body->names, body->parts, room, sizeof *body->names) &&
-      mpsi_grow(body->context, (void **)&body->reaction, body->parts, room, sizeof *body->reaction);
+      mpsi_grow(body->context, (void **)&body->names, body->parts, capacity, sizeof *body->names) &&
+      mpsi_grow(body->context, (void **)&body->reaction, body->parts, capacity,
+                sizeof *body->reaction);
   for (mpsi_body_source *s = body->sources; s && good; s = s->next)
-    good = widen_source(body, s, room);
+    good = widen_source(body, s, capacity);
   if (!good)
-    return mpsi_fail_memory(body->context, function, (size_t)room * sizeof *body->reaction);
-  body->part_room = room;
+    return mpsi_fail_memory(body->context, function, (size_t)capacity * sizeof *body->reaction);
+  body->part_capacity = capacity;
   return MPS_OK;
 }
 
@@ -155,10 +157,12 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
                               int32_t *part) {
   if (!body) return mpsi_null(__func__, "body");
   const size_t length = name ? mpsi_identifier(name, MPSI_PART_NAME) : 0;
+  if (!name) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   if (length == 0 || name[length] != '\0')
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
-                     name ? name : "(NULL)");
+                     "name is '%.60s', must be letters, digits and _, not begin with a digit, and "
+                     "have 1 to %d characters",
+                     name, MPSI_PART_NAME - 1);
   if (body->faces == 1 && (first != 0 || count != 1))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "first is %lld and count %lld, but the surface is a single piece: 0 and 1",

@@ -24,7 +24,7 @@ void mpsi_body_list_state(mpsi_state *state, mps_body *body) {
   mpsi_pose *p = &body->pose;
   mpsi_state_agree_integer(state, "shape", body->shape);
   mpsi_state_agree_integer(state, "faces", body->faces);
-  mpsi_state_agree_integer(state, "motion", body->def.motion);
+  mpsi_state_agree_choice(state, "motion", "mps_body_motion_kind", body->def.motion);
   mpsi_state_agree_integer(state, "parts", body->parts);
   mpsi_state_f64(state, "time", &body->time, 1);
   mpsi_state_f64(state, "position", p->x, 3);

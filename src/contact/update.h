@@ -23,7 +23,7 @@ static inline void mpsi_impulse_into_cone(const mpsi_impulse *c, double *tangent
 }
 
 /* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
- * least, where walls hold the nodes. Of a vector of another length, whose square is `square`: times
+ * least, where boundaries fix the nodes. Of a vector of another length, whose square is `square`: times
  * that. */
 static inline double mpsi_impulse_mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b,
                                                  const double *d, double square) {

@@ -59,10 +59,18 @@ void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI
     const mps_status mpsi_tried = (call);                                                          \
     if (mpsi_tried != MPS_OK) return mpsi_tried;                                                   \
   } while (0)
+/* What a message says of a choice: the name of its enumerator ("MPS_BOUNDARY_HELD" of
+ * "mps_boundary_kind" and 0); the number of a value that has none. */
+typedef struct mpsi_name {
+  char text[64];
+} mpsi_name;
+mpsi_name mpsi_name_of(const char *enumeration, int32_t value);
+/* The enumeration that an enumerator belongs to; NULL for another name. */
+const char *mpsi_enumeration_of(const char *name);
 
 /* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
- * `room` characters or more. The rest is not checked. */
-size_t mpsi_identifier(const char *name, size_t room);
+ * `capacity` characters or more. The rest is not checked. */
+size_t mpsi_identifier(const char *name, size_t capacity);
 
 /* ---- memory: zero filled, aligned to MPSI_ALIGNMENT ----------------------------------------- */
 

@@ -38,11 +38,13 @@ mps_status mpsi_domain_agree_given_max(mps_domain *domain, const char *function,
   status = find_other(domain, function, list, &k);
   if (status != MPS_OK) return status;
   const bool found = k < list->count;
+  const mpsi_name value =
+      mpsi_member_text(found ? list->member[k] : NULL, found ? list->value[k] : hash);
   status = mpsi_fail(mpsi_domain_context(domain), function, MPS_ERROR_ARGUMENT,
-                     "%s is %.17g on rank %d and another value on others: all ranks must give the "
+                     "%s is %s on rank %d and another value on others: all ranks must give the "
                      "same",
-                     found ? list->name[k] : "a hash of the last numbers given",
-                     found ? list->value[k] : hash, mps_domain_rank(domain));
+                     found ? list->name[k] : "a hash of the last numbers given", value.text,
+                     mps_domain_rank(domain));
   return mpsi_domain_agree(domain, function, status);
 }
 

@@ -160,11 +160,17 @@ static mps_status open_checkpoint(writing *w, const char *path, const mps_checkp
   MPSI_TRY(read_info(context, w->function, user_info, &w->info));
   if (info->user_bytes > 0 && !info->user_data)
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
-                     "user_bytes is %lld and user_data NULL", (long long)info->user_bytes);
-  if (!isfinite(info->time) || info->step < 0 || !(info->dt >= 0.0 && isfinite(info->dt)))
+                     "user_data is NULL, must be given where user_bytes is %lld",
+                     (long long)info->user_bytes);
+  if (!isfinite(info->time))
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT, "time is %g s, must be finite",
+                     info->time);
+  if (info->step < 0)
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT, "step is %lld, must be >= 0",
+                     (long long)info->step);
+  if (!(info->dt >= 0.0 && isfinite(info->dt)))
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
-                     "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
-                     info->time, (long long)info->step, info->dt);
+                     "dt is %g s, must be finite and >= 0", info->dt);
   return mpsi_replace_begin(context, w->function, path, true, &w->replacement);
 }
 
@@ -574,7 +580,8 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   if (of->take_share) status = of->take_share(of->solver, function, status, &r.values);
   if (status == MPS_OK)
     status = mpsi_fail_of(
-        of->context, mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT), "path");
+        of->context, mpsi_state_restore_values(of, function, &r.values, source, MPS_ERROR_ARGUMENT),
+        "path");
   if (status == MPS_OK) report(&r, info);
   drop_reading(&r);
   return status;

@@ -167,7 +167,7 @@ static bool append_frame(mps_recorder *recorder, mark *next, double time) {
     good = append_field(recorder, &recorder->fields[f].series, recorder->fields[f].name, points);
   next->points += count;
   /* A compressed chunk that changes moves, and its former place is written over before the file is
-   * whole again. So that no such chunk holds a part of a former frame, frames begin with one. */
+   * whole again. So that no such chunk contains a part of a former frame, frames begin with one. */
   if (recorder->compression > 0)
     next->points =
         (next->points + recorder->chunk_rows - 1) / recorder->chunk_rows * recorder->chunk_rows;
@@ -246,7 +246,7 @@ static bool find_field(const mps_particles *particles, const char *name, recorde
 }
 
 static bool already_chosen(const mps_recorder *recorder, const char *name) {
-  bool found = strcmp(name, "position") == 0; /* is what Points holds */
+  bool found = strcmp(name, "position") == 0; /* is what Points contains */
   for (int32_t f = 0; !found && f < recorder->field_count; f++)
     found = strcmp(recorder->fields[f].name, name) == 0;
   return found;

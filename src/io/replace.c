@@ -117,7 +117,7 @@ mps_status mpsi_seal_check(mps_context *context, const char *function, int fd, c
 
 /* ---- replacing ------------------------------------------------------------------------------- */
 
-static bool holds(const unsigned char *bytes, int64_t size, const char *text) {
+static bool contains(const unsigned char *bytes, int64_t size, const char *text) {
   const int64_t length = (int64_t)strlen(text);
   for (int64_t k = 0; k + length <= size; k++)
     if (memcmp(bytes + k, text, (size_t)length) == 0) return true;
@@ -138,7 +138,7 @@ static bool is_ours(const char *path, int64_t size) {
   close(fd);
   errno = first < 0 ? reason : 0;
   if (last == SEAL_SIZE && memcmp(tail, seal_name, sizeof seal_name) == 0) return true;
-  return holds(head, first, "\x89HDF\r\n\x1a\n") && holds(head, first, "libmps checkpoint");
+  return contains(head, first, "\x89HDF\r\n\x1a\n") && contains(head, first, "libmps checkpoint");
 }
 
 /* A new name, an empty file or an earlier checkpoint may be replaced: a rename would also replace a

@@ -39,8 +39,8 @@ mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_v
   mps_status status = mpsi_check_range(context, function, "shear_velocity: the shear wave velocity",
                                        shear_velocity, MPSI_RANGE_WAVE_VELOCITY);
   if (status == MPS_OK)
-    status = mpsi_check_range(context, function, "the pressure wave velocity", pressure_velocity,
-                              MPSI_RANGE_WAVE_VELOCITY);
+    status = mpsi_check_range(context, function, "pressure_velocity: the pressure wave velocity",
+                              pressure_velocity, MPSI_RANGE_WAVE_VELOCITY);
   if (status == MPS_OK)
     status = mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
   if (status != MPS_OK) return status;

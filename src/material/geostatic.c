@@ -254,9 +254,10 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
   MPSI_TRY(check_line(&g));
   MPSI_TRY(check_layers(&g));
-  const int64_t n = g.def.layer_count, room = g.count + 3 * n;
-  g.depth = mpsi_alloc(g.context, room, sizeof *g.depth);
-  if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
+  const int64_t n = g.def.layer_count, doubles = g.count + 3 * n;
+  g.depth = mpsi_alloc(g.context, doubles, sizeof *g.depth);
+  if (!g.depth)
+    return mpsi_fail_memory(g.context, set_geostatic, (size_t)doubles * sizeof *g.depth);
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
   mps_status status = weigh(&g);
   if (status == MPS_OK) status = open_stress(&g, set_geostatic);

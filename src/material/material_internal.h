@@ -57,7 +57,7 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 /* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
 bool mpsi_material_reads_volume(const mps_material *material);
 bool mpsi_material_needs_deformation(const mps_material *material); /* not the rate */
-/* The field of a set that holds history column `index`; NULL: no such column. */
+/* The field of a set with history column `index`; NULL: no such column. */
 const char *mpsi_material_history_field(const mps_material *material, int32_t index);
 /* True: a frictional law with a gap between its grains; its history has plastic_strain and opening.
  */

@@ -185,8 +185,8 @@ static void order(const double *value, int *rank) {
 static double share_at(const mpsi_law *law, const double *s, double mean, double p) {
   const double d1 = s[0] - mean, d3 = s[2] - mean;
   const double need = (d1 - d3) + (d1 + d3) * law->sin_phi;
-  const double room = fmax(0.0, 2.0 * (law->c_cos_phi - p * law->sin_phi));
-  double share = need > room ? room / need : 1.0;
+  const double left = fmax(0.0, 2.0 * (law->c_cos_phi - p * law->sin_phi));
+  double share = need > left ? left / need : 1.0;
   if (share * d1 > law->cut - p) share = (law->cut - p) / d1;
   return share;
 }

@@ -290,17 +290,17 @@ static mps_status take_step(control *c, double *rate, mps_material_point *point,
                    (long long)step, size, mps_material_name(c->material));
 }
 
-/* `room`: the points before and after a step, and one for differences. */
+/* `points`: the points before and after a step, and one for differences. */
 static mps_status follow_targets(mps_context *context, const mps_material *material,
                                  mps_material_point *point, const double gradient[9],
                                  uint32_t controlled, const double target[6], double duration,
-                                 int64_t steps, mps_material_point *room, double found[9]) {
-  mps_material_point *now = &room[0], *next = &room[1];
+                                 int64_t steps, mps_material_point *points, double found[9]) {
+  mps_material_point *now = &points[0], *next = &points[1];
   double rate[COMPONENTS] = {0.0};
   control c = {.context = context,
                .material = material,
                .start = now,
-               .other = &room[2],
+               .other = &points[2],
                .dt = duration / (double)steps};
   *now = *next = *point;
   memcpy(c.gradient, gradient, sizeof c.gradient);
@@ -332,10 +332,11 @@ mps_status mps_material_point_control(mps_context *context, const mps_material *
   if (!context) return mpsi_null(__func__, "context");
   MPSI_TRY(check_drive(context, function, material, point, gradient, duration, steps));
   MPSI_TRY(check_targets(context, point, target, controlled));
-  mps_material_point *room = mpsi_alloc(context, 3, sizeof *room); /* too large for a small stack */
-  if (!room) return mpsi_fail_memory(context, function, 3 * sizeof *room);
+  mps_material_point *points =
+      mpsi_alloc(context, 3, sizeof *points); /* too large for a small stack */
+  if (!points) return mpsi_fail_memory(context, function, 3 * sizeof *points);
   mps_status status = follow_targets(context, material, point, gradient, controlled, target,
-                                     duration, steps, room, found);
-  mpsi_free(context, room);
+                                     duration, steps, points, found);
+  mpsi_free(context, points);
   return status;
 }

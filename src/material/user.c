@@ -10,19 +10,22 @@ static bool is_name(const char *name) {
   return length > 0 && name[length] == '\0';
 }
 
+#define NAME "must be letters, digits and _, not begin with a digit, and have 1 to 47 characters"
+
 static mps_status check_history(mps_context *context, const char *function,
                                 const mps_material_user_def *def) {
   for (int32_t c = 0; c < def->history_count; c++) {
     const char *name = def->history[c];
-    if (!name || !is_name(name))
+    if (!name)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "history[%d] is \"%.60s\", must be a name [A-Za-z_][A-Za-z0-9_]* of at most "
-                       "47 characters",
-                       (int)c, name ? name : "(NULL)");
+                       "history[%d] is NULL, must be the name of a column", (int)c);
+    if (!is_name(name))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "history[%d] is '%.60s', " NAME,
+                       (int)c, name);
     for (int32_t d = 0; d < c; d++)
       if (strcmp(name, def->history[d]) == 0)
         return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                         "history[%d] and history[%d] are both \"%s\"", (int)d, (int)c, name);
+                         "history[%d] and history[%d] are both '%s'", (int)d, (int)c, name);
   }
   return MPS_OK;
 }
@@ -40,7 +43,7 @@ static mps_status check_frictional(mps_context *context, const char *function,
   for (int k = 0; k < 2; k++)
     if (!has_column(def, mpsi_sand_columns[k]))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "frictional is 1, then history must have a column \"%s\"",
+                       "frictional is 1, and history has no column '%s', which it then needs",
                        mpsi_sand_columns[k]);
   return MPS_OK;
 }
@@ -52,8 +55,7 @@ static mps_status check_user_law(mps_context *context, const char *function,
                                  const mps_material_user_def *def) {
   if (!is_law_name(def->name))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters, "
-                     "and not user, of the caller's own fields",
+                     "name is '%.60s', " NAME ", and not user, of the caller's own fields",
                      def->name);
   MPSI_TRY(check_history(context, function, def));
   return check_frictional(context, function, def);

@@ -113,11 +113,13 @@ static mps_status create(mps_context *context, const char *function, int32_t met
 
 static mps_status check(mps_context *context, const char *function, int32_t method,
                         mps_petsc_solver **out) {
-  char line[80];
+  char line[120];
   if (!context) return mps_context_set_error(NULL, MPS_ERROR_ARGUMENT, function, "context is NULL");
   if (!out) return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, "out is NULL");
   *out = NULL;
-  snprintf(line, sizeof line, "method is %d, allowed are 0 and 1", method);
+  snprintf(line, sizeof line,
+           "method is %d, allowed are MPS_PETSC_METHOD_MULTIGRID and MPS_PETSC_METHOD_DIRECT",
+           (int)method);
   if (method != MPS_PETSC_METHOD_MULTIGRID && method != MPS_PETSC_METHOD_DIRECT)
     return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, line);
   const mps_status status = mpsi_petsc_enter();

@@ -28,6 +28,6 @@ struct mps_petsc_solver {
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mps_linear_matrix *a);
 /* Nothing of former equations serves any more. */
 void mpsi_petsc_forget(mps_petsc_solver *s);
-/* This rank's rows: x holds a start and receives the solution, |b - A x| <= tolerance |b|. */
+/* This rank's rows: x is a start and receives the solution, |b - A x| <= tolerance |b|. */
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations);

@@ -1,5 +1,5 @@
 /* record_at2.c - PEER strong motion files (.AT2). Header lines, four in most files, of which the
- * last holds the number of samples and the step, in one of the spellings
+ * last has the number of samples and the step, in one of the spellings
  *   NPTS=  4000, DT= .0050 SEC        4000 0.005 NPTS, DT
  * and then come NPTS accelerations, any number of them on a line, in g where the header names no
  * other unit.

@@ -4,7 +4,7 @@
  * Real-header values follow on 17 lines, Format= (6F13.6)" of which number 34 is the step (s),
  * "2 Comment line(s) follow, each starting with a "|":", and
  *   4000 acceleration pts, approx 20 secs, units=cm/sec2 (04), Format=(8f10.5)
- * A file may hold velocities and displacements behind the accelerations, which alone are read.
+ * A file may contain velocities and displacements behind the accelerations, which alone are read.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "record_private.h"
 

@@ -175,7 +175,7 @@ mps_status mpsi_header_step(const mpsi_text *text, const mpsi_samples *samples, 
 
 mps_status mpsi_header_size(const mpsi_text *text, const char *name, double count, double step) {
   if (!(count >= 2.0 && count <= MPSI_RECORD_SAMPLES) || count != floor(count))
-    return mpsi_text_fail(text, "%s is %g, must be a whole number in 2..%g", name, count,
+    return mpsi_text_fail(text, "%s is %g, must be a whole number in 2 to %g", name, count,
                           (double)MPSI_RECORD_SAMPLES);
   if (!isfinite(step) || step <= 0.0)
     return mpsi_text_fail(text, "DT is %g s, must be finite and > 0", step);

@@ -69,7 +69,7 @@ typedef struct mpsi_layout {
 } mpsi_layout;
 /* Splits into cells, trimmed and without quotes; more than room: room + 1. */
 int mpsi_columns_split(mpsi_slice line, mpsi_layout layout, mpsi_slice cell[MPSI_RECORD_COLUMNS]);
-/* Which columns hold time (-1: none) and value, and their units, by the names in `cell`. */
+/* Which columns are time (-1: none) and value, and their units, by the names in `cell`. */
 typedef struct mpsi_columns {
   int count, time, value;
   double second; /* s of one unit of time */

@@ -214,11 +214,10 @@ static mpsi_signal_motion ramp_at(const mps_signal *signal, double t) {
 static mps_status check_quantity(mps_context *context, const char *function, int32_t quantity) {
   if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT || quantity == MPS_SIGNAL_QUANTITY_VALUE)
     return MPS_OK;
-  return mpsi_fail(
-      context, function, MPS_ERROR_ARGUMENT,
-      "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_DISPLACEMENT (2), a motion, and "
-      "MPS_SIGNAL_QUANTITY_VALUE (3), a number",
-      quantity);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "quantity is %s, allowed are MPS_SIGNAL_QUANTITY_DISPLACEMENT, a motion, and "
+                   "MPS_SIGNAL_QUANTITY_VALUE, a number",
+                   mpsi_name_of("mps_signal_quantity", quantity).text);
 }
 
 /* Checks shared by the analytic kinds; `peaks` are the largest |u|, |v|, |a| of the motion. */
@@ -238,7 +237,7 @@ static mps_status check_motion(mps_context *context, const char *function, int32
 
 static mps_status check_frequency(mps_context *context, const char *function, double frequency) {
   if (frequency >= FREQUENCY_MIN && frequency <= FREQUENCY_MAX) return MPS_OK; /* not NaN */
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frequency is %s Hz, must be in %g..%g",
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frequency is %s Hz, must be in %g to %g",
                    mpsi_outside(frequency, FREQUENCY_MIN, FREQUENCY_MAX).text, FREQUENCY_MIN,
                    FREQUENCY_MAX);
 }
@@ -252,7 +251,7 @@ mps_status mps_signal_create_ricker(mps_context *context, double frequency, doub
   if (status != MPS_OK) return status;
   if (!isfinite(peak_time) || peak_time < 0.0)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "peak_time: peak time is %g s, must be finite and >= 0", peak_time);
+                     "peak_time is %g s, must be finite and >= 0", peak_time);
   const double c = PI * frequency * PI * frequency, peak = fabs(amplitude);
   const mpsi_signal_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
   if ((status = check_motion(context, __func__, MPS_SIGNAL_QUANTITY_DISPLACEMENT, amplitude,

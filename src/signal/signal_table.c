@@ -124,11 +124,11 @@ static mps_status check_table(mps_context *context, const char *function, int32_
                               int64_t count, const double *times, const double *values) {
   if (quantity < MPS_SIGNAL_QUANTITY_ACCELERATION || quantity > MPS_SIGNAL_QUANTITY_VALUE_STEPS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_ACCELERATION (0), _VELOCITY "
-                     "(1), _DISPLACEMENT (2), _VALUE (3) and _VALUE_STEPS (4)",
+                     "quantity is %d, allowed are MPS_SIGNAL_QUANTITY_ACCELERATION, _VELOCITY, "
+                     "_DISPLACEMENT, _VALUE and _VALUE_STEPS",
                      quantity);
   if (count < 2 || count >= INT32_MAX)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2 to %d",
                      (long long)count, INT32_MAX - 1);
   if (!times || !values)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",

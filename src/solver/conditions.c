@@ -79,7 +79,7 @@ static void give(const mpsi_condition_kind *kind, const void *def, mpsi_given *l
   const mpsi_definition *d = kind->definition;
   for (const mpsi_def_member *m = d->member; m < d->member + d->count; m++)
     for (int32_t c = 0; m->type <= MPSI_MEMBER_REAL && c < m->count; c++)
-      mpsi_give(list, m->name, mpsi_member_value(m, def, c));
+      mpsi_give_member(list, m, def, c);
   for (LISTS(k, kind))
     mpsi_give_bytes(list, kind->list[k].member, *list_of(kind, def, k), bytes_of(kind, def, k));
   for (int32_t c = 0; c < count; c++) mpsi_signal_give(list, "a hash of signal", signal[c]);
@@ -160,12 +160,12 @@ static mps_status list_items(mps_solver *s, const char *function, const mpsi_con
   double x[3] = {0.0, 0.0, 0.0};
   int64_t count = 0, id;
   for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
-    count += mpsi_selection_holds(box, dim, x);
+    count += mpsi_selection_contains(box, dim, x);
   int64_t *ids = mpsi_alloc(s->context, count, sizeof *ids);
   if (!ids) return mpsi_fail_memory(s->context, function, (size_t)count * sizeof *ids);
   count = 0;
   for (int64_t k = 0; take_item(s, kind, def, k, x, &id); k++)
-    if (mpsi_selection_holds(box, dim, x)) ids[count++] = id;
+    if (mpsi_selection_contains(box, dim, x)) ids[count++] = id;
   *(int64_t **)place(kind, def, "ids") = ids;
   *(int64_t *)place(kind, def, "id_count") = count;
   *(int32_t *)place(kind, def, "all") = 0;
@@ -227,18 +227,16 @@ static mpsi_conditions *find_list(const mps_solver *s, int32_t kind) {
 }
 
 static mps_status fail_kind(const mps_solver *s, const char *function, int32_t kind) {
-  const mpsi_definition *given = mpsi_definition_of(kind);
   return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                   "kind is %d%s%s%s, this solver has %d (%s) and %d (%s)", kind, given ? " (" : "",
-                   given ? given->type : "", given ? ")" : "", s->conditions[0].kind->kind,
-                   s->conditions[0].kind->definition->type, s->conditions[1].kind->kind,
-                   s->conditions[1].kind->definition->type);
+                   "kind is %s, this solver has %s and %s", mpsi_name_of("mps_def_kind", kind).text,
+                   mpsi_name_of("mps_def_kind", s->conditions[0].kind->kind).text,
+                   mpsi_name_of("mps_def_kind", s->conditions[1].kind->kind).text);
 }
 
 static bool is_there(const mps_solver *s, const mpsi_conditions *list, int32_t number) {
   if (number >= 0 && number < list->kind->first)
     return list->kind->has && list->kind->has(s, number);
-  return number >= 0 && number < list->room && list->def[number];
+  return number >= 0 && number < list->capacity && list->def[number];
 }
 
 static mps_status check_number(const mps_solver *s, const char *function,
@@ -251,17 +249,17 @@ static mps_status check_number(const mps_solver *s, const char *function,
 /* Room for `number` in the list. */
 static mps_status reserve(mps_solver *s, const char *function, mpsi_conditions *list,
                           int32_t number) {
-  const int32_t room = number + 8;
-  if (number < list->room) return MPS_OK;
-  void **def = mpsi_alloc(s->context, room, sizeof *def);
-  void **own = def ? mpsi_alloc(s->context, room, sizeof *own) : NULL;
+  const int32_t capacity = number + 8;
+  if (number < list->capacity) return MPS_OK;
+  void **def = mpsi_alloc(s->context, capacity, sizeof *def);
+  void **own = def ? mpsi_alloc(s->context, capacity, sizeof *own) : NULL;
   if (!own) {
     mpsi_free(s->context, def);
-    return mpsi_fail_memory(s->context, function, (size_t)room * sizeof *def);
+    return mpsi_fail_memory(s->context, function, (size_t)capacity * sizeof *def);
   }
-  for (int32_t k = 0; k < list->room; k++) def[k] = list->def[k], own[k] = list->own[k];
+  for (int32_t k = 0; k < list->capacity; k++) def[k] = list->def[k], own[k] = list->own[k];
   MPSI_FREE(s->context, list->def, list->own);
-  list->def = def, list->own = own, list->room = room;
+  list->def = def, list->own = own, list->capacity = capacity;
   return MPS_OK;
 }
 
@@ -269,12 +267,12 @@ static mps_status reserve(mps_solver *s, const char *function, mpsi_conditions *
 static mps_status find_number(mps_solver *s, const char *function, mpsi_conditions *list,
                               int32_t *number) {
   int32_t at = list->kind->first;
-  while (at < list->room && list->def[at]) at++;
+  while (at < list->capacity && list->def[at]) at++;
   *number = at;
   if (at >= list->kind->most)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "number %d is the next, and a %s has at most number %d", at, list->kind->what,
-                     list->kind->most - 1);
+                     "there are %d numbers for a %s, and all are taken: remove one first",
+                     list->kind->most - list->kind->first, list->kind->what);
   return reserve(s, function, list, at);
 }
 
@@ -380,10 +378,10 @@ mps_status mps_solver_remove(mps_solver *s, int32_t kind, int32_t number) {
   mpsi_guard_enter(&s->guard, s->context, function);
   mps_status status = mpsi_domain_agree_same(
       s->domain, function, check_number(s, function, list, number), "number", number);
-  void *const former = number >= 0 && number < list->room ? list->own[number] : NULL;
+  void *const former = number >= 0 && number < list->capacity ? list->own[number] : NULL;
   if (status == MPS_OK && list->kind->apply)
     status = list->kind->apply(s, function, number, NULL, NULL, former);
-  if (status == MPS_OK && number < list->room) {
+  if (status == MPS_OK && number < list->capacity) {
     drop_own(s, list->kind, former);
     if (list->def[number]) drop_def(s->context, list->kind, list->def[number]);
     list->own[number] = list->def[number] = NULL;
@@ -403,7 +401,7 @@ mps_status mps_solver_get(const mps_solver *s, int32_t kind, int32_t number, voi
     double align;
     char bytes[MPSI_STRUCT_MOST];
   } known;
-  const void *def = number < list->room ? list->def[number] : NULL;
+  const void *def = number < list->capacity ? list->def[number] : NULL;
   const mpsi_definition *d = list->kind->definition;
   if (!def) {
     mpsi_definition_fill(d, &known, d->size);
@@ -423,7 +421,7 @@ mps_status mps_solver_get_numbers(const mps_solver *s, int32_t kind, int64_t cap
                      "count is %s and capacity %lld: must be given, and >= 0",
                      count ? "given" : "NULL", (long long)capacity);
   int64_t found = 0;
-  for (int32_t k = 0; k < list->room || k < list->kind->first; k++) {
+  for (int32_t k = 0; k < list->capacity || k < list->kind->first; k++) {
     if (!is_there(s, list, k)) continue;
     if (numbers && found < capacity) numbers[found] = k;
     found++;
@@ -445,7 +443,7 @@ mps_status mps_solver_get_reaction_sized(const mps_solver *s, int32_t number, mp
 void mpsi_conditions_drop(mps_solver *s) {
   for (int w = 0; w < MPSI_CONDITION_LISTS; w++) {
     mpsi_conditions *list = &s->conditions[w];
-    for (int32_t k = 0; k < list->room; k++) {
+    for (int32_t k = 0; k < list->capacity; k++) {
       drop_own(s, list->kind, list->own[k]);
       if (list->def[k]) drop_def(s->context, list->kind, list->def[k]);
     }

@@ -80,14 +80,14 @@ typedef struct mpsi_condition_kind {
 typedef struct mpsi_conditions {
   const mpsi_condition_kind *kind;
   void **def, **own;
-  int32_t room;
+  int32_t capacity;
 } mpsi_conditions;
 
 /* Functions of a solver for one of its lists: PREFIX_count, above the numbers of its conditions,
  * and PREFIX_of, what it made of that of a number below, NULL where it is free. */
 #define MPSI_CONDITION_ACCESS(prefix, solver_type, list, type)                                     \
   static inline int32_t prefix##_count(const solver_type *solver) {                                \
-    return solver->conditions[list].room;                                                          \
+    return solver->conditions[list].capacity;                                                          \
   }                                                                                                \
   static inline type *prefix##_of(const solver_type *solver, int32_t number) {                     \
     return solver->conditions[list].own[number];                                                   \

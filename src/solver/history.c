@@ -13,10 +13,11 @@ static bool writes(const mps_history *h) { return mps_domain_rank(h->domain) <= 
 static mps_status check_name(mps_solver *s, const char *function, const char *name) {
   static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   const size_t length = name ? strspn(name, allowed) : 0;
+  if (!name) return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT, "name is NULL");
   if (length == 0 || length >= MPSI_HISTORY_NAME || name[length])
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "name is '%.60s', must be 1 to %d letters, digits, '_' or '-'",
-                     name ? name : "NULL", MPSI_HISTORY_NAME - 1);
+                     "name is '%.60s', must be 1 to %d letters, digits, '_' or '-'", name,
+                     MPSI_HISTORY_NAME - 1);
   for (const mps_history *h = s->histories; h; h = h->next)
     if (strcmp(h->name, name) == 0)
       return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
@@ -29,10 +30,12 @@ static mps_status read_text(mps_context *context, const char *function, const ch
   const int32_t length = text ? (int32_t)strnlen(text, MPSI_HISTORY_TEXT) : 0;
   bool plain = length >= least && length < MPSI_HISTORY_TEXT;
   for (int32_t i = 0; i < length; i++) plain = plain && (unsigned char)text[i] >= ' ';
+  if (!text)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s[%lld] is NULL", what, (long long)k);
   if (!plain)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "%s[%lld] is '%.60s', must be %d to %d bytes without line breaks", what,
-                     (long long)k, text ? text : "NULL", least, MPSI_HISTORY_TEXT - 1);
+                     (long long)k, text, least, MPSI_HISTORY_TEXT - 1);
   if (length > 0) memcpy(out, text, (size_t)length);
   return MPS_OK;
 }
@@ -91,10 +94,11 @@ static void end(mps_history *h) {
 static mps_status make(mps_solver *s, const char *function, const char *name, int32_t count,
                        const char *const *columns, const char *const *units, mps_history **out) {
   mps_status status = check_name(s, function, name);
-  if (status == MPS_OK && (count < 1 || count > MPSI_HISTORY_COLUMNS || !columns))
-    status = mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                       "count is %d with columns %s, must be 1 to %d with columns given", count,
-                       columns ? "given" : "NULL", MPSI_HISTORY_COLUMNS);
+  if (status == MPS_OK && (count < 1 || count > MPSI_HISTORY_COLUMNS))
+    status = mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT, "count is %d, must be 1 to %d",
+                       count, MPSI_HISTORY_COLUMNS);
+  if (status == MPS_OK && !columns)
+    status = mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT, "columns is NULL");
   if (status != MPS_OK) return status;
   mps_history *h = mpsi_alloc(s->context, 1, sizeof *h);
   if (!h) return mpsi_fail_memory(s->context, function, sizeof *h);
@@ -167,9 +171,9 @@ static mps_status check_column(const mps_history *h, const char *function, const
                                int64_t first, int64_t *out) {
   *out = find(h, name);
   if (*out >= first) return MPS_OK;
+  if (!name) return mpsi_fail(h->context, function, MPS_ERROR_ARGUMENT, "column is NULL");
   return mpsi_fail(h->context, function, MPS_ERROR_ARGUMENT,
-                   "column is '%.60s', must be one of '%s': %.300s", name ? name : "NULL", h->name,
-                   h->names);
+                   "column is '%.60s', must be one of '%s': %.300s", name, h->name, h->names);
 }
 
 mps_status mps_history_set_source(mps_history *h, const char *column, mps_history_fn fn, void *user,
@@ -200,11 +204,12 @@ static mps_status fill(mps_history *h, const char *function, double time, int32_
                        const double *values, double *row) {
   int32_t given = 0;
   for (int64_t k = 1; k < h->width; k++) given += !h->column[k].source;
-  if (count != given || (count > 0 && !values))
+  if (count != given)
     return mpsi_fail(h->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %d with values %s, must be %d with values given: the columns of "
-                     "'%s' without a source",
-                     count, values ? "given" : "NULL", given, h->name);
+                     "count is %d, must be %d: the columns of '%s' without a source", count, given,
+                     h->name);
+  if (count > 0 && !values)
+    return mpsi_fail(h->context, function, MPS_ERROR_ARGUMENT, "values is NULL");
   if (isinf(time))
     return mpsi_fail(h->context, function, MPS_ERROR_ARGUMENT,
                      "time is %g s, must be finite, or NaN for that of the solver", time);

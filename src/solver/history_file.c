@@ -18,16 +18,16 @@ enum { CELL = 32 }; /* bytes of a number and a comma */
 
 typedef struct text {
   char *at;
-  int64_t used, room;
+  int64_t used, capacity;
 } text;
 
-static bool make_room(mps_context *context, text *t, int64_t more) {
+static bool reserve(mps_context *context, text *t, int64_t more) {
   void *at = t->at;
-  if (t->used + more <= t->room) return true;
-  const int64_t room = 2 * t->room + more;
-  if (!mpsi_grow(context, &at, t->room, room, 1)) return false;
+  if (t->used + more <= t->capacity) return true;
+  const int64_t capacity = 2 * t->capacity + more;
+  if (!mpsi_grow(context, &at, t->capacity, capacity, 1)) return false;
   t->at = at;
-  t->room = room;
+  t->capacity = capacity;
   return true;
 }
 
@@ -48,7 +48,7 @@ static void put_name(text *t, const mpsi_history_column *c) {
 }
 
 static bool put_header(mps_context *context, const mps_history *h, text *t) {
-  if (!make_room(context, t, h->width * (4 * MPSI_HISTORY_TEXT + 8))) return false;
+  if (!reserve(context, t, h->width * (4 * MPSI_HISTORY_TEXT + 8))) return false;
   for (int64_t k = 0; k < h->width; k++) {
     put_name(t, &h->column[k]);
     t->at[t->used++] = k + 1 < h->width ? ',' : '\n';
@@ -66,7 +66,7 @@ static void put_number(text *t, double value) {
 }
 
 static bool put_row(mps_context *context, const mps_history *h, int64_t row, text *t) {
-  if (!make_room(context, t, h->width * CELL)) return false;
+  if (!reserve(context, t, h->width * CELL)) return false;
   for (int64_t k = 0; k < h->width; k++) {
     const double value = h->row[row * h->width + k];
     if (!isnan(value)) put_number(t, value);

@@ -10,8 +10,6 @@
 #define UNTOUCHED -3e-301 /* behind the solution */
 enum { BEHIND = 8 };      /* entries there */
 
-static const char *const equations[] = {"none", "STIFFNESS", "PRESSURE", "PORE_PRESSURE"};
-
 /* ---- the solver that is set ------------------------------------------------------------------ */
 
 /* Whether it is of the processes that the solver has. */
@@ -28,10 +26,15 @@ static mps_status check_ranks(const mps_solver *s, const char *function,
 
 static mps_status check(mps_solver *s, const char *function, int32_t equation,
                         const mps_linear_solver_def *user, mps_linear_solver_def *def) {
-  if (equation < 1 || equation != s->kind->equation)
+  if (s->kind->equation == 0)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "equation is %d, that of the solver is %d (%s)", (int)equation,
-                     (int)s->kind->equation, equations[s->kind->equation]);
+                     "equation is %s, and the solver has none to solve",
+                     mpsi_name_of("mps_linear_equation", equation).text);
+  if (equation != s->kind->equation)
+    return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
+                     "equation is %s, that of the solver is %s",
+                     mpsi_name_of("mps_linear_equation", equation).text,
+                     mpsi_name_of("mps_linear_equation", s->kind->equation).text);
   mps_status status = s->kind->linear_ready ? s->kind->linear_ready(s, function) : MPS_OK;
   if (status == MPS_OK && user)
     status = MPSI_DEF_READ(s->context, function, mps_linear_solver_def, user, def);
@@ -114,9 +117,9 @@ mps_status mpsi_linear_hand(mps_solver *s, const char *function, mps_linear_matr
   mpsi_linear *l = s->linear;
   const uint64_t pattern = pattern_of(a);
   double changed = !l->known || pattern != l->pattern;
-  const bool room = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
+  const bool good = mpsi_room_ensure(s->context, &l->x, a->rows + BEHIND, sizeof(double));
   l->valid = l->known = false;
-  mps_status status = room ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
+  mps_status status = good ? MPS_OK : mpsi_fail_memory(s->context, function, (size_t)a->rows * 8);
   MPSI_TRY(mpsi_domain_agree_max(s->domain, function, status, 1, &changed));
   a->struct_size = sizeof *a;
   a->change = changed != 0.0 ? MPS_LINEAR_CHANGE_PATTERN : MPS_LINEAR_CHANGE_VALUES;

@@ -77,8 +77,9 @@ mps_status mps_solver_get_def(const mps_solver *s, int32_t kind, void *out, size
   const char *function = s->kind->name.get_def;
   if (kind != s->kind->def_kind)
     return mpsi_fail(s->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, that of this solver's definition is %d (%s)", kind,
-                     s->kind->def_kind, mpsi_definition_of(s->kind->def_kind)->type);
+                     "kind is %s, that of this solver's definition is %s",
+                     mpsi_name_of("mps_def_kind", kind).text,
+                     mpsi_name_of("mps_def_kind", s->kind->def_kind).text);
   union {
     double align;
     char bytes[MPSI_STRUCT_MOST];

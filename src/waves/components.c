@@ -55,7 +55,7 @@ static double table_peak(const mps_waves_def *def) {
 
 /* ---- components ------------------------------------------------------------------------------ */
 
-static mps_status make_room(mps_waves *w, int64_t count) {
+static mps_status reserve(mps_waves *w, int64_t count) {
   const int64_t most = w->def.theory == MPS_WAVES_THEORY_SECOND ? 1024 : 4096;
   const char *function = "mps_waves_create";
   if (count < 1)
@@ -79,7 +79,7 @@ static mps_status make_band(mps_waves *w, double fp, int64_t *first) {
   const double low = ceil(w->def.lower * fp * w->repeat * (1.0 - 1e-9));
   const double high = floor(w->def.upper * fp * w->repeat * (1.0 + 1e-9));
   *first = low < 1.0 ? 1 : (int64_t)fmin(low, 1e9);
-  return make_room(w, (int64_t)fmin(high, 2e9) - *first + 1);
+  return reserve(w, (int64_t)fmin(high, 2e9) - *first + 1);
 }
 
 /* Wave numbers and transfers, once bins are known. */
@@ -101,7 +101,7 @@ static mps_status complete(mps_waves *w) {
 
 static mps_status make_regular(mps_waves *w) {
   w->period = w->repeat = w->def.period;
-  MPSI_TRY(make_room(w, 1));
+  MPSI_TRY(reserve(w, 1));
   w->wave[0].bin = 1;
   w->wave[0].a = 0.5 * w->def.height;
   return complete(w);

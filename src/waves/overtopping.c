@@ -109,7 +109,9 @@ static mps_status check_run_up(mps_context *context, const char *function,
                                const mps_eurotop_def *d) {
   if (d->wall != MPS_EUROTOP_WALL_SLOPE)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "wall is %d (vertical), must be 1 (slope)", d->wall);
+                     "wall is %s, must be MPS_EUROTOP_WALL_SLOPE: at a vertical wall there is no "
+                     "run-up",
+                     mpsi_name_of("mps_eurotop_wall", d->wall).text);
   return check_breaker(context, function, d);
 }
 

@@ -74,7 +74,7 @@ static mps_status check_height(const mps_waves *w) {
   if (d->theory == MPS_WAVES_THEORY_SECOND && ratio >= 8.0 / 3.0 * MPSI_WAVES_PI * MPSI_WAVES_PI)
     return mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                      "height %g m of the waves: height L^2/depth^3 is %g, must be below 26.3 with "
-                     "theory SECOND",
+                     "MPS_WAVES_THEORY_SECOND",
                      d->height, ratio);
   return MPS_OK;
 }

@@ -50,6 +50,7 @@ typedef enum api_kind {
   API_FLUID,
   API_WAVES,
   API_ABSORBER,
+  API_HISTORY,
   API_KINDS,
   API_NOTHING = API_KINDS /* a call that needs no object */
 } api_kind;

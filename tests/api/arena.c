@@ -14,7 +14,8 @@
 const char *const api_kind_names[API_KINDS] = {
     "context", "set",        "signal",   "material", "kernel",   "body",
     "contact", "neighbours", "coupling", "domain",   "recorder", "snapshot",
-    "mpm",     "dynamics",   "elastic",  "fluid",    "waves",    "absorber"};
+    "mpm",     "dynamics",   "elastic",  "fluid",    "waves",    "absorber",
+    "history"};
 
 int api_alive(const api *a, api_kind kind) {
   int count = 0;
@@ -94,6 +95,7 @@ void api_destroy(api_kind kind, void **handle) {
     DESTROY(API_FLUID, mps_fluid, mps_fluid_destroy)
     DESTROY(API_WAVES, mps_waves, mps_waves_destroy)
     DESTROY(API_ABSORBER, mps_absorber, mps_absorber_destroy)
+    DESTROY(API_HISTORY, mps_history, mps_history_destroy)
 #undef DESTROY
   case API_KINDS:
     return;

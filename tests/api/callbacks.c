@@ -219,6 +219,12 @@ mps_status api_traction(void *user, const double *x, const double *normal, doubl
 /* ---- a linear solver, which does not solve ----------------------------------------------------
  */
 
+/* NaN is a value too. */
+mps_status api_column(void *user, mps_solver *solver, double *value) {
+  *value = mps_solver_time(solver);
+  return api_callback(user, NULL, 0);
+}
+
 mps_status api_linear_matrix(void *user, const mps_linear_matrix *matrix) {
   (void)matrix;
   return api_callback(user, NULL, 0);

@@ -321,6 +321,22 @@ static void contact_get_reaction_sized(api *a) {
   API_SIZED_END(a, status, size, out, true);
 }
 
+/* The definition is that of the solver that has made the contact. */
+static void contact_get_def(api *a) {
+  api_begin(a, "mps_contact_get_def");
+  mps_contact *contact = api_any(a, API_CONTACT)->handle;
+  const int32_t own = contact ? contact->kind->def_kind : (int32_t)MPS_DEF_CONTACT;
+  int32_t kind = own;
+  if (a->mood == API_ABSURD && api_chance(a, 20)) kind = MPS_DEF_BODY, api_wrong(a, "kind");
+  API_SIZED(a, mps_contact_def, size, out);
+  mps_fluid_contact_def of_fluid;
+  const bool whole = own == MPS_DEF_CONTACT;
+  void *to = whole ? (void *)out : (void *)&of_fluid;
+  const mps_status status = mps_contact_get_def(contact, kind, api_null(a, "out") ? NULL : to,
+                                                whole ? size : sizeof of_fluid);
+  API_SIZED_END(a, status, size, out, true);
+}
+
 static void contact_get_particles(api *a) {
   api_begin(a, "mps_contact_get_particles");
   int64_t count = -1, ids[65];
@@ -451,6 +467,7 @@ static const api_call calls[] = {
     {"mps_mpm_add_contact", 6, API_MPM, mpm_add_contact},
     {"mps_contact_destroy", 1, API_CONTACT, destroy_contact_destroy},
     {"mps_contact_get_reaction_sized", 2, API_CONTACT, contact_get_reaction_sized},
+    {"mps_contact_get_def", 2, API_CONTACT, contact_get_def},
     {"mps_contact_get_particles", 3, API_CONTACT, contact_get_particles},
     {"mps_grid_get_info_sized", 1, API_MPM, grid_get_info_sized},
     {"mps_grid_get_nodes", 2, API_MPM, grid_get_nodes},

@@ -64,6 +64,7 @@ mps_status api_inside_disc(void *user, const double *x, int32_t *inside);
 mps_status api_flat(void *user, const double *x, double *level);
 mps_status api_some_stress(void *user, const double *x, double *stress);
 mps_status api_traction(void *user, const double *x, const double *normal, double *out);
+mps_status api_column(void *user, mps_solver *solver, double *value);
 mps_status api_linear_matrix(void *user, const mps_linear_matrix *matrix);
 mps_status api_linear_solve(void *user, const double *b, double tolerance, double *x,
                             mps_linear_result *result);

@@ -256,6 +256,20 @@ static void look_coupling(look *l, mps_coupling *coupling) {
     add(l, "memory", fold_reals((uint64_t)count, count < 512 ? (int)count : 512, values));
 }
 
+/* The rows, of which the columns of the history are three at most. */
+static void look_history(look *l, mps_history *history) {
+  static const char *const columns[] = {"t", "a", "b"};
+  uint64_t hash = 0;
+  for (int c = 0; c < API_COUNT(columns); c++) {
+    mps_view view;
+    if (mps_history_view(history, columns[c], &view) != MPS_OK) continue;
+    for (int64_t k = 0; k < view.shape[0]; k++)
+      hash = fold_real(hash, *mps_view_f64(&view, k, 0));
+  }
+  add_whole(l, "count", mps_history_count(history));
+  add(l, "rows", hash);
+}
+
 static void look_neighbours(look *l, mps_neighbours *neighbours) {
   int64_t count = 0;
   const int64_t *offsets = NULL, *indices = NULL;
@@ -298,6 +312,9 @@ int api_look(api *a, api_kind kind, api_object *object, api_part *parts) {
     add_reaction(&l, "reaction", -1, status, &reaction);
     break;
   }
+  case API_HISTORY:
+    look_history(&l, object->handle);
+    break;
   case API_NEIGHBOURS:
     look_neighbours(&l, object->handle);
     break;

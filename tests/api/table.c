@@ -8,7 +8,7 @@
 const api_table *const api_tables[] = {&api_context_calls,  &api_particles_calls, &api_signal_calls,
                                        &api_material_calls, &api_body_calls,      &api_mpm_calls,
                                        &api_dynamics_calls, &api_elastic_calls,   &api_fluid_calls,
-                                       &api_io_calls,       &api_waves_calls};
+                                       &api_io_calls,       &api_waves_calls,     &api_history_calls};
 const int api_table_count = API_COUNT(api_tables);
 
 /* Exported functions that nothing here calls, and why. A new function belongs into a table. */
@@ -20,17 +20,6 @@ static const struct {
     {"mps_dynamics_solver", "likewise"},
     {"mps_elastic_solver", "likewise"},
     {"mps_fluid_solver", "likewise"},
-    {"mps_contact_get_def",
-     "of two kinds, which a handle does not show: tests/unit/test_conditions.c"},
-    {"mps_history_count", "of files and rows that a solver takes along: tests/unit/test_hdf5_history.c"},
-    {"mps_history_create", "likewise"},
-    {"mps_history_destroy", "likewise"},
-    {"mps_history_flush", "likewise"},
-    {"mps_history_open", "likewise"},
-    {"mps_history_record", "likewise"},
-    {"mps_history_set_source", "likewise"},
-    {"mps_history_view", "likewise"},
-    {"mps_history_write", "likewise"},
 };
 
 /* ---- names ----------------------------------------------------------------------------------- */

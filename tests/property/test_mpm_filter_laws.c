@@ -153,7 +153,7 @@ TEST(a_frictional_law_needs_its_columns) {
   cone c = {.alpha = 0.0};
   mps_material_user_def def = define(&c);
   def.history = others;
-  refuse(&def, "must have a column \"plastic_strain\"");
+  refuse(&def, "no column 'plastic_strain'");
   def = define(&c), def.history = closed;
-  refuse(&def, "must have a column \"opening\"");
+  refuse(&def, "no column 'opening'");
 }

@@ -340,7 +340,7 @@ TEST(definitions_of_objects_are_read_back) {
   assert_true(def.cell == 0.2 && def.struct_size == sizeof def);
   assert_int_equal(mps_solver_get_def(mps_mpm_solver(mpm), MPS_DEF_DYNAMICS, &other, sizeof other),
                    MPS_ERROR_ARGUMENT);
-  assert_non_null(strstr(mps_context_error(context)->message, "mps_mpm_def"));
+  assert_non_null(strstr(mps_context_error(context)->message, "MPS_DEF_MPM"));
   mps_body_def body_def = mps_body_defaults(), body_out;
   mps_body *body = NULL;
   body_def.motion = MPS_BODY_MOTION_FREE, body_def.mass = 3.0, body_def.inertia[2] = 0.5;

@@ -46,8 +46,8 @@ TEST(a_callback_says_why_it_has_failed) {
   OK(mps_particles_create(context, &def, &set));
   FAILS(mps_particles_fill_where(set, lo, hi, refuse_node, context, NULL), MPS_ERROR_IO,
         "my_reader: the tape has ended");
-  REFUSES(mps_context_set_error(context, MPS_OK, "f", "nothing"), "status is 0");
-  REFUSES(mps_context_set_error(context, MPS_ERROR_IO, NULL, NULL), "message NULL");
+  REFUSES(mps_context_set_error(context, MPS_OK, "f", "nothing"), "status is MPS_OK");
+  REFUSES(mps_context_set_error(context, MPS_ERROR_IO, NULL, NULL), "message is NULL");
   assert_int_equal(mps_context_set_error(NULL, MPS_ERROR_IO, "f", "x"), MPS_ERROR_IO);
   assert_string_equal(mps_last_error()->message, "x");
 }

@@ -778,6 +778,45 @@ static int bad_values(const mpsi_def_member *m, const mpsi_allowed *r, double ou
   return count;
 }
 
+/* Wherever a message gives the value of a choice ("kind is ..."), it is the enumerator; a number
+ * only where the value has none, and never both. A list of what is allowed has the names of
+ * `listed`. */
+static void expect_names(const row *r, const void *def, const char *said,
+                         const mpsi_allowed *listed) {
+  for (const mpsi_def_member *m = r->member; m < r->member + r->count; m++) {
+    const char *colon = m->allowed.choices ? strchr(m->allowed.choices, ':') : NULL;
+    if (!colon) continue;
+    char words[80], wanted[160];
+    const int begin = (int)(colon - m->allowed.choices);
+    snprintf(words, sizeof words, "%.*s%.*s", begin, m->allowed.choices,
+             (int)strcspn(colon + 1, "|"), colon + 1);
+    const char *enumeration = mpsi_enumeration_of(words);
+    if (!enumeration) fail_msg("%s.%s: %s is no enumerator", r->type, m->name, words);
+    for (int32_t value = 0; value < 12; value++)
+      if (is_allowed_choice(&m->allowed, value)) {
+        const char *name = mps_enumerator_name(enumeration, value);
+        if (!name || !strstr(m->allowed.choices, name + begin))
+          fail_msg("%s.%s = %d is %s of %s", r->type, m->name, (int)value, name, enumeration);
+        if (listed->choices && strncmp(said, m->name, strlen(m->name)) == 0 &&
+            is_allowed_choice(listed, value) && !strstr(said, name))
+          fail_msg("%s.%s: \"%s\" lacks %s", r->type, m->name, said, name);
+      }
+    snprintf(words, sizeof words, "%s is ", m->name);
+    const char *at = strstr(said, words);
+    if (!at || (at > said && at[-1] != ' ')) continue;
+    const int32_t value = (int32_t)mpsi_member_value(m, def, 0);
+    const char *name = mps_enumerator_name(enumeration, value);
+    if (name)
+      snprintf(wanted, sizeof wanted, "%s%s", words, name);
+    else
+      snprintf(wanted, sizeof wanted, "%s%d", words, (int)value);
+    const size_t length = strlen(wanted);
+    if (strncmp(at, wanted, length) != 0 || (at[length] && !strchr(",: ", at[length])) ||
+        strncmp(at + length, " (", 2) == 0)
+      fail_msg("%s: \"%s\", expected \"%s\"", r->type, said, wanted);
+  }
+}
+
 /* Refused, and the message begins with the member; the caller's struct is as it was. */
 static void expect_refused(const row *r, const user *u, const mpsi_def_member *m, int32_t c,
                            void *def) {
@@ -795,6 +834,7 @@ static void expect_refused(const row *r, const user *u, const mpsi_def_member *m
     fail_msg("%s.%s[%d] = %g: status %d", r->type, m->name, (int)c, value, (int)status);
   if (strncmp(said, name, strlen(name)) != 0)
     fail_msg("%s.%s[%d] = %g: \"%s\"", r->type, m->name, (int)c, value, said);
+  expect_names(r, def, said, &m->allowed);
   assert_memory_equal(copy, def, r->size);
   free(copy);
   free(def);
@@ -941,10 +981,11 @@ TEST(broken_rules_are_refused_by_name) {
           break;
         }
         for (int w = 0; w < MPSI_CASES; w++)
-          if (!mpsi_case_holds(r, &rule->when[w], def, scene))
+          if (!mpsi_case_applies(r, &rule->when[w], def, scene))
             fail_msg("%s.%s: no way to make case %d hold", r->type, name, w);
         if (mpsi_rule_check(r, rule, def, scene, why) || strncmp(why, name, strlen(name)) != 0)
           fail_msg("%s.%s, way %d: \"%s\"", r->type, name, way, why);
+        expect_names(r, def, why, &rule->allowed);
         if (is_built(r->type) && scene == MPSI_SCENE_PLANE && u->use(def) != MPS_ERROR_ARGUMENT)
           fail_msg("%s is taken, but \"%s\"", r->type, why);
         free(def);
@@ -978,8 +1019,8 @@ TEST(zeros_are_told_where_to_start) {
     const row *r = row_of(k);
     char wanted[120];
     if (!is_built(r->type)) continue;
-    snprintf(wanted, sizeof wanted, "filled with zeros, allowed are %zu to 4096: start from %s()",
-             r->released, r->defaults);
+    snprintf(wanted, sizeof wanted, "filled with zeros (its struct_size is 0): start from %s()",
+             r->defaults);
     void *def = calloc(1, r->size);
     assert_int_equal(user_of(r->type)->use(def), MPS_ERROR_ARGUMENT);
     const char *said = strcmp(r->type, "mps_context_def") == 0

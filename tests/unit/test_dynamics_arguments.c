@@ -71,7 +71,7 @@ TEST(bad_fields_are_refused_and_can_be_mended) {
     refuse_value("pressure_velocity", 0, bad[k], "pressure_velocity of particle 4 is");
   }
   refuse_value("pressure_velocity", 0, 141.0, "is 141 m/s, must be at least sqrt(2) times");
-  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be in 0..1000");
+  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be in 0 to 1000");
   refuse_value("damping", 0, NAN, "damping of particle 4 is nan");
   refuse_value("position", 0, NAN, "position of particle 4 is nan, must be finite");
   refuse_value("position", 1, 1e12, "to 1e+12 m in y, allowed are 1e+09 spacings");
@@ -177,7 +177,7 @@ TEST(bad_calls_are_refused) {
   REFUSES(mps_dynamics_run(d, 1e300, 1, NULL, NULL), "1e+300");
   REFUSES(mps_dynamics_restart(d, NAN), "time is nan");
   const double bad[] = {0.0, -1.0, NAN, INFINITY};
-  for (int k = 0; k < 4; k++) REFUSES(mps_dynamics_set_dt(d, bad[k]), "must be in 1e-12..1e+09");
+  for (int k = 0; k < 4; k++) REFUSES(mps_dynamics_set_dt(d, bad[k]), "must be in 1e-12 to 1e+09");
   REFUSES(mps_dynamics_get_totals(d, NULL), "out is NULL");
   REFUSES(mps_dynamics_get_totals(d, NULL), "out is NULL");
   REFUSES(mps_dynamics_find_limit(d, 0.0, NULL), "out");

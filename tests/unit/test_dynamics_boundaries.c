@@ -40,7 +40,8 @@ TEST(bad_boundaries_are_refused) {
   REFUSES(soil_add_held(d, 1, 1, NULL), "ids is NULL");
   REFUSES(soil_add_held(d, 1, 2, ids), "ids[1] is 9: the set has no such particle");
   REFUSES(soil_add_driven(d, 2, signal, 1.0, 1, ids), "signal[2] is given");
-  REFUSES(soil_add_driven(d, 0, NULL, 1.0, 1, ids), "must be given where kind is MPS_BOUNDARY_DRIVEN");
+  REFUSES(soil_add_driven(d, 0, NULL, 1.0, 1, ids),
+          "must be given where kind is MPS_BOUNDARY_DRIVEN");
   REFUSES(soil_add_driven(d, 0, signal, NAN, 1, ids), "factor[0] is nan");
   REFUSES(soil_add_driven(d, 0, signal, 1.0, 2, ids), "ids[1] is 9");
   const struct {
@@ -48,18 +49,20 @@ TEST(bad_boundaries_are_refused) {
     uint32_t dofs;
     double density, vs, vp, factor, lower, upper;
     const char *text;
-  } cases[] = {
-      {3, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 3, allowed are MPS_BOUNDARY_HELD (0)"},
-      {2, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 2, allowed"},
-      {5, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 5, allowed"},
-      {8, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 8, allowed"},
-      {4, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "dofs is 1, must be 0 where kind is MPS_BOUNDARY_ABSORBING"},
-      {4, 2, 0, NAN, NAN, NAN, 1.0, NAN, NAN, "axis is 2, allowed are 0 (x) and 1 (y)"},
-      {4, 1, 0, -1.0, NAN, NAN, 1.0, NAN, NAN, "density is -1 kg/m3, must be in 1e-06 to 1e+09, or NaN"},
-      {4, 1, 0, NAN, 0.0, NAN, 1.0, NAN, NAN, "shear_velocity is 0"},
-      {4, 1, 0, NAN, NAN, INFINITY, 1.0, NAN, NAN, "pressure_velocity is inf"},
-      {4, 1, 0, NAN, NAN, NAN, NAN, NAN, NAN, "factor[0] is nan"},
-      {4, 1, 0, NAN, NAN, NAN, 1.0, 0.0, 1.0, "both ids and a box"}};
+  } cases[] = {{3, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN,
+                "kind is MPS_BOUNDARY_FRICTIONAL, allowed are MPS_BOUNDARY_HELD, "},
+               {2, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is MPS_BOUNDARY_ROLLER, allowed"},
+               {5, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is MPS_BOUNDARY_FREE_FIELD, allowed"},
+               {8, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 8, allowed"},
+               {4, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN,
+                "dofs is 1, must be 0 where kind is MPS_BOUNDARY_ABSORBING"},
+               {4, 2, 0, NAN, NAN, NAN, 1.0, NAN, NAN, "axis is 2, allowed are 0 (x) and 1 (y)"},
+               {4, 1, 0, -1.0, NAN, NAN, 1.0, NAN, NAN,
+                "density is -1 kg/m3, must be in 1e-06 to 1e+09, or NaN"},
+               {4, 1, 0, NAN, 0.0, NAN, 1.0, NAN, NAN, "shear_velocity is 0"},
+               {4, 1, 0, NAN, NAN, INFINITY, 1.0, NAN, NAN, "pressure_velocity is inf"},
+               {4, 1, 0, NAN, NAN, NAN, NAN, NAN, NAN, "factor[0] is nan"},
+               {4, 1, 0, NAN, NAN, NAN, 1.0, 0.0, 1.0, "both ids and a box"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     DEF(dynamics_boundary, def, .ids = ids, .id_count = 1, .kind = cases[k].kind,
         .axis = cases[k].normal, .dofs = cases[k].dofs, .density = cases[k].density,
@@ -113,7 +116,7 @@ TEST(bad_columns_are_refused) {
   mps_particles_destroy(&set);
   set = soil_particles(context, 1.0, 3.0, 4.0, 1, &soil);
   REFUSES(mps_dynamics_add_free_field(set, 2, 2),
-          "side is 2, allowed are MPS_SIDE_X_LOWER (0) and MPS_SIDE_X_UPPER (1)");
+          "side is MPS_SIDE_Y_LOWER, allowed are MPS_SIDE_X_LOWER and MPS_SIDE_X_UPPER");
   REFUSES(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 1), "gap is 1 spacings, must be 2 to");
   assert_int_equal(mps_particles_count(set), 12);
   OK(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 3));

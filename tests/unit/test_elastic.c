@@ -123,10 +123,11 @@ TEST(bad_supports_and_loads_are_refused) {
   REFUSE(test_prescribe(e, 0, -2, good, NULL), "id_count is -2");
   REFUSE(test_prescribe(e, 0, 2, NULL, NULL), "id_count is 2 and ids is NULL");
   REFUSE(test_prescribe(e, 0, 2, good, nan_values), "values[3] is nan");
-  REFUSE(test_roller(e, zero, 2, good, NULL), "length of normal is 0");
-  REFUSE(test_roller(e, nan_values, 2, good, NULL), "length of normal is nan");
-  REFUSE(mps_elastic_cut(e, MPS_SIDE_Z_UPPER, good, 2), "side is 5, allowed are 0 to 3");
-  REFUSE(mps_elastic_cut(e, MPS_SIDE_ANY, good, 2), "side is -1");
+  REFUSE(test_roller(e, zero, 2, good, NULL), "normal has the length 0");
+  REFUSE(test_roller(e, nan_values, 2, good, NULL), "normal has the length nan");
+  REFUSE(mps_elastic_cut(e, MPS_SIDE_Z_UPPER, good, 2),
+         "side is MPS_SIDE_Z_UPPER, allowed are MPS_SIDE_X_LOWER to MPS_SIDE_Y_UPPER");
+  REFUSE(mps_elastic_cut(e, MPS_SIDE_ANY, good, 2), "side is MPS_SIDE_ANY");
   REFUSE(mps_elastic_cut(e, MPS_SIDE_X_LOWER, bad, 2), "ids[1] is 9");
   FAILS(mps_elastic_cut(e, MPS_SIDE_X_UPPER, good, 2), MPS_ERROR_STATE,
         "particle 0 has a neighbour");
@@ -137,7 +138,7 @@ TEST(bad_supports_and_loads_are_refused) {
   REFUSE(test_traction(e, 1, good, nan_values), "force[1] is nan");
   REFUSE(test_pressure(e, 2, good, nan_values), "values[1] is nan");
   REFUSE(test_traction_fn(e, 2, good, NULL, NULL), "function is NULL");
-  REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "an array is NULL");
+  REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "loads is NULL");
   REFUSE(mps_elastic_get_section(e, 0, NAN, NULL, NULL, NULL), "position is nan");
   assert_int_equal(mps_elastic_solve(NULL), MPS_ERROR_ARGUMENT);
   /* x + y and x - y fix a particle: a third direction is one too many. */

@@ -151,7 +151,7 @@ TEST(takes_a_kernel) {
   assert_true(most > 1e-3);
   OK(mps_kernel_create(context, MPS_KERNEL_MPS, 0.29, &def.kernel));
   REFUSES(mps_fluid_create(context, p, &def, &f),
-          "its kind is 0, and that of a fluid must be MPS_KERNEL_SMOOTH");
+          "its kind is MPS_KERNEL_MPS, and that of a fluid must be MPS_KERNEL_SMOOTH");
   mps_kernel_destroy(&def.kernel);
   OK(mps_kernel_create(context, MPS_KERNEL_SMOOTH, 0.5, &def.kernel));
   REFUSES(mps_fluid_create(context, p, &def, &f),
@@ -384,10 +384,10 @@ TEST(bodies_come_and_go) {
   OK(mps_body_create_polygon(context, &at, 4, xy, &corner));
   OK(mps_body_create_box(context, &at, 0.2, 0.2, &box));
   REFUSES(mps_fluid_add_contact(t.fluid, NULL, NULL, &contact), "NULL");
-  REFUSES(mps_fluid_add_contact(t.fluid, disc, NULL, &contact), "no polygon");
+  REFUSES(mps_fluid_add_contact(t.fluid, disc, NULL, &contact), "must be a polygon");
   REFUSES(mps_fluid_add_contact(t.fluid, small, NULL, &contact), "edge 1 of the body");
   REFUSES(mps_fluid_add_contact(t.fluid, corner, NULL, &contact), "edge 1 of the body");
-  REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is 1");
+  REFUSES(mps_fluid_add_contact(t.fluid, box, &driven, &contact), "kind is MPS_BOUNDARY_DRIVEN, ");
   assert_null(contact);
   OK(mps_body_name_part(box, "bottom", 0, 1, NULL));
   DEF(fluid_contact, carried, .mover = MPS_CONTACT_MOVER_OTHER);
@@ -739,7 +739,7 @@ TEST(water_leaves_by_an_open_side) {
   assert_memory_equal(&first, &again, sizeof first);
   mps_snapshot_destroy(&before);
   /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
-  REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number 2");
+  REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number is 2");
   def.nodes = x, def.node_count = 1;
   REFUSES(mps_fluid_set_boundary(t.fluid, number, &def),
           "must be 0 where kind is MPS_BOUNDARY_OPEN");

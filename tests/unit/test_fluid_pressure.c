@@ -60,6 +60,6 @@ TEST(bad_questions_are_refused) {
   REFUSES(mps_fluid_get_pressure(t.fluid, TANK_LEFT, 1, NULL, &p), "x is NULL");
   REFUSES(mps_fluid_get_boundary_points(t.fluid, TANK_LEFT, -1, &count, NULL, NULL),
           "capacity is -1");
-  REFUSES(mps_fluid_get_boundary_points(t.fluid, 5, 0, &count, NULL, NULL), "number 5");
+  REFUSES(mps_fluid_get_boundary_points(t.fluid, 5, 0, &count, NULL, NULL), "number is 5");
   assert_true(p == 7.0 && count == -1);
 }

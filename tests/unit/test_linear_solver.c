@@ -351,7 +351,7 @@ TEST(solvers_without_the_equation_refuse_it) {
   OK(mps_dynamics_create(context, particles, NULL, &dynamics));
   for (int equation = 0; equation <= PORES; equation++)
     FAILS(mps_solver_set_linear_solver(mps_dynamics_solver(dynamics), equation, &def),
-          MPS_ERROR_ARGUMENT, "that of the solver is 0 (none)");
+          MPS_ERROR_ARGUMENT, "and the solver has none");
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&particles);
   assert_int_equal(p.released, 0);

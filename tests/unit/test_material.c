@@ -210,13 +210,13 @@ TEST(bad_users_laws_are_refused) {
   calls seen = {0};
 #define LAW(member, value, text)                                                                   \
   REFUSED(user, mps_material_create_user, dashpot_def(&seen), member, value, text)
-  LAW(name, "", "name is \"\"");
-  LAW(name, "2fast", "name is \"2fast\"");
-  LAW(name, "a_name_that_has_more_than_forty_seven_characters_in", "at most 47");
-  LAW(name, "user", "name is \"user\", must be");
-  LAW(history, twice, "history[0] and history[1] are both \"a\"");
-  LAW(history, bad, "history[1] is \"b c\"");
-  LAW(history, missing, "history[1] is \"(NULL)\"");
+  LAW(name, "", "name is ''");
+  LAW(name, "2fast", "name is '2fast'");
+  LAW(name, "a_name_that_has_more_than_forty_seven_characters_in", "1 to 47 characters");
+  LAW(name, "user", "name is 'user', must be");
+  LAW(history, twice, "history[0] and history[1] are both 'a'");
+  LAW(history, bad, "history[1] is 'b c'");
+  LAW(history, missing, "history[1] is NULL");
   mps_material *m = NULL;
   REFUSES(mps_material_create_user(context, NULL, &m), "def is NULL");
   const mps_material_user_def def = dashpot_def(&seen);

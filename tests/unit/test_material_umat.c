@@ -327,8 +327,8 @@ TEST(bad_definitions_are_refused) {
     REFUSES(mps_material_create_umat(context, &def, &m), text);                                    \
     assert_null(m);                                                                                \
   } while (0)
-  REFUSED(statev_names, twice, "are both \"umat_time\"");
-  REFUSED(name, "a b", "name is \"a b\"");
+  REFUSED(statev_names, twice, "are both 'umat_time'");
+  REFUSED(name, "a b", "name is 'a b'");
 }
 
 static mps_status make_and_destroy(mps_context *own, int what) {

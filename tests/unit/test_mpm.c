@@ -33,7 +33,7 @@ TEST(refuses_bad_definitions) {
     def.member = value;                                                                            \
     refuses(&s, &def, text);                                                                       \
   } while (0)
-  CASE(geometry, MPS_MPM_GEOMETRY_SPACE, "geometry is 2, and the set has 2 dimensions");
+  CASE(geometry, MPS_MPM_GEOMETRY_SPACE, "geometry is MPS_MPM_GEOMETRY_SPACE, and the set has 2 dimensions");
   CASE(cell, 1e9, "cell is 1e+09 m with particles 0.01 m apart");
   CASE(cell, 1e-4, "must be 0.5 to 100 of their spacings");
   CASE(lower[0], 0.013, "must lie on a node");
@@ -371,7 +371,7 @@ TEST(variants_are_chosen_first) {
   REFUSES(mps_experimental_mpm_strain(s.mpm, 2), "strain is 2");
   REFUSES(mps_experimental_mpm_standard(s.mpm, 1.5), "flip is 1.5");
   mpm_scene_side(&s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_ABSORBING, 0.0);
-  REFUSES(mps_experimental_mpm_standard(s.mpm, 1.0), "boundary 0 is absorbing");
+  REFUSES(mps_experimental_mpm_standard(s.mpm, 1.0), "MPS_SIDE_X_LOWER is of kind MPS_BOUNDARY_ABSORBING");
   OK(mps_mpm_step(s.mpm, 1));
   FAILS(mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_STATE, "has taken 1 steps");
   FAILS(mps_experimental_mpm_transfer(s.mpm, 1), MPS_ERROR_STATE, "before the first");

@@ -313,7 +313,7 @@ static const bad_file bad_files[] = {
     {AT2("NPTS= 4000, DT= fast", ""), MPS_SIGNAL_RECORD_FORMAT_AT2,
      ":4: \"NPTS= 4000, DT= fast\": NPTS="},
     {AT2("NPTS= 1, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":4: NPTS is 1, must be a whole number in 2.."},
+     ":4: NPTS is 1, must be a whole number in 2 to "},
     {AT2("NPTS= 2.5, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is 2.5"},
     {AT2("NPTS= 1e99, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is 1e+99"},
     {AT2("NPTS= 1e999, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is inf"},
@@ -446,15 +446,15 @@ TEST(what_is_not_a_text_is_refused) {
   FAILS(mps_signal_create_record(context, FILE_TMP, NULL, &signal), MPS_ERROR_FORMAT,
         "record.tmp:2: a NUL byte: this is not a text file");
   FAILS(mps_signal_create_record(context, TEST_TMP, NULL, &signal), MPS_ERROR_IO,
-        "cannot read: Is a directory");
+        "': Is a directory");
   FAILS(mps_signal_create_record(context, TEST_TMP "/no/file", NULL, &signal), MPS_ERROR_IO,
-        "cannot open: No such file or directory");
+        ": No such file or directory");
   char path[2000];
   memset(path, 'x', sizeof path);
   path[sizeof path - 1] = '\0';
   FAILS(mps_signal_create_record(context, path, NULL, &signal), MPS_ERROR_IO,
-        "xxx: cannot open: File name too long");
-  assert_memory_equal(mps_context_error(context)->message, "...xxx", 6);
+        "xxx': File name too long");
+  assert_non_null(strstr(mps_context_error(context)->message, "'...xxx"));
   mpsi_text text;
   write_file("0,1\n1,1\n", 8);
   FAILS(mpsi_text_load(context, "test", FILE_TMP, 7, &text), MPS_ERROR_FORMAT,

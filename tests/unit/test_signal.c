@@ -232,10 +232,10 @@ TEST(the_table_is_a_copy_and_owners_share_it) {
 TEST(bad_analytic_arguments_are_refused) {
   mps_signal *s = NULL;
   REFUSES(mps_signal_create_ricker(context, 0.0, 1, 1, &s),
-          "frequency is 0 Hz, must be in 1e-09..1e+09");
+          "frequency is 0 Hz, must be in 1e-09 to 1e+09");
   REFUSES(mps_signal_create_ricker(context, NAN, 1, 1, &s), "frequency is nan");
-  REFUSES(mps_signal_create_ricker(context, 1, -0.5, 1, &s), "peak time is -0.5 s");
-  REFUSES(mps_signal_create_ricker(context, 1, INFINITY, 1, &s), "peak time is inf s");
+  REFUSES(mps_signal_create_ricker(context, 1, -0.5, 1, &s), "peak_time is -0.5 s");
+  REFUSES(mps_signal_create_ricker(context, 1, INFINITY, 1, &s), "peak_time is inf s");
   REFUSES(mps_signal_create_ricker(context, 1, 1, NAN, &s), "amplitude is nan");
   REFUSES(mps_signal_create_ricker(context, 1e-9, 1, 1e300, &s), "the motion overflows");
   REFUSES(mps_signal_create_ricker(context, 1, 1, 1, NULL), "out is NULL");

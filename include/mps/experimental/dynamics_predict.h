@@ -19,11 +19,12 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_dynamics_predict_def {
   uint32_t struct_size;
   int32_t integrator; /* MPS_DYNAMICS_INTEGRATOR_VERLET (default) or _LEAPFROG */
-  double spacing;     /* D = 2R, m */
-  double shear_velocity, pressure_velocity; /* m/s */
-  double damping;                           /* h, >= 0; default 0 */
-  double f1, f2;                            /* Hz; default 1 and 14 */
-  double radius_ratio;                      /* default 1.5 */
+  double spacing;     /* D, m, between particles, 1e-9 to 1e9; no default */
+  double shear_velocity, pressure_velocity; /* m/s, 1e-6 to 1e9, the second at least sqrt(2) times
+                                               the first; no default */
+  double damping;      /* h of Rayleigh damping, as a fraction of critical, 0 to 1000; default 0 */
+  double f1, f2;       /* Hz, 1e-20 to 1e9: where the damping ratio is h; default 1 and 14 */
+  double radius_ratio; /* radius of influence over spacing, above 1 to 4; default 1.5 */
 } mps_dynamics_predict_def;
 
 static inline mps_dynamics_predict_def mps_dynamics_predict_defaults(void) {

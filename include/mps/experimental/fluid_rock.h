@@ -2,11 +2,11 @@
  * breakwater.
  *
  * In a region of porosity e the field `velocity` is the discharge velocity U, e times that of the
- * water in the pores, which is continuous at the region's face; positions change by U/e, and a
- * particle, l0^2 of water, lies l0/e^.5 from the next. Fill such regions with that spacing: e/l0^2
- * particles a square metre. The radius of the weights is 2.4 such spacings in rock, at most 3.6 l0
- * and at least that of the definition, which water keeps. The pores resist by Darcy and Forchheimer
- * (van Gent 1995),
+ * water in the pores, which is continuous at the region's face. Particles move with U/e; each is
+ * l0^2 of water, so their spacing in the region is l0/e^.5. Fill such regions with that spacing:
+ * e/l0^2 particles a square metre. The radius of the weights in the region is 2.4 such spacings, at
+ * most 3.6 l0 and at least that of the definition, which is that in water. The resistance of the
+ * pores is by Darcy and Forchheimer (van Gent 1995),
  *
  *   (1 + Cm)/e dU/dt = -grad p/rho + g - (a + b |U|) U,   div U = 0,
  *   a = alpha (1-e)^2/e^3 nu/D50^2,  b = beta (1 + 7.5/KC) (1-e)/(e^3 D50),  Cm = gamma (1-e)/e,

@@ -5,21 +5,20 @@
  * Each equation A x = b is symmetric and positive definite. On the ranks of a domain each has an
  * interval of the rows, in the order of the ranks, and all solve together:
  *
- *   STIFFNESS      implicit elasticity: K, in motions K plus a multiple of the masses, which
- * changes with supports, material and step. mps_particles_dim rows a particle in ascending order of
- * ids (on ranks: by layers across the body's longest axis, then by ids): the displacement along the
- * axes or, where supports hold the particle, first along the prescribed directions, which have a
- * row of their diagonal alone, then along the free ones. `mode` has the rigid motions. The start is
- * 0 PRESSURE       the reduced pressure of the fluid: a row a particle in the present order of the
- *                  set, with about 33 entries; another matrix each step. A particle apart from the
- *                  rest has a row of its diagonal alone. The start is extrapolated from former
- * steps PORE_PRESSURE  the implicit pressures of pore water (MPS_PORE_SCHEME_IMPLICIT of
- *                  mps/experimental/pore_water.h): [S + dt T + dt^2 G^T m^-1 G] d = b
- *                  (docs/pore-water.md), a row each filled cell that is no part of a drained
- *                  surface, in the order of the grid's cells, with up to 49 entries in the plane
- * and 343 in space. Rows and columns are divided by the roots of their diagonals. The start is 0.
- * Not called in steps where ground filled by water is in contact with a body: contacts couple
- * distant cells
+ * - STIFFNESS: implicit elasticity, K, in motions K plus a multiple of the masses. It changes with
+ *   supports, material and step. mps_particles_dim rows a particle in ascending order of ids (on
+ *   ranks: by layers across the body's longest axis, then by ids): the displacement along the axes
+ *   or, where supports fix the particle, first along the prescribed directions, whose rows have
+ *   their diagonal alone, then along the free ones. `mode` has the rigid motions. Start: 0.
+ * - PRESSURE: the reduced pressure of the fluid, a row a particle in the present order of the set;
+ *   another matrix each step. A particle apart from the others has a row of its diagonal alone.
+ *   Start: extrapolated from former steps.
+ * - PORE_PRESSURE: the implicit pressures of pore water (MPS_PORE_SCHEME_IMPLICIT of
+ *   mps/experimental/pore_water.h), [S + dt T + dt^2 G^T m^-1 G] d = b (docs/pore-water.md), a row
+ *   for each filled cell that is no part of a drained surface, in the order of the grid's cells,
+ *   with at most 49 entries in the plane and 343 in space. Rows and columns are divided by the
+ *   roots of their diagonals. Start: 0. Not called in steps where saturated ground is in contact
+ *   with a body: contacts couple distant cells.
  *
  * The library computes the residual of each solution by its own operator.
  *

@@ -17,11 +17,11 @@ MPS_EXTERN_C_BEGIN
 
 /* ---- use without a solver -------------------------------------------------------------------- */
 
-/** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed), or
- *  the status of a user's law that fails, MPS_ERROR_NUMERIC where it leaves a value that is not
- *  finite; values of other laws are not checked: a NaN stays in its particle. Errors go to
- *  `context`, which need not be the material's: threads that update concurrently use a context
- *  each. No allocation. */
+/** Applies one step of the law to a block of particles. MPS_ERROR_ARGUMENT for a malformed block
+ * (nothing is changed), or the status of a user's law that fails, MPS_ERROR_NUMERIC where it leaves
+ * a value that is not finite; values of other laws are not checked: a NaN stays in its particle.
+ * Errors go to `context`, which need not be the material's: threads that update concurrently use a
+ * context each. No allocation. */
 MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
                                                      const mps_material *material,
                                                      const mps_material_block *block);

@@ -3,9 +3,9 @@
  *
  *   kinetic + strain + dissipated - work_loads - work_boundaries - work_bodies
  *
- * of mps_mpm_get_totals is constant to round-off (1e-12 of the sum of all terms' sizes in the
- * tests), as long as the caller edits no fields and adds or removes no particles: each term is
- * measured in its stage of the step, and mps_mpm_energy_report.residual is the error of their sum.
+ * of mps_mpm_get_totals is constant to round-off, as long as the caller edits no fields and adds or
+ * removes no particles: each term is measured in its stage of the step, and
+ * mps_mpm_energy_report.residual is the error of their sum.
  *
  * `strain` is recoverable work: for elastic laws the whole work of the stress on the strain
  * increments of the laws; for elastic-plastic laws the change of the stress's energy by Hooke's
@@ -42,8 +42,8 @@ typedef struct mps_mpm_energy_report {
   double transfer; /* kinetic energy of the particles less that of the nodes before the forces,
                       and of the nodes less that of the particles after them. WLS dissipates energy
                       at lengths of a few cells; the kinetic energy of velocity gradients returns as
-                      a negative part. With it the work of loads by the momentum that a node of
-                      hardly any or of negative mass returns to its particles */
+                      a negative part. Includes the work of loads on nodes with almost no mass or a
+                      negative one, whose momentum returns to their particles */
   double stepping; /* by the explicit step: impulses act at once, stresses and contacts by their
                       values at its beginning. Oscillates about 0 in smooth motion; an impact on a
                       boundary is here */

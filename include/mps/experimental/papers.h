@@ -40,7 +40,8 @@ typedef enum mps_experimental_transfer {
                                           the momentum drifts */
 } mps_experimental_transfer;
 
-/** Before the first step: mps_experimental_transfer. MPS_ERROR_STATE after a step. */
+/** Before the first step: chooses mps_experimental_transfer. MPS_ERROR_ARGUMENT: no such value, or
+ *  WEIGHT with `flip_time` or a free-field side; MPS_ERROR_STATE after a step. */
 MPS_API MPS_NODISCARD mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer);
 
 /** Velocity gradient that the laws of WLS-MPM receive. */
@@ -50,24 +51,25 @@ typedef enum mps_experimental_strain {
                                      bodies in large bending creep */
 } mps_experimental_strain;
 
-/** Before the first step: mps_experimental_strain. MPS_ERROR_STATE after a step. */
+/** Before the first step: chooses mps_experimental_strain. MPS_ERROR_ARGUMENT: no such value;
+ *  MPS_ERROR_STATE after a step. */
 MPS_API MPS_NODISCARD mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain);
 
 /** Before the first step: the original material point method in place of WLS-MPM, Nakamura Table 1.
  *  The B-splines and their own derivatives are the shape functions, also at bodies and sides, and
- *  particles carry no velocity gradient to the nodes. Nodes beyond a side are held as those on it.
- *  With the nodes' acceleration a and velocity v at its place a particle's velocity becomes
- *  flip (v_p + dt a) + (1 - flip) v, flip in [0, 1]; 1: FLIP, Table 1; 0: PIC. It moves with v.
- *  Slower: these loops are not tuned. MPS_ERROR_STATE after a step. */
+ *  particles carry no velocity gradient to the nodes. Nodes beyond a side are prescribed as those
+ * on it. With a and v, the nodes' acceleration and velocity interpolated to the particle, its
+ * velocity becomes flip (v_p + dt a) + (1 - flip) v, flip in [0, 1]; 1: FLIP, Table 1; 0: PIC. It
+ * moves with v. MPS_ERROR_ARGUMENT: `flip` out of range, `flip_time` given, an absorbing or
+ * free-field side; MPS_ERROR_STATE after a step. */
 MPS_API MPS_NODISCARD mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip);
 
 /** Before the first step: the fluid by the classical scheme (Koshizuka, Tamako and Oka 1995) in
  *  place of the library's own; the fraction `gamma`, in (0, 1], of the density error is corrected
- *  in each step. Its pressure is noisy: the force on a wall of still water scatters by its own size
- *  with gamma 1, by some hundredths with .2. From a regular lattice alone gamma 1 holds; particles
- *  .15 l0 off one diverge in its second step (MPS_ERROR_DIVERGED), with .2 they go on. No
- *  viscosity, no surface is found (levels are NaN), walls have no accelerations, and a step cannot
- *  be made in parts. MPS_ERROR_STATE after a step. Collective. */
+ *  in each step. Its pressure is noisy, the more the larger gamma is. gamma 1 needs particles on a
+ *  regular lattice at the start, or the run diverges (MPS_ERROR_DIVERGED); 0.2 does not. Without
+ *  viscosity, free surface (levels are NaN) and accelerations of walls; a step cannot be made in
+ *  parts. MPS_ERROR_ARGUMENT: `gamma` out of range; MPS_ERROR_STATE after a step. Collective. */
 MPS_API MPS_NODISCARD mps_status mps_experimental_fluid_classical(mps_fluid *fluid, double gamma);
 
 MPS_EXTERN_C_END

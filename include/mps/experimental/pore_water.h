@@ -2,31 +2,34 @@
  * by the bulk modulus of the water, or partly drained by Darcy's law (the u-p formulation),
  * explicit or with implicit pressures.
  *
- * The laws then act on the effective stress: the field `stress` is effective, tension positive, and
- * forces come from stress - pore_pressure 1. Mass and density are those of grains and water
- * together. Pressures follow from the continuity of the water, for cells of the grid:
+ * The laws then act on the effective stress: the field `stress` is effective, tension positive; the
+ * total stress is `stress` less `pore_pressure` (compression positive) on the normal components.
+ * Mass and density are those of grains and water together (saturated). Pressures follow from the
+ * continuity of the water in the cells of the grid:
  *
  *   n/K_w dp/dt = -tr(d) - div q,   q = -k/(rho_w g) (grad p - rho_w b)
  *
  * with porosity n, permeability k (m/s), gravity b and g = 9.80665 m/s2 in the weight of water
  * rho_w g that k refers to, whatever b. The acceleration of the water relative to the grains is
- * left out, which is right for k below 1e-3 m/s and without shocks in the water. Explicit in time,
- * pressures, porosities and permeabilities follow the volumes in each step, and cells exchange
- * water and smooth the pressures after every eighth, or as often as the limit of the flow asks for.
+ * left out, which is right for k below 1e-3 m/s and without shocks in the water. In the explicit
+ * scheme, pressures, porosities and permeabilities follow the volume strain in each step; water
+ * flows between cells, and pressures are smoothed, every 8 steps, more often if the stability limit
+ * of the flow requires it.
  *
  * Fields: `pore_pressure` (Pa) and `porosity`, which the caller may write between steps,
  * `pore_pressure_gradient` (Pa/m), `permeability` (m/s, the present one) where water flows, and
  * `seepage` (m/s, q), written where the set has it; gradient and seepage are those of the last
- * exchange. With implicit pressures `pore_pressure_mean` (Pa), which steps write, is that of some
- * 32 steps. Water that leaves the ground takes its mass from the particles, at their velocity.
+ * flow step. With implicit pressures steps write `pore_pressure_mean` (Pa), a running mean over
+ * about 32 steps. Water that leaves the ground takes its mass from the particles, at their
+ * velocity.
  *
  * Implicit pressures are solved for by conjugate gradients, or by a solver of the caller
  * (mps/experimental/linear_solver.h).
  *
  * A cell's face is impervious at sides of the domain and at bodies, and drained at the free surface
- * with the pressure 0, unless a face (mps_mpm_add_pore_face) says otherwise. Thin bodies do not
- * part the water of the cells that they cross; steps with implicit pressures refuse them, and local
- * damping (MPS_ERROR_STATE).
+ * with the pressure 0, unless a face (mps_mpm_add_pore_face) says otherwise. A body thinner than
+ * the cells that it crosses does not separate the water on its two sides. Steps with implicit
+ * pressures refuse thin bodies and local damping (MPS_ERROR_STATE).
  *
  * On several ranks all functions are collective but mps_mpm_get_pore_water, with the bits of one.
  * Thread rule: as mps/mpm.h. SPDX-License-Identifier: BSD-3-Clause */
@@ -106,8 +109,8 @@ typedef enum mps_pore_face {
 
 #define MPS_PORE_MAX_FACES 16
 
-/* Exposed faces of cells: at sides of the domain, at bodies, and at the free surface. Of several
- * that hold a face's centre, the one with the highest number prevails. */
+/* Exposed faces of cells: at sides of the domain, at bodies, and at the free surface. Where several
+ * definitions select the same face, the one with the highest number applies. */
 typedef struct mps_pore_face_def {
   uint32_t struct_size;
   int32_t kind;    /* mps_pore_face, default IMPERVIOUS */
@@ -132,17 +135,18 @@ static inline mps_pore_face_def mps_pore_face_defaults(void) {
  *  solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *def,
                                                        int32_t *number);
-/** Gives faces `number` another definition, from the next exchange on. MPS_ERROR_ARGUMENT: no such
+/** Gives faces `number` another definition, from the next flow step on. MPS_ERROR_ARGUMENT: no such
  *  number, or a member of `def` out of range; MPS_ERROR_STATE: as mps_mpm_add_pore_face. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number,
                                                        const mps_pore_face_def *def);
 /** Water that has left through the faces `number` (-1: the free surface, where no face says
- *  otherwise), less what came in: `rate` (kg/s, mean of the last exchange) and `mass` (kg), of the
- * measure; each may be NULL. MPS_ERROR_ARGUMENT: no such number; MPS_ERROR_STATE: no water. */
+ *  otherwise), less the water that has entered: `rate` (kg/s, mean over the last flow step) and
+ *  `mass` (kg, since the start), for the modelled thickness or sector; each may be NULL.
+ * MPS_ERROR_ARGUMENT: no such number; MPS_ERROR_STATE: no water. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number,
                                                        double *rate, double *mass);
 
-/** Mass of the water, of the measure. */
+/** Mass of the water in the modelled thickness or sector. */
 typedef struct mps_pore_budget {
   double mass;     /* kg, in the pores now: sum of rho_w n V (1 + p/K_w) over the particles */
   double start;    /* kg, at the first step */

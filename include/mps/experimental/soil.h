@@ -17,13 +17,13 @@ MPS_EXTERN_C_BEGIN
 
 /* ---- stiffness at small strain --------------------------------------------------------------- */
 
-/** Stiffness that falls with the shear strain, and rises again where the strain turns: on first
+/** Stiffness that falls with the shear strain, and is G0 again at each reversal: on first
  *  loading tau = G0 gamma/(1 + (gamma/gamma_r)^a) (Hardin and Drnevich 1972 with a = 1, Darendeli
  *  2001) up to the strength, tau = sqrt(J2), gamma = 2 sqrt(J2 of the strain deviator), counted
  *  from the first state, whose stress stays; unloading and reloading by Masing's rules, small loops
- *  within large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan
- *  1967): the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate
- *  nothing. K stays. No friction: the strength does not follow the pressure. Its history is
+ *  within large ones included. Ten elastic, perfectly plastic elements in parallel (Iwan 1967)
+ *  approximate the curve, with G0 and the strength exact; strains below gamma_r/100 dissipate
+ *  nothing. K is constant. No friction: the strength does not follow the pressure. Its history is
  *  `plastic_strain`, `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall
  *  threshold gamma_0.7 is 0.385 gamma_r. */
 typedef struct mps_material_small_strain_def {
@@ -85,7 +85,8 @@ typedef struct mps_material_cyclic_sand_def {
                           all does; default 1e-4 */
   double strain_limit; /* amplitude, above the threshold and at most 1, beyond which larger ones
                           contract no more; default 0.01 */
-  double void_ratio, max_void_ratio; /* end of dilation, as in Mohr-Coulomb; NaN (default) */
+  double void_ratio, max_void_ratio; /* dilation ends at max_void_ratio, as in Mohr-Coulomb; 0.001
+                                        to 100; NaN (default): it has no end */
 } mps_material_cyclic_sand_def;
 
 static inline mps_material_cyclic_sand_def mps_material_cyclic_sand_defaults(void) {
@@ -115,7 +116,7 @@ typedef struct mps_consolidation_def {
                  the passive one */
   double critical_volume; /* Gamma, v on the critical state line at `reference`, above 1: e follows
                              from p and pc; NaN (default): e of the law */
-  double reference;       /* Pa, > 0; default 1000 */
+  double reference;       /* Pa, > 0: mean effective pressure of `critical_volume`; default 1000 */
   int64_t count;          /* of `ids`; 0 and NULL (default): all particles */
   const int64_t *ids;
   int32_t vertical; /* axis of the vertical stress, 0, 1, 2; -1 (default): the last of the set */
@@ -131,11 +132,12 @@ static inline mps_consolidation_def mps_consolidation_defaults(void) {
 
 /** From the vertical effective stress in the field `stress` (mps_particles_set_geostatic with
  *  buoyant densities) sets the horizontal stresses, and the fields `preconsolidation` and
- *  `void_ratio`, of ground that has settled under its weight and its former load; no shear. To be
- *  called before the solver is created. MPS_ERROR_ARGUMENT: a value out of range, a vertical stress
- *  that is not compression (the message names the particle), k0 beyond the yield surface of the
- *  largest stress; MPS_ERROR_FIELD: no `stress`; MPS_ERROR_UNSUPPORTED: a law that is not Cam-Clay;
- *  MPS_ERROR_STATE: a solver's callback is running. Nothing is changed on an error. */
+ *  `void_ratio`, of level ground consolidated one-dimensionally under its weight and its former
+ *  load, without shear stress. Call it before the solver is created. MPS_ERROR_ARGUMENT: a value
+ * out of range, a vertical stress that is not compression (the message names the particle), k0
+ * beyond the yield surface of the largest stress; MPS_ERROR_FIELD: no `stress`;
+ * MPS_ERROR_UNSUPPORTED: a law that is not Cam-Clay; MPS_ERROR_STATE: a solver's callback is
+ * running. Nothing is changed on an error. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_consolidation(mps_particles *particles,
                                                                  const mps_material *material,
                                                                  const mps_consolidation_def *def);

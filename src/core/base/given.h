@@ -14,7 +14,8 @@ typedef struct mpsi_given {
   int32_t count;
   uint64_t rest; /* hash of the numbers beyond the capacity */
   const char *name[MPSI_GIVEN_MOST];
-  double value[MPSI_GIVEN_MOST]; /* NaN: unset */
+  const mpsi_def_member *member[MPSI_GIVEN_MOST]; /* of a definition, or NULL */
+  double value[MPSI_GIVEN_MOST];                  /* NaN: unset */
 } mpsi_given;
 
 #define MPSI_GIVEN {.rest = MPSI_HASH} /* an empty list */
@@ -32,6 +33,7 @@ static inline void mpsi_give(mpsi_given *list, const char *name, double value) {
     return;
   }
   list->name[list->count] = name;
+  list->member[list->count] = NULL;
   list->value[list->count++] = value;
 }
 
@@ -43,18 +45,24 @@ static inline void mpsi_give_vector(mpsi_given *list, const char *name, int32_t 
 /* A member of a definition by its own name. */
 #define MPSI_GIVE(list, def, member) mpsi_give(list, #member, (double)(def)->member)
 
+/* Component `c` of a member of a definition. */
+static inline void mpsi_give_member(mpsi_given *list, const mpsi_def_member *member,
+                                    const void *def, int32_t c) {
+  mpsi_give(list, member->name, mpsi_member_value(member, def, c));
+  if (list->count < MPSI_GIVEN_MOST) list->member[list->count - 1] = member;
+}
+
 /* What a definition's table says that ranks share. */
 static inline void mpsi_give_def(mpsi_given *list, const mpsi_definition *definition,
                                  const void *def) {
   for (const mpsi_def_member *m = definition->member; m < definition->member + definition->count;
        m++)
-    for (int32_t c = 0; m->same && c < m->count; c++)
-      mpsi_give(list, m->name, mpsi_member_value(m, def, c));
+    for (int32_t c = 0; m->same && c < m->count; c++) mpsi_give_member(list, m, def, c);
 }
 #define MPSI_GIVE_DEF(list, type, def)                                                             \
   mpsi_give_def(list, &mpsi_definition_of_##type, 1 ? (def) : (type *)0)
 
-/* The bits of a hash that a double holds exactly. */
+/* The bits of a hash that a double has exactly. */
 static inline double mpsi_hash_short(uint64_t hash) { return (double)(hash >> 12); }
 
 static inline void mpsi_give_bytes(mpsi_given *list, const char *name, const void *data,

@@ -23,12 +23,12 @@ mps_status mpsi_check_range(mps_context *context, const char *function, const ch
                    table[range].low, table[range].high);
 }
 
-size_t mpsi_identifier(const char *name, size_t room) {
+size_t mpsi_identifier(const char *name, size_t capacity) {
   size_t length = 0;
   for (;; length++) {
     const char c = name[length];
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
     if (!letter && !(length > 0 && c >= '0' && c <= '9')) return length;
-    if (length + 1 >= room) return 0;
+    if (length + 1 >= capacity) return 0;
   }
 }

@@ -47,7 +47,7 @@ mps_status mpsi_selection_read(mps_context *context, const char *function, const
   return MPS_OK;
 }
 
-bool mpsi_selection_holds(const mpsi_selection_box *box, int dim, const double *x) {
+bool mpsi_selection_contains(const mpsi_selection_box *box, int dim, const double *x) {
   bool inside = true;
   for (int c = 0; c < dim; c++) inside = inside && x[c] >= box->lower[c] && x[c] <= box->upper[c];
   return inside;

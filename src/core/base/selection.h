@@ -37,7 +37,7 @@ bool mpsi_selection_given(const mpsi_selection *selection);
 mps_status mpsi_selection_read(mps_context *context, const char *function,
                                const mpsi_selection *selection, mpsi_selected *by,
                                mpsi_selection_box *box);
-bool mpsi_selection_holds(const mpsi_selection_box *box, int dim, const double *x);
+bool mpsi_selection_contains(const mpsi_selection_box *box, int dim, const double *x);
 /* MPS_ERROR_ARGUMENT where `count`, the number of `things` ("particle", "facet") selected by all
  * ranks, is 0. */
 mps_status mpsi_selection_check_count(mps_context *context, const char *function,

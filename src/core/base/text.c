@@ -40,8 +40,8 @@ static mps_status fail_io(mps_context *context, const char *function, const char
   char reason[128] = "unknown error";
   if (error != 0) (void)strerror_r(error, reason, sizeof reason);
   const char *tail = mpsi_path_tail(path);
-  return mpsi_fail(context, function, MPS_ERROR_IO, "%s%s: cannot %s: %s",
-                   tail == path ? "" : "...", tail, verb, reason);
+  return mpsi_fail(context, function, MPS_ERROR_IO, "cannot %s '%s%s': %s", verb,
+                   tail == path ? "" : "...", tail, reason);
 }
 
 /* ---- loading --------------------------------------------------------------------------------- */
@@ -186,9 +186,9 @@ bool mpsi_slice_find(mpsi_slice slice, const char *name, mpsi_slice *after) {
 
 mpsi_quote mpsi_slice_quote(mpsi_slice slice) {
   mpsi_quote quote;
-  const size_t room = sizeof quote.text - 4;
+  const size_t capacity = sizeof quote.text - 4;
   size_t length = 0;
-  while (slice.begin < slice.end && length < room) {
+  while (slice.begin < slice.end && length < capacity) {
     const char c = *slice.begin++;
     quote.text[length++] = c >= ' ' && c <= '~' ? c : '?';
   }

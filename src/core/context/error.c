@@ -94,10 +94,10 @@ mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *arg
   if (status != MPS_ERROR_ARGUMENT) return status;
   mps_error *error = record_of(context);
   char *message = error->message;
-  const size_t room = sizeof error->message, most = room / 4;
+  const size_t capacity = sizeof error->message, most = capacity / 4;
   const size_t length = strlen(argument) < most ? strlen(argument) : most, before = length + 2;
   if (strncmp(message, argument, length) == 0 && message[length] == ':') return status;
-  const size_t rest = strlen(message) + before < room ? strlen(message) : room - 1 - before;
+  const size_t rest = strlen(message) + before < capacity ? strlen(message) : capacity - 1 - before;
   memmove(message + before, message, rest);
   memcpy(message, argument, length);
   memcpy(message + length, ": ", 2);
@@ -122,9 +122,10 @@ void mps_context_clear_error(mps_context *context) {
 
 mps_status mps_context_set_error(mps_context *context, mps_status status, const char *function,
                                  const char *message) {
-  if (status <= MPS_OK || status > MPS_ERROR_INTERNAL || !message)
+  if (!message) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "message is NULL");
+  if (status <= MPS_OK || status > MPS_ERROR_INTERNAL)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "status is %d with message %s, must be one of MPS_ERROR_... with a message",
-                     (int)status, message ? "given" : "NULL");
+                     "status is %s, must be one of MPS_ERROR_...",
+                     mpsi_name_of("mps_status", status).text);
   return mpsi_fail(context, function ? function : "caller", status, "%s", message);
 }

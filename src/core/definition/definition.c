@@ -146,18 +146,42 @@ static void say(writing *w, const char *format, ...) {
   if (w->length >= MPSI_WHY) w->length = MPSI_WHY - 1;
 }
 
-/* "MPS_X_KIND_A (0)", or "1 (yes)" */
-static void say_choice(writing *w, const mpsi_allowed *a, double value) {
-  const char *names = names_of(a), *name;
+/* The enumeration of a choice; NULL where its names are no constants ("no|yes"). */
+static const char *enumeration_of(const mpsi_allowed *a) {
+  const char *names = names_of(a);
+  mpsi_name first;
   const int begin = names > a->choices ? (int)(names - a->choices) - 1 : 0;
-  const int length = choice(a, value, &name);
-  if (begin)
-    say(w, "%.*s%.*s (%.0f)", begin, a->choices, length, name, value);
-  else
-    say(w, "%.0f (%.*s)", value, length, name);
+  if (begin == 0) return NULL;
+  snprintf(first.text, sizeof first.text, "%.*s%.*s", begin, a->choices, (int)strcspn(names, "|"),
+           names);
+  return mpsi_enumeration_of(first.text);
 }
 
-/* "MPS_X_KIND_A (0), MPS_X_KIND_B (1) and MPS_X_KIND_C (2)"; "0 (no) and 1 (yes)" */
+/* "MPS_X_KIND_A", or "1 (yes)"; the number of a value without a name */
+static void say_choice(writing *w, const mpsi_allowed *a, double value) {
+  const char *enumeration = enumeration_of(a), *name;
+  const int length = choice(a, value, &name);
+  if (enumeration)
+    say(w, "%s", mpsi_name_of(enumeration, (int32_t)value).text);
+  else if (length > 0)
+    say(w, "%.0f (%.*s)", value, length, name);
+  else
+    say(w, "%.0f", value);
+}
+
+mpsi_name mpsi_member_text(const mpsi_def_member *m, double value) {
+  char text[MPSI_WHY];
+  writing w = {.text = text};
+  mpsi_name out;
+  if (m && m->allowed.choices)
+    say_choice(&w, &m->allowed, value);
+  else
+    say(&w, "%.17g", value);
+  snprintf(out.text, sizeof out.text, "%.*s", (int)sizeof out.text - 1, text);
+  return out;
+}
+
+/* "MPS_X_KIND_A, MPS_X_KIND_B and MPS_X_KIND_C"; "0 (no) and 1 (yes)" */
 static void say_choices(writing *w, const mpsi_allowed *a) {
   const char *names = names_of(a), *name;
   int32_t last = 0, said = 0;
@@ -183,7 +207,7 @@ static void say_range(writing *w, const mpsi_allowed *r, bool whole) {
     say(w, "must be %s%s %.9g", finite && !whole ? "finite and " : "", above ? ">" : ">=", a);
   else if (a == -INFINITY)
     say(w, "must be %s %.9g", below ? "<" : "at most", b);
-  else if (a == -b)
+  else if (a == -b && !whole)
     say(w, "must be within +-%.9g", b);
   else if (above && below)
     say(w, "must be in (%.9g, %.9g)", a, b);
@@ -223,17 +247,22 @@ static void say_value(writing *w, const mpsi_def_member *m, const void *def, int
   const double value = mpsi_member_value(m, def, c);
   if (m->type == MPSI_MEMBER_REAL)
     say(w, " is %s%s%s, ", mpsi_outside(value, lower, upper).text, gap(m), m->unit);
-  else
+  else if (m->allowed.choices) {
+    say(w, " is ");
+    say_choice(w, &m->allowed, value);
+    say(w, ", ");
+  } else
     say(w, " is %.0f%s%s, ", value, gap(m), m->unit);
 }
 
-void mpsi_member_refuse(const mpsi_def_member *m, const void *def, int32_t c, char why[MPSI_WHY]) {
-  writing w = {.text = why};
-  say_value(&w, m, def, c, m->allowed.lower, m->allowed.upper);
-  if (is_number(m))
-    say_allowed(&w, &m->allowed, m->type != MPSI_MEMBER_REAL);
+/* "height is -1 m, must be in ...": refuses component c, which is not `allowed`. */
+static void refuse(writing *w, const mpsi_def_member *m, const mpsi_allowed *allowed,
+                   const void *def, int32_t c) {
+  say_value(w, m, def, c, allowed->lower, allowed->upper);
+  if (!is_number(m))
+    say(w, "must be given");
   else
-    say(&w, "must be given");
+    say_allowed(w, allowed, m->type != MPSI_MEMBER_REAL);
 }
 
 /* ---- a rule ---------------------------------------------------------------------------------- */
@@ -251,8 +280,8 @@ static double number_or(const mpsi_def_member *m, const void *known, double othe
   return isnan(value) ? other : value;
 }
 
-bool mpsi_case_holds(const mpsi_definition *d, const mpsi_def_case *when, const void *known,
-                     uint32_t scene) {
+bool mpsi_case_applies(const mpsi_definition *d, const mpsi_def_case *when, const void *known,
+                       uint32_t scene) {
   const mpsi_def_member *m = &d->member[when->member];
   switch (when->kind) {
   case MPSI_CASE_IS:
@@ -272,7 +301,9 @@ bool mpsi_case_holds(const mpsi_definition *d, const mpsi_def_case *when, const 
   }
 }
 
-/* "kind is MPS_X_KIND_A (0)", "alloc is given" */
+static int digits_of(const mpsi_def_member *m) { return m->type == MPSI_MEMBER_REAL ? 9 : 17; }
+
+/* "kind is MPS_X_KIND_A", "alloc is given" */
 static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *when,
                      const void *known, uint32_t scene) {
   const mpsi_def_member *m = &d->member[when->member];
@@ -287,8 +318,11 @@ static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *
     break;
   case MPSI_CASE_WITH:
   case MPSI_CASE_WITHOUT:
-    if (is_number(m) && m->count == 1 && !isnan(value))
-      say(w, "%s is %.9g%s%s", m->name, value, gap(m), m->unit);
+    if (is_number(m) && m->allowed.choices) {
+      say(w, "%s is ", m->name);
+      say_choice(w, &m->allowed, value);
+    } else if (is_number(m) && m->count == 1 && !isnan(value))
+      say(w, "%s is %.*g%s%s", m->name, digits_of(m), value, gap(m), m->unit);
     else
       say(w, "%s is %sgiven", m->name, when->kind == MPSI_CASE_WITH ? "" : "not ");
     break;
@@ -299,7 +333,7 @@ static void say_case(writing *w, const mpsi_definition *d, const mpsi_def_case *
                                    : "plane");
     break;
   default:
-    say(w, "%s is %.9g%s%s", m->name, value, gap(m), m->unit);
+    say(w, "%s is %.*g%s%s", m->name, digits_of(m), value, gap(m), m->unit);
   }
 }
 
@@ -343,24 +377,24 @@ static void refuse_order(writing *w, const mpsi_definition *d, const mpsi_def_ru
 
 static bool check_component(writing *w, const mpsi_definition *d, const mpsi_def_rule *r,
                             const void *known, int32_t c) {
-  mpsi_def_member m = d->member[r->member];
-  const mpsi_def_member *o = &d->member[r->other];
-  const double value = is_number(&m) ? mpsi_member_value(&m, known, c) : 0.0;
+  const mpsi_def_member *m = &d->member[r->member], *o = &d->member[r->other];
+  const double value = is_number(m) ? mpsi_member_value(m, known, c) : 0.0;
   if (r->demand == MPSI_DEMAND_NOT_GIVEN) {
-    if (!component_given(&m, known, c)) return true;
-    say_value(w, &m, known, c, default_of(&m, c), default_of(&m, c));
-    if (!is_number(&m) || isnan(default_of(&m, c)))
-      say(w, is_number(&m) ? "must be NaN" : "must be NULL");
-    else
-      say(w, "must be %g", default_of(&m, c));
+    if (!component_given(m, known, c)) return true;
+    say_value(w, m, known, c, default_of(m, c), default_of(m, c));
+    if (!is_number(m) || isnan(default_of(m, c)))
+      say(w, is_number(m) ? "must be NaN" : "must be NULL");
+    else if (m->allowed.choices) {
+      say(w, "must be ");
+      say_choice(w, &m->allowed, default_of(m, c));
+    } else
+      say(w, "must be %g", default_of(m, c));
     return false;
   }
   if (r->demand == MPSI_DEMAND_RANGE) {
-    if (is_number(&m) ? allows(&r->allowed, value) : !r->allowed.needed || address_of(&m, known, c))
+    if (is_number(m) ? allows(&r->allowed, value) : !r->allowed.needed || address_of(m, known, c))
       return true;
-    m.allowed = r->allowed;
-    mpsi_member_refuse(&m, known, c, w->text);
-    w->length = strlen(w->text);
+    refuse(w, m, &r->allowed, known, c);
     return false;
   }
   if (compare(r->demand, value, r->factor * mpsi_member_value(o, known, o->count > 1 ? c : 0)))
@@ -410,7 +444,7 @@ bool mpsi_rule_check(const mpsi_definition *d, const mpsi_def_rule *r, const voi
   const int32_t end = r->end ? r->end : all;
   bool good = true;
   for (const mpsi_def_case *k = r->when; k < r->when + MPSI_CASES; k++)
-    if (!mpsi_case_holds(d, k, known, scene)) return true;
+    if (!mpsi_case_applies(d, k, known, scene)) return true;
   if (r->demand == MPSI_DEMAND_GIVEN)
     good = check_given(&w, m, known);
   else if (r->demand == MPSI_DEMAND_EACH || r->demand == MPSI_DEMAND_RISING)
@@ -428,7 +462,8 @@ bool mpsi_definition_check(const mpsi_definition *d, const void *known, uint32_t
   for (const mpsi_def_member *m = d->member; m < d->member + d->count; m++)
     for (int32_t c = 0; c < (m->type == MPSI_MEMBER_CHAR ? 1 : m->count); c++)
       if (!good(m, known, c)) {
-        mpsi_member_refuse(m, known, c, why);
+        writing w = {.text = why};
+        refuse(&w, m, &m->allowed, known, c);
         return false;
       }
   for (const mpsi_def_rule *r = d->rule; r && r < d->rule + d->rules; r++)
@@ -467,9 +502,11 @@ mps_status mpsi_definition_take(const mpsi_definition *d, const void *def, void 
   fill(d, known);
   if (def) memcpy(&size, def, sizeof size);
   if (size < d->released || size > MPSI_STRUCT_MOST) {
-    say(&w, "def.struct_size is %u%s, allowed are %zu to %d: start from %s()", size,
-        size == 0 ? ", as in a definition filled with zeros" : " bytes", d->released,
-        MPSI_STRUCT_MOST, d->defaults);
+    if (size == 0)
+      say(&w, "def is filled with zeros (its struct_size is 0): start from %s()", d->defaults);
+    else
+      say(&w, "def.struct_size is %u bytes, allowed are %zu to %d: start from %s()", size,
+          d->released, MPSI_STRUCT_MOST, d->defaults);
     return MPS_ERROR_ARGUMENT;
   }
   for (size_t i = d->size; i < size; i++)

@@ -27,7 +27,7 @@
  *
  *   X(S, member, demand, case, ...)
  *
- * The demand holds where all cases do (ALWAYS, or 1 to 4 of them). Lines are looked at in their
+ * The demand applies where all cases do (ALWAYS, or 1 to 4 of them). Lines are looked at in their
  * order, after the ranges of all members. "Given" means other than the default: not NaN, not NULL,
  * not 0 where that is the default; of an array, any component.
  *
@@ -37,12 +37,12 @@
  *            BEYOND(S, m, a), WITHIN(S, m, a)  the number m is > a, is <= a; neither for NaN
  *            IN_PLANE, IN_SPACE, IN_AXISYMMETRY   of the solver or set that takes the definition:
  *                                          mpsi_scene of MPSI_DEF_READ_IN. In axisymmetry both of
- *                                          IN_PLANE and IN_AXISYMMETRY hold
+ *                                          IN_PLANE and IN_AXISYMMETRY apply
  *            BECAUSE("text")               no case: ends the message
  *   demand   GIVEN, NOT_GIVEN
  *            a range as above              NaN is refused unless OR_NAN stands before it
  *            LESS(S, m), MORE(S, m)        than the member m, component by component
- *            AT_MOST(S, m, f), AT_LEAST(S, m, f)  f times m; these four hold where either is NaN
+ *            AT_MOST(S, m, f), AT_LEAST(S, m, f)  f times m; these four pass where either is NaN
  *            EACH(S, n, k) range           of an ADDRESS of double: k numbers for each of n, the
  *                                          member with the length; nothing where it is NULL
  *            RISING(S, n) range            the same with k = 1, each above the one before
@@ -80,7 +80,7 @@ typedef enum mpsi_member_type {
 typedef struct mpsi_allowed {
   const char *choices; /* names of the values 0, 1, ... between bars; an empty one is not allowed */
   double lower, upper;
-  bool checked; /* whether `lower` to `upper` hold */
+  bool checked; /* `lower` to `upper` are ends */
   bool open_lower, open_upper, or_nan, or_zero, needed;
 } mpsi_allowed;
 
@@ -96,7 +96,11 @@ typedef struct mpsi_def_member {
 } mpsi_def_member;
 
 /* What the solver or set that takes a definition is; 0: not known. */
-typedef enum mpsi_scene { MPSI_SCENE_PLANE = 1, MPSI_SCENE_AXIS = 2, MPSI_SCENE_SPACE = 4 } mpsi_scene;
+typedef enum mpsi_scene {
+  MPSI_SCENE_PLANE = 1,
+  MPSI_SCENE_AXIS = 2,
+  MPSI_SCENE_SPACE = 4
+} mpsi_scene;
 
 static inline mpsi_scene mpsi_scene_of(int32_t dim) {
   return dim == 3 ? MPSI_SCENE_SPACE : MPSI_SCENE_PLANE;
@@ -137,10 +141,10 @@ typedef enum mpsi_demand {
 
 typedef struct mpsi_def_rule {
   mpsi_allowed allowed;
-  double factor;           /* of the other member; of EACH: numbers for each */
-  uint16_t member, other;  /* their numbers in the definition */
-  uint8_t demand;          /* mpsi_demand */
-  uint8_t begin, end;      /* components; end 0: all that the scene has */
+  double factor;          /* of the other member; of EACH: numbers for each */
+  uint16_t member, other; /* their numbers in the definition */
+  uint8_t demand;         /* mpsi_demand */
+  uint8_t begin, end;     /* components; end 0: all that the scene has */
   mpsi_def_case when[MPSI_CASES];
 } mpsi_def_rule;
 
@@ -169,14 +173,14 @@ const mpsi_definition *mpsi_definition_of(int32_t kind);
  * says which member, its value and what is allowed. `scene`: an mpsi_scene, or 0. */
 mps_status mpsi_definition_take(const mpsi_definition *definition, const void *def, void *known,
                                 uint32_t scene, char why[MPSI_WHY]);
-/* Whether each member is as its line says, and each rule holds; else the first that does not. */
+/* Whether each member is as its line says, and each rule passes; else the first that does not. */
 bool mpsi_definition_check(const mpsi_definition *definition, const void *known, uint32_t scene,
                            char why[MPSI_WHY]);
-/* Whether one rule holds, or does not apply. */
+/* Whether one rule passes, or does not apply. */
 bool mpsi_rule_check(const mpsi_definition *definition, const mpsi_def_rule *rule,
                      const void *known, uint32_t scene, char why[MPSI_WHY]);
-bool mpsi_case_holds(const mpsi_definition *definition, const mpsi_def_case *when,
-                     const void *known, uint32_t scene);
+bool mpsi_case_applies(const mpsi_definition *definition, const mpsi_def_case *when,
+                       const void *known, uint32_t scene);
 /* "must be in 0 to 1, or NaN": what a member or a rule allows. */
 void mpsi_allowed_text(const mpsi_allowed *allowed, bool whole, char text[MPSI_WHY]);
 /* Whether a member is other than its default. */
@@ -186,7 +190,6 @@ void mpsi_definition_fill(const mpsi_definition *definition, void *def, size_t s
 /* Component `c` of a number. */
 double mpsi_member_value(const mpsi_def_member *member, const void *def, int32_t c);
 void mpsi_member_set(const mpsi_def_member *member, void *def, int32_t c, double value);
+/* A value in a message: the name of a choice, else (and where `member` is NULL) the number. */
+struct mpsi_name mpsi_member_text(const mpsi_def_member *member, double value);
 const mpsi_def_member *mpsi_member_find(const mpsi_definition *definition, const char *name);
-/* "height is -1 m, must be in ...": what a refusal of component `c` says. */
-void mpsi_member_refuse(const mpsi_def_member *member, const void *def, int32_t c,
-                        char why[MPSI_WHY]);

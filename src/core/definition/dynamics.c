@@ -46,7 +46,7 @@ MPSI_DEFINITION_RULED(mps_dynamics_def, "dynamics", DYNAMICS, DYNAMICS_RULES)
   X(S, REAL,    pressure_velocity, 1, "m/s",   OR_NAN IN(1e-6, 1e9),                             UNSET, OWN)
 #define DYNAMICS_BOUNDARY_RULES(X, S) \
   X(S, dofs, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_ABSORBING)) \
-  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN")) \
+  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, signal, GIVEN, IS(S, kind, MPS_BOUNDARY_DRIVEN)) \
   X(S, signal, COMPONENT(2) NOT_GIVEN, IN_PLANE)
 MPSI_DEFINITION_RULED(mps_dynamics_boundary_def, "dynamics_boundary", DYNAMICS_BOUNDARY, DYNAMICS_BOUNDARY_RULES)

@@ -39,8 +39,8 @@ MPSI_DEFINITION(mps_elastic_def, "elastic", ELASTIC)
   X(S, ADDRESS, signal,   3, "",  ANY,                                         NULL,  OWN) \
   X(S, REAL,    factor,   3, "",  FINITE,                                      1,     OWN)
 #define ELASTIC_BOUNDARY_RULES(X, S) \
-  X(S, values, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN")) \
-  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN")) \
+  X(S, values, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
+  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, values, EACH(S, id_count, 3) FINITE, IS(S, kind, MPS_BOUNDARY_DRIVEN)) \
   X(S, values, EACH(S, id_count, 1) FINITE, IS(S, kind, MPS_BOUNDARY_ROLLER))
 MPSI_DEFINITION_RULED(mps_elastic_boundary_def, "elastic_boundary", ELASTIC_BOUNDARY, ELASTIC_BOUNDARY_RULES)

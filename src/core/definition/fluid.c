@@ -35,7 +35,7 @@ MPSI_DEFINITION_RULED(mps_fluid_def, "fluid", FLUID, FLUID_RULES)
   X(S, ADDRESS, corners,      1, "",  ANY,                                                  NULL, OWN) \
   X(S, LONG,    corner_count, 1, "",  OR_ZERO IN(2, 10000),                                 0,    OWN)
 #define FLUID_BOUNDARY_RULES(X, S) \
-  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN, or ROLLER for slip")) \
+  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN, or MPS_BOUNDARY_ROLLER for slip")) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
   X(S, signal, NOT_GIVEN, WITH(S, corner_count), BECAUSE("a polyline does not move")) \
   X(S, node_count, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
@@ -44,6 +44,7 @@ MPSI_DEFINITION_RULED(mps_fluid_def, "fluid", FLUID, FLUID_RULES)
   X(S, nodes, GIVEN, WITH(S, node_count)) \
   X(S, nodes, EACH(S, node_count, 3) IN(-1e12, 1e12), ALWAYS) \
   X(S, corners, GIVEN, WITH(S, corner_count)) \
+  X(S, kind, ONE_OF(MPS_BOUNDARY_, "HELD||ROLLER"), WITH(S, corner_count)) \
   X(S, normal, COMPONENT(2) IN(0, 0), WITHOUT(S, corner_count))
 MPSI_DEFINITION_RULED(mps_fluid_boundary_def, "fluid_boundary", FLUID_BOUNDARY, FLUID_BOUNDARY_RULES)
 
@@ -60,8 +61,12 @@ MPSI_DEFINITION_RULED(mps_fluid_boundary_def, "fluid_boundary", FLUID_BOUNDARY, 
   X(S, REAL,    rate,         1, "1/s",  IN(0, 1e6),                                       0,     OWN) \
   X(S, INT,     rise,         1, "",     IN(-1, 1),                                        0,     OWN) \
   X(S, INT,     all,          1, "",     YES_NO,                                  0,     OWN)
+#define RISES(S) IS(S, kind, MPS_FLUID_LOAD_DAMPING), WITH(S, rise)
 #define FLUID_LOAD_RULES(X, S) \
-  X(S, acceleration, COMPONENT(2) IN(0, 0), IN_PLANE)
+  X(S, acceleration, COMPONENT(2) IN(0, 0), IN_PLANE) \
+  X(S, lower, COMPONENT(0) FINITE, RISES(S)) \
+  X(S, upper, COMPONENT(0) FINITE, RISES(S)) \
+  X(S, lower, COMPONENT(0) LESS(S, upper), RISES(S))
 MPSI_DEFINITION_RULED(mps_fluid_load_def, "fluid_load", FLUID_LOAD, FLUID_LOAD_RULES)
 
 #define FLUID_CONTACT(X, S) \

@@ -50,8 +50,8 @@ MPSI_DEFINITION_RULED(mps_mpm_def, "mpm", MPM, MPM_RULES)
   X(S, REAL,    friction, 1, "",  IN(0, 1e3),      0,     OWN) \
   X(S, REAL,    settle,   1, "s", IN(0, DBL_MAX),  0,     OWN)
 #define MPM_BOUNDARY_RULES(X, S) \
-  X(S, friction, NOT_GIVEN, ISNT(S, kind, MPS_BOUNDARY_FRICTIONAL), BECAUSE("make it FRICTIONAL")) \
-  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind DRIVEN")) \
+  X(S, friction, NOT_GIVEN, ISNT(S, kind, MPS_BOUNDARY_FRICTIONAL), BECAUSE("make it MPS_BOUNDARY_FRICTIONAL")) \
+  X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_FREE, MPS_BOUNDARY_OPEN, MPS_BOUNDARY_FREE_FIELD))
 MPSI_DEFINITION_RULED(mps_mpm_boundary_def, "mpm_boundary", MPM_BOUNDARY, MPM_BOUNDARY_RULES)
 

@@ -18,11 +18,9 @@ mps_status mps_kernel_create(mps_context *context, int32_t kind, double radius, 
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (kind < MPS_KERNEL_MPS || kind > MPS_KERNEL_SMOOTH)
-    return mpsi_fail(
-        context, __func__, MPS_ERROR_ARGUMENT,
-        "kind is %d, allowed are 0 (re/r - 1), 1 and 2 (quadratic and cubic B-spline) and "
-        "3 (smooth)",
-        kind);
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed are MPS_KERNEL_MPS, _SPLINE2, _SPLINE3 and _SMOOTH",
+                     kind);
   MPSI_TRY(mpsi_check_range(context, __func__, "radius of influence", radius, MPSI_RANGE_SPACING));
   mps_kernel *kernel = mpsi_alloc(context, 1, sizeof *kernel);
   if (!kernel) return mpsi_fail_memory(context, __func__, sizeof *kernel);

@@ -150,26 +150,26 @@ mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
   else
     status = check_owner(of, function, snapshot);
   if (status == MPS_OK)
-    return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
+    return mpsi_state_restore_values(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
   return of->settle ? of->settle(of->solver, function, status)
                     : status; /* other ranks wait there */
 }
 
-mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
-                                 const mps_snapshot *snapshot, mpsi_state_prepared *out) {
+mps_status mpsi_state_prepare_restore(const mpsi_state_of *of, const char *function,
+                                      const mps_snapshot *snapshot, mpsi_state_prepared *out) {
   return mpsi_state_prepare(of, function, snapshot, "the snapshot", MPS_ERROR_STATE, out);
 }
 
 /* ---- rollback -------------------------------------------------------------------------------- */
 
 /* One call. */
-typedef struct way_back {
+typedef struct restoring {
   const mpsi_state_of *of;
   const char *function, *source;
   mps_status status; /* of a disagreement */
-} way_back;
+} restoring;
 
-static mps_status compare(const way_back *w, const mpsi_state_item *now, const mpsi_value *then) {
+static mps_status compare(const restoring *w, const mpsi_state_item *now, const mpsi_value *then) {
   mps_context *context = w->of->context;
   if (now->text) {
     if (strcmp(now->own.text, then->data) == 0) return MPS_OK;
@@ -179,6 +179,10 @@ static mps_status compare(const way_back *w, const mpsi_state_item *now, const m
   if (now->type == MPSI_STATE_I64) {
     const int64_t value = *(const int64_t *)then->data;
     if (value == now->own.integer) return MPS_OK;
+    if (now->enumeration)
+      return mpsi_fail(context, w->function, w->status, "in %s %s is %s, in this solver %s",
+                       w->source, now->name, mpsi_name_of(now->enumeration, (int32_t)value).text,
+                       mpsi_name_of(now->enumeration, (int32_t)now->own.integer).text);
     return mpsi_fail(context, w->function, w->status, "in %s %s is %lld, in this solver %lld",
                      w->source, now->name, (long long)value, (long long)now->own.integer);
   }
@@ -196,7 +200,7 @@ static const mpsi_value *value_of(const mps_snapshot *from, const mpsi_state *s,
 }
 
 /* Of a table that both have. */
-static mps_status match_optional(const way_back *w, const mpsi_state_item *now,
+static mps_status match_optional(const restoring *w, const mpsi_state_item *now,
                                  const mpsi_value *then) {
   const bool text = now->type == MPSI_STATE_BYTES;
   if (then->rows == 0 || now->fits(now->owner, then->rows, then->data)) return MPS_OK;
@@ -205,7 +209,7 @@ static mps_status match_optional(const way_back *w, const mpsi_state_item *now,
                    (int)(text ? then->rows : 9), text ? (const char *)then->data : "malformed");
 }
 
-static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapshot *from) {
+static mps_status match(const restoring *w, const mpsi_state *s, const mps_snapshot *from) {
   int32_t needed = 0, there = 0;
   for (int32_t k = 0; k < from->state.count; k++) there += !from->state.item[k].optional;
   for (int32_t k = 0; k < s->count; k++) {
@@ -235,7 +239,7 @@ static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapsh
 
 mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
                             const char *source, mps_status disagreement) {
-  const way_back w = {of, function, source, disagreement};
+  const restoring w = {of, function, source, disagreement};
   mpsi_state s = {.item = NULL};
   mps_status status = list(of, function, &s);
   if (status == MPS_OK) status = match(&w, &s, from);
@@ -257,15 +261,14 @@ static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
 mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
                               const mps_snapshot *from, const char *source, mps_status disagreement,
                               mpsi_state_prepared *out) {
-  const way_back w = {of, function, source, disagreement};
+  const restoring w = {of, function, source, disagreement};
   mpsi_state s = {.item = NULL};
   *out = (mpsi_state_prepared){.from = from};
   mps_status status = list(of, function, &s);
   if (status == MPS_OK) status = match(&w, &s, from);
-  const bool room =
-      status == MPS_OK && reserve(&s, from) &&
-      (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
-  if (status == MPS_OK && !room)
+  const bool good = status == MPS_OK && reserve(&s, from) &&
+                    (!of->particles || !of->reserve || of->reserve(of->solver, from->particles));
+  if (status == MPS_OK && !good)
     status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
                        "could not allocate the memory to restore %s", source);
   const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
@@ -286,7 +289,7 @@ mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
   return MPS_OK;
 }
 
-void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared) {
+void mpsi_state_restore(const mpsi_state_of *of, mpsi_state_prepared *prepared) {
   const mps_snapshot *from = prepared->from;
   const mpsi_state s = {.item = prepared->item, .count = prepared->count};
   if (of->particles) mpsi_particles_put_state(of->particles, from, prepared->scratch);
@@ -297,10 +300,11 @@ void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared) {
   *prepared = (mpsi_state_prepared){.item = NULL};
 }
 
-mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
-                          const char *source, mps_status disagreement) {
+mps_status mpsi_state_restore_values(const mpsi_state_of *of, const char *function,
+                                     const mps_snapshot *from, const char *source,
+                                     mps_status disagreement) {
   mpsi_state_prepared prepared;
   const mps_status status = mpsi_state_prepare(of, function, from, source, disagreement, &prepared);
-  if (status == MPS_OK) mpsi_state_go(of, &prepared);
+  if (status == MPS_OK) mpsi_state_restore(of, &prepared);
   return status;
 }

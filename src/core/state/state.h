@@ -60,6 +60,9 @@ void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);
 /* Construction or setup of the solver: where it differs, a rollback is an error that names the item
  * and both values. */
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value);
+/* Of an enumeration: a message names the enumerators. */
+void mpsi_state_agree_choice(mpsi_state *state, const char *name, const char *enumeration,
+                             int32_t value);
 void mpsi_state_agree_number(mpsi_state *state, const char *name, double value);
 void mpsi_state_agree_text(mpsi_state *state, const char *name, const char *value);
 
@@ -115,7 +118,7 @@ typedef struct mpsi_state_of {
    * May be NULL. Where neither this nor `prepare` is given, the solver cannot be restored to other
    * particles; where one is, the next id and the occupied lattice sites of the set belong to the
    * state too. */
-  bool (*make_room)(void *solver, int64_t particles);
+  bool (*reserve)(void *solver, int64_t particles);
   /* The same for a solver that builds a new structure of the particles of `from`, whose ids have
    * been checked, which `bind` then installs. It returns an error of status `disagreement` that
    * names `source` where the state is not of this solver. It may be called again, or never followed
@@ -151,20 +154,20 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot);
 /* The two phases of a rollback, for a solver that makes a trial step in between.
- * mpsi_state_ready_back: everything of mpsi_state_rollback that can fail; mpsi_state_go restores,
- * once, and cannot fail. */
+ * mpsi_state_prepare_restore: everything of mpsi_state_rollback that can fail; mpsi_state_restore
+ * restores, once, and cannot fail. */
 typedef struct mpsi_state_prepared {
   const mps_snapshot *from;
   struct mpsi_state_item *item; /* the list */
   int32_t count;
   void *scratch;
 } mpsi_state_prepared;
-mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
-                                 const mps_snapshot *snapshot, mpsi_state_prepared *out);
-void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared);
+mps_status mpsi_state_prepare_restore(const mpsi_state_of *of, const char *function,
+                                      const mps_snapshot *snapshot, mpsi_state_prepared *out);
+void mpsi_state_restore(const mpsi_state_of *of, mpsi_state_prepared *prepared);
 /* Whether the solver can be restored to other particles than those of the set. */
 static inline bool mpsi_state_any_particles(const mpsi_state_of *of) {
-  return of->make_room || of->prepare;
+  return of->reserve || of->prepare;
 }
 /* To be called when a solver is destroyed. */
 void mpsi_state_forget(mpsi_identity **identity);
@@ -220,8 +223,9 @@ mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const
 mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
                               const mps_snapshot *from, const char *source, mps_status status,
                               mpsi_state_prepared *out);
-mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
-                          const char *source, mps_status status);
+mps_status mpsi_state_restore_values(const mpsi_state_of *of, const char *function,
+                                     const mps_snapshot *from, const char *source,
+                                     mps_status status);
 
 /* ---- state_particles.c: the set's part ------------------------------------------------------- */
 

@@ -70,6 +70,15 @@ void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value
   made->own.integer = value;
 }
 
+void mpsi_state_agree_choice(mpsi_state *state, const char *name, const char *enumeration,
+                             int32_t value) {
+  mpsi_state_item *made = add(state, name, MPSI_STATE_I64, 1);
+  if (!made) return;
+  made->agrees = true;
+  made->enumeration = enumeration;
+  made->own.integer = value;
+}
+
 void mpsi_state_agree_number(mpsi_state *state, const char *name, double value) {
   mpsi_state_item *made = add(state, name, MPSI_STATE_F64, 1);
   if (!made) return;

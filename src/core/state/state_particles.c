@@ -100,7 +100,7 @@ typedef struct move {
   void **block; /* of each field, larger memory; NULL: its own is large enough */
   int32_t blocks;
   int64_t capacity;
-  int64_t ids; /* that the map has to hold */
+  int64_t ids; /* that the map has to contain */
 } move;
 
 static bool same_order(const mps_particles *p, const mps_snapshot *from, const int64_t *id) {

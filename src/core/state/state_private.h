@@ -19,6 +19,7 @@ typedef struct mpsi_state_item {
   mpsi_state_type type;
   mpsi_state_width width;
   bool agrees, text, optional;
+  const char *enumeration; /* of an integer that is a choice, or NULL */
   int32_t columns;
   int64_t rows;
   void *data;                    /* NULL: in `own`, or behind `table` */

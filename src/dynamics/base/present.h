@@ -1,4 +1,4 @@
-/* present.h - the present state as every room reads it: time, velocity, mass.
+/* present.h - the present state as every subfolder reads it: time, velocity, mass.
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 

@@ -16,8 +16,8 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   const mps_dynamics_boundary_def *def = known;
   if (def->dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation), 0 for "
-                     "all",
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION, or-ed, and 0 "
+                     "for all",
                      def->dofs);
   return mpsi_particles_committed(dynamics->particles, function);
 }
@@ -209,12 +209,12 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed, bool ot
   *l = (lists){0};
 }
 
-void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
-  for (int64_t k = 0; k < 3 * dynamics->count; k++) room->owner[k] = 0;
-  find_owners(dynamics, room->owner);
-  list_bounds(dynamics, room->owner, -1, room);
-  list_dashpots(dynamics, room->owner, room);
-  put_lists(dynamics, room, -1, other_freedoms(dynamics, room));
+void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *out) {
+  for (int64_t k = 0; k < 3 * dynamics->count; k++) out->owner[k] = 0;
+  find_owners(dynamics, out->owner);
+  list_bounds(dynamics, out->owner, -1, out);
+  list_dashpots(dynamics, out->owner, out);
+  put_lists(dynamics, out, -1, other_freedoms(dynamics, out));
 }
 
 /* Values of the signals of a driven boundary at time t. */

@@ -67,7 +67,7 @@ void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics);
 mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *function,
                                        int64_t particles, int64_t column_dashpots,
                                        mpsi_dynamics_lists *out);
-void mpsi_dynamics_use_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *room);
+void mpsi_dynamics_use_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *out);
 void mpsi_dynamics_free_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *lists);
 /* Rates of all dashpots, from the fields. */
 void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);

@@ -217,7 +217,7 @@ void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool outp
 
 /* ---- held and driven ------------------------------------------------------------------------- */
 
-void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output) {
+void mpsi_dynamics_prescribe_bounds(mps_dynamics *dynamics, double kick, bool output) {
   const mpsi_dynamics_state *s = &dynamics->state;
   const int integrator = dynamics->def.integrator;
   const double rate = 1.0 / dynamics->length;

@@ -19,4 +19,4 @@ void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
 void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);
 void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick);
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output);
-void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output);
+void mpsi_dynamics_prescribe_bounds(mps_dynamics *dynamics, double kick, bool output);

@@ -87,8 +87,8 @@ mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side, i
   mps_context *context = mpsi_particles_context(particles);
   if (side != MPS_SIDE_X_LOWER && side != MPS_SIDE_X_UPPER)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "side is %d, allowed are MPS_SIDE_X_LOWER (0) and MPS_SIDE_X_UPPER (1)",
-                     (int)side);
+                     "side is %s, allowed are MPS_SIDE_X_LOWER and MPS_SIDE_X_UPPER",
+                     mpsi_name_of("mps_side", side).text);
   if (gap < 2 || gap > 1000000)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "gap is %d spacings, must be 2 to 1000000", gap);

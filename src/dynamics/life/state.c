@@ -93,11 +93,11 @@ static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dash
 
 static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   const mps_dynamics_def *def = &dynamics->def;
-  mpsi_state_agree_integer(s, "integrator", def->integrator);
-  mpsi_state_agree_integer(s, "rotation", def->rotation);
-  mpsi_state_agree_integer(s, "damping", def->damping);
+  mpsi_state_agree_choice(s, "integrator", "mps_dynamics_integrator", def->integrator);
+  mpsi_state_agree_choice(s, "rotation", "mps_dynamics_rotation", def->rotation);
+  mpsi_state_agree_choice(s, "damping", "mps_dynamics_damping", def->damping);
   mpsi_state_agree_integer(s, "watch_damping", def->watch_damping);
-  mpsi_state_agree_integer(s, "kernel", mps_kernel_get_kind(dynamics->kernel));
+  mpsi_state_agree_choice(s, "kernel", "mps_kernel_kind", mps_kernel_get_kind(dynamics->kernel));
   mpsi_state_agree_number(s, "radius_ratio", def->radius_ratio);
   mpsi_state_agree_number(s, "f1", def->f1);
   mpsi_state_agree_number(s, "f2", def->f2);
@@ -109,7 +109,7 @@ static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
 
 static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
   mpsi_state_enter(s, "boundary%d", (int)number);
-  mpsi_state_agree_integer(s, "kind", b->kind);
+  mpsi_state_agree_choice(s, "kind", "mps_boundary_kind", b->kind);
   mpsi_state_agree_integer(s, "dofs", b->dofs);
   mpsi_state_i64(s, "particles", &b->part.count, 1);
   mpsi_state_exact(s, "pushed", b->pushed, 3);
@@ -238,8 +238,8 @@ static mps_status save_before(mps_dynamics *dynamics, const char *function,
 }
 
 /* The steps' own state: the choice of dt stays. Collective. */
-static mps_status go_back(mps_dynamics *dynamics, const char *function,
-                          const mps_snapshot *snapshot) {
+static mps_status restore_before(mps_dynamics *dynamics, const char *function,
+                                 const mps_snapshot *snapshot) {
   const mpsi_state_of of = state_of(dynamics);
   const bool checked = dynamics->checked, chosen = dynamics->chosen;
   const mps_status status =
@@ -248,7 +248,7 @@ static mps_status go_back(mps_dynamics *dynamics, const char *function,
   return status;
 }
 
-const mpsi_dynamics_keeper mpsi_dynamics_keep = {save_before, go_back};
+const mpsi_dynamics_keeper mpsi_dynamics_keep = {save_before, restore_before};
 
 mps_status mpsi_dynamics_returned(void *solver, const char *function) {
   return agree_on_restore(solver, function, MPS_OK);
@@ -288,7 +288,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   mps_status status = mpsi_domain_agree(dynamics->domain, function,
                                         mpsi_state_snapshot(&of, function, &dynamics->present));
   if (status == MPS_OK) /* copy of the state to restore; agreed upon by all ranks */
-    status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
+    status = mpsi_state_prepare_restore(&of, function, dynamics->present, &back);
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
   mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
@@ -298,7 +298,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept, dynamics->state.ax, bytes);
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
-  mpsi_state_go(&of, &back);
+  mpsi_state_restore(&of, &back);
   const mps_status settled = agree_on_restore(dynamics, function, MPS_OK);
   if (status != MPS_OK && status != MPS_ERROR_DIVERGED) return status;
   return settled == MPS_OK ? check_kept(dynamics, function, kept) : settled;

@@ -116,7 +116,7 @@ double mpsi_dynamics_dt(void *solver, const char *function) {
 mps_status mpsi_dynamics_check_dt(void *solver, const char *function, double dt) {
   if (dt >= MPSI_DYN_LEAST_DT && dt <= MPSI_DYN_MOST_DT) return MPS_OK;
   return mpsi_fail(((mps_dynamics *)solver)->context, function, MPS_ERROR_ARGUMENT,
-                   "dt is %s s, must be in %g..%g",
+                   "dt is %s s, must be in %g to %g",
                    mpsi_outside(dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT).text, MPSI_DYN_LEAST_DT,
                    MPSI_DYN_MOST_DT);
 }

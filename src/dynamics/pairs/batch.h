@@ -1,5 +1,5 @@
 /* batch.h - the pairs of a body, a batch of its blocks at a time: scratch memory of one batch is
- * released before the next, so that memory holds the arranged pairs, and not all neighbour lists
+ * released before the next, so that memory has the arranged pairs, and not all neighbour lists
  * besides.
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once

@@ -76,8 +76,8 @@ static bool wanted(const cloud *points, const uint8_t *keep, int64_t a, int64_t 
 }
 
 /* Room for exactly the pairs of the body. */
-static bool make_room(const cloud *points, const uint8_t *keep, const int64_t *offset,
-                      const int64_t *index, pair_list *list) {
+static bool reserve(const cloud *points, const uint8_t *keep, const int64_t *offset,
+                    const int64_t *index, pair_list *list) {
   int64_t count = 0;
   for (int64_t a = 0; a < points->own; a++)
     for (int64_t k = offset[a]; k < offset[a + 1]; k++) count += wanted(points, keep, a, index[k]);
@@ -89,7 +89,7 @@ static bool make_room(const cloud *points, const uint8_t *keep, const int64_t *o
 static mps_status body_pairs(const mpsi_dynamics_geometry *g, const cloud *points,
                              const uint8_t *keep, const int64_t *offset, const int64_t *index,
                              pair_list *list, const char *function) {
-  if (!make_room(points, keep, offset, index, list))
+  if (!reserve(points, keep, offset, index, list))
     return mpsi_fail_memory(list->context, function, sizeof(mpsi_dynamics_pair));
   for (int64_t a = 0; a < points->own; a++)
     for (int64_t k = offset[a]; k < offset[a + 1]; k++) {

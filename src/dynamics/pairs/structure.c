@@ -144,7 +144,7 @@ mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
   const int64_t n = (out->count + out->ghosts + 7) / 8 * 8, stride = n + 24;
   const int64_t slots = (out->mesh.slots + 7) / 8 * 8 + 40;
   const int64_t doubles = MPSI_DYN_SLAB_COLUMNS * stride + 2 * slots;
-  out->stride = stride, out->room = slots;
+  out->stride = stride, out->slots = slots;
   out->slab = mpsi_alloc(context, doubles, sizeof(double));
   out->scratch = mpsi_alloc(context, workers * MPSI_DYN_SCRATCH, sizeof(double));
   out->bad = mpsi_alloc(context, out->mesh.blocks, sizeof(int32_t));
@@ -229,7 +229,7 @@ void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure
   dynamics->column_dashpots = from->column_dashpots;
   for (int k = 0; k < MPSI_DYN_SLAB_COLUMNS; k++) *arrays[k] = from->slab + k * from->stride;
   s->ex = from->slab + MPSI_DYN_SLAB_COLUMNS * from->stride;
-  s->ey = s->ex + from->room;
+  s->ey = s->ex + from->slots;
   *from = (mpsi_dynamics_structure){0};
   mpsi_dynamics_free_structure(dynamics, &former);
   mpsi_dynamics_bind(dynamics);

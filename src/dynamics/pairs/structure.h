@@ -19,7 +19,7 @@ typedef struct mpsi_dynamics_structure {
   bool lattice;
   mpsi_dynamics_mesh mesh;
   double *slab, *scratch, *part;
-  int64_t stride, room; /* of the slab: from column to column, pair slots */
+  int64_t stride, slots; /* of the slab: from column to column, pair slots */
   int32_t *bad;
   mpsi_dynamics_dashpot *column_dashpot;
   int64_t column_dashpots;

@@ -113,7 +113,7 @@ mps_status mpsi_dynamics_undo(mps_dynamics *dynamics, const char *function, mps_
   const mps_status agreed = mpsi_domain_max(dynamics->domain, function, 1, &lost);
   dynamics->diverged = true;
   if (agreed != MPS_OK) return agreed;
-  if (lost == 0.0 && dynamics->keeper->go_back(dynamics, function, b->before) == MPS_OK)
+  if (lost == 0.0 && dynamics->keeper->restore(dynamics, function, b->before) == MPS_OK)
     dynamics->diverged = false;
   b->changed = true;
   b->saved = -1;

@@ -25,7 +25,7 @@ typedef struct mpsi_dynamics_bound_state {
 /* Keeps and restores the state, for a step. */
 typedef struct mpsi_dynamics_keeper {
   mps_status (*save)(mps_dynamics *dynamics, const char *function, mps_snapshot **snapshot);
-  mps_status (*go_back)(mps_dynamics *dynamics, const char *function, const mps_snapshot *snapshot);
+  mps_status (*restore)(mps_dynamics *dynamics, const char *function, const mps_snapshot *snapshot);
 } mpsi_dynamics_keeper;
 
 /* How a step ended. */

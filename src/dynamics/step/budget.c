@@ -203,10 +203,10 @@ static mps_status read_energies(mps_dynamics *dynamics, const char *function, do
 }
 
 static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_totals *t) {
-  const int64_t room = dynamics->count + dynamics->ghosts + MPSI_PARTICLES_PADDING;
-  double *own = mpsi_alloc(dynamics->context, room, sizeof *own);
+  const int64_t length = dynamics->count + dynamics->ghosts + MPSI_PARTICLES_PADDING;
+  double *own = mpsi_alloc(dynamics->context, length, sizeof *own);
   mps_status status = mpsi_particles_committed(dynamics->particles, function);
-  if (!own) status = mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
+  if (!own) status = mpsi_fail_memory(dynamics->context, function, (size_t)length * sizeof *own);
   status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_choose_dt(dynamics, function);
   if (status == MPS_OK && dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */

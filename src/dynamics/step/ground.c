@@ -40,7 +40,7 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
     for (int64_t k = 0; k < n; k++)
       if (!(column[f][k] >= LEAST && column[f][k] <= MOST)) {
         (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                        "%s of particle %lld is %s, must be in 1e-6..1e9 %s", names[f],
+                        "%s of particle %lld is %s, must be in 1e-6 to 1e9 %s", names[f],
                         (long long)id[k], mpsi_outside(column[f][k], LEAST, MOST).text,
                         f == 0 ? "kg/m3" : "m/s");
         return fail_particle(particles, k);
@@ -57,7 +57,7 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
     }
     if (damping && !(damping[k] >= 0.0 && damping[k] <= 1000.0)) {
       (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                      "damping of particle %lld is %s, must be in 0..1000", (long long)id[k],
+                      "damping of particle %lld is %s, must be in 0 to 1000", (long long)id[k],
                       mpsi_outside(damping[k], 0.0, 1000.0).text);
       return fail_particle(particles, k);
     }
@@ -109,7 +109,7 @@ static mps_status check_velocities(mps_particles *particles, const char *functio
   (void)mpsi_fail(
       context, function, MPS_ERROR_ARGUMENT,
       "material: particle %lld has density %g kg/m3 and so wave velocities of %g and %g m/s: all "
-      "must be in 1e-6..1e9",
+      "must be in 1e-6 to 1e9",
       (long long)mpsi_particles_integers(particles, "id")[k], density, *vs, *vp);
   return fail_particle(particles, k);
 }
@@ -189,7 +189,7 @@ static double *keep_velocities(const mps_dynamics *dynamics, const char *functio
   return kept;
 }
 
-static void put_velocities_back(mps_dynamics *dynamics, const double *kept) {
+static void restore_velocities(mps_dynamics *dynamics, const double *kept) {
   const int64_t n = mps_particles_count(dynamics->particles);
   for (int f = 0; f < 2; f++) {
     double *column = mpsi_particles_column(dynamics->particles, wave_fields[f], 0);
@@ -219,7 +219,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   }
   /* values of other particles, or of another rank, may be out of range */
   if (status == MPS_OK) status = read_ground(dynamics, __func__);
-  if (status != MPS_OK && agreed) put_velocities_back(dynamics, kept);
+  if (status != MPS_OK && agreed) restore_velocities(dynamics, kept);
   mpsi_free(dynamics->context, kept);
   return status;
 }

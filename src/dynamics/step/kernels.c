@@ -51,15 +51,15 @@ typedef struct first_pass {
   double *ends;     /* 12 rows of MPSI_DYN_CHUNK: copies of the ends of scattered pairs */
 } first_pass;
 
-/* Seven rows of a length from `room`. */
-MPSI_INLINE pair_terms seven_rows(double *room, int64_t length) {
-  return (pair_terms){room,
-                      room + length,
-                      room + 2 * length,
-                      room + 3 * length,
-                      room + 4 * length,
-                      room + 5 * length,
-                      room + 6 * length};
+/* Seven rows of a length from `rows`. */
+MPSI_INLINE pair_terms seven_rows(double *rows, int64_t length) {
+  return (pair_terms){rows,
+                      rows + length,
+                      rows + 2 * length,
+                      rows + 3 * length,
+                      rows + 4 * length,
+                      rows + 5 * length,
+                      rows + 6 * length};
 }
 
 /* Terms of n pairs, and kc e of each in s->ex, s->ey from `slot` on. PER = 0: all have the same

@@ -373,7 +373,7 @@ static mps_status take_step(work *w, const char *function, bool output, int *lev
   dynamics->fresh = dynamics->no_rate = false;
   dynamics->kept = dynamics->length;
   mpsi_dynamics_dashpots_after(dynamics, kick, output);
-  mpsi_dynamics_hold_bounds(dynamics, kick, output);
+  mpsi_dynamics_prescribe_bounds(dynamics, kick, output);
   mpsi_dynamics_end_counting(dynamics, kick);
   if (w->account) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};

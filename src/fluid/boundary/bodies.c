@@ -238,9 +238,13 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
     if (f->body[b].body == body)
       return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                        "the fluid is in contact with the body already");
-  if (body->context != f->context || body->dim != 2 || body->shape != MPSI_POLYGON)
+  if (body->context != f->context)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "the body is no polygon in the plane of the fluid's context");
+                     "the body was made from another context");
+  if (body->dim != 2 || body->shape != MPSI_POLYGON)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "body is a disc, a half-plane or in space, must be a polygon of the plane "
+                     "(mps_body_create_polygon, _box)");
   if (body->axial)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the body is in contact with another solver, which is axisymmetric: make a "

@@ -6,7 +6,6 @@
 #include "fluid/boundary/clearance.h"
 #include "fluid/ranks/partition.h"
 
-#include "core/base/boundary_kind.h"
 #include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
@@ -16,16 +15,11 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   mps_fluid *f = solver;
   const mps_fluid_boundary_def *d = known;
   const double length = hypot(d->normal[0], d->normal[1]);
-  if (d->corner_count != 0 && d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
-                     d->kind, mpsi_boundary_kind_name(d->kind));
   if (d->corner_count != 0)
     return mpsi_fluid_check_corners(f, function, d->corner_count, d->corners);
   if (length > 1e-150 && length < 1e150) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                   "normal of the boundary is (%g, %g): it must have a length", d->normal[0],
-                   d->normal[1]);
+                   "normal is (%g, %g), must be finite and not zero", d->normal[0], d->normal[1]);
 }
 
 /* Whether the corner of the wall and boundary b lies behind another boundary. */

@@ -61,9 +61,10 @@ typedef struct clipped {
 } clipped;
 
 static clipped no_corners(const mps_fluid *f) {
-  double *room = f->clip_room.item;
+  double *scratch = f->clip_room.item;
   const int64_t most = f->walls;
-  return (clipped){(int)most, (double(*)[2])room, (double(*)[2])(room + 2 * most), room + 4 * most};
+  return (clipped){(int)most, (double(*)[2])scratch, (double(*)[2])(scratch + 2 * most),
+                   scratch + 4 * most};
 }
 
 /* Clips a convex polygon of n corners by a wall; returns the number of corners. */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Room for so many walls, the wedges and clipped polygons among them. */
-static bool make_room(mps_fluid *f, int32_t walls) {
+static bool reserve(mps_fluid *f, int32_t walls) {
   enum { ENDS = 2, PLACES = 3 * 2 };
   if (!mpsi_room_ensure(f->context, &f->wedge_room, ENDS * (int64_t)walls, sizeof *f->wedge) ||
       !mpsi_room_ensure(f->context, &f->clip_room, PLACES * (int64_t)walls, sizeof(double)) ||
@@ -31,7 +31,7 @@ static void move_walls(mps_fluid *f, int at, int by) {
 bool mpsi_fluid_make_boundary(mps_fluid *f, int32_t number) {
   const int32_t more = number + 1 - f->boundaries;
   if (more <= 0) return true;
-  if (!make_room(f, f->walls + more)) return false;
+  if (!reserve(f, f->walls + more)) return false;
   move_walls(f, f->boundaries, more);
   memset(f->wall + f->boundaries, 0, (size_t)more * sizeof *f->wall);
   f->boundaries += more;
@@ -40,7 +40,7 @@ bool mpsi_fluid_make_boundary(mps_fluid *f, int32_t number) {
 
 int mpsi_fluid_make_faces(mps_fluid *f, int faces) {
   const int first = f->walls;
-  if (!make_room(f, f->walls + faces)) return -1;
+  if (!reserve(f, f->walls + faces)) return -1;
   memset(f->wall + first, 0, (size_t)faces * sizeof *f->wall);
   f->walls += faces;
   return first;

@@ -92,17 +92,15 @@ mps_status mps_fluid_set_boundary_motion(mps_fluid *f, int32_t number,
   MPSI_TRY(mpsi_fluid_free(f, __func__));
   if (MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number: boundary %d is a polyline, which does not move", number);
+                     "number is %d: this boundary is a polyline, which does not move", number);
   if (!MPSI_FLUID_IS_BOUNDARY(f, number) || !f->wall[number].used)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number is %d, and the fluid has no boundary of that number: "
-                     "mps_fluid_add_boundary writes it",
-                     number);
+                     "number is %d: there is no boundary of this number", number);
   if (!velocity) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "velocity is NULL");
   mpsi_fluid_wall *w = &f->wall[number];
   if (w->signal)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number: boundary %d follows a signal", number);
+                     "number is %d: this boundary follows a signal", number);
   for (int64_t k = 0; k < w->nodes; k++) {
     const double s = displacement_of ? displacement_of[k] : 0.0;
     if (!(fabs(velocity[k]) <= 1e6 && fabs(s) <= 1e12))

@@ -50,8 +50,8 @@ static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0)
   if (!d->kernel) return MPS_OK;
   if (mps_kernel_get_kind(d->kernel) != MPS_KERNEL_SMOOTH)
     return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
-                     "kernel: its kind is %d, and that of a fluid must be MPS_KERNEL_SMOOTH (3)",
-                     mps_kernel_get_kind(d->kernel));
+                     "kernel: its kind is %s, and that of a fluid must be MPS_KERNEL_SMOOTH",
+                     mpsi_name_of("mps_kernel_kind", mps_kernel_get_kind(d->kernel)).text);
   d->radius_ratio = mps_kernel_radius(d->kernel) / l0;
   if (!within(d->radius_ratio, 2.6, 4.0))
     return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,

@@ -10,7 +10,7 @@
 #include "core/state/state.h"
 
 static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
-  mpsi_state_agree_integer(s, "kind", w->motion ? w->kind : -1);
+  mpsi_state_agree_choice(s, "kind", "mps_boundary_kind", w->motion ? w->kind : -1);
   if (!w->motion) return;
   for (int c = 0; c < 2 && !w->of_body; c++) {
     mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);
@@ -128,7 +128,7 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
   return true;
 }
 
-static bool make_room(void *solver, int64_t particles) {
+static bool reserve(void *solver, int64_t particles) {
   return particles <= MPSI_FLUID_MOST_PARTICLES && mpsi_fluid_reserve(solver, particles);
 }
 
@@ -160,7 +160,7 @@ mpsi_state_of mpsi_fluid_state(void *solver) {
                          .identity = &f->identity,
                          .list = list_state,
                          .fits = fits,
-                         .make_room = make_room,
+                         .reserve = reserve,
                          .settle = settle,
                          .take_share = have_read,
                          .after = after,

@@ -28,12 +28,6 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
     return mpsi_fail(
         f->context, function, MPS_ERROR_UNSUPPORTED,
         "a pressure load acts on the surface, which the classical scheme does not have");
-  if (d->kind == MPS_FLUID_LOAD_DAMPING && d->rise != 0 &&
-      !(isfinite(d->lower[0]) && isfinite(d->upper[0]) && d->upper[0] > d->lower[0]))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "lower[0] and upper[0] of the load are %g and %g m: with a rise both must be "
-                     "finite and ascending",
-                     d->lower[0], d->upper[0]);
   return MPS_OK;
 }
 
@@ -151,9 +145,9 @@ mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   if (status != MPS_OK || !any) return status;
   if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);
-  double *const room = f->push_room.item;
-  for (int64_t k = 0; k < 3 * f->count; k++) room[k] = 0.0;
-  f->push[0] = room, f->push[1] = room + f->count, f->over = room + 2 * f->count;
+  double *const scratch = f->push_room.item;
+  for (int64_t k = 0; k < 3 * f->count; k++) scratch[k] = 0.0;
+  f->push[0] = scratch, f->push[1] = scratch + f->count, f->over = scratch + 2 * f->count;
   add_forces(f);
   for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++)
     if (mpsi_fluid_load_of(f, k)) add_load(f, mpsi_fluid_load_of(f, k));

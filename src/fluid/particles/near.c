@@ -122,10 +122,10 @@ static void column_range(const cells *c, int64_t column, int64_t reach, double y
   *end = c->first[column * c->n[1] + high + 1];
 }
 
-/* Neighbours of particle i within `radius` and the squares of their distances; at most `room` - 1
- * are written, and one that is not counted. Returns their number. */
-static int64_t search(const mps_fluid *f, const cells *c, int64_t i, double radius, int64_t room,
-                      int32_t *index, double *r2) {
+/* Neighbours of particle i within `radius` and the squares of their distances; at most `capacity` -
+ * 1 are written, and one that is not counted. Returns their number. */
+static int64_t search(const mps_fluid *f, const cells *c, int64_t i, double radius,
+                      int64_t capacity, int32_t *index, double *r2) {
   const double y = f->x[1][i];
   const int64_t at = cell_along(c, 0, f->x[0][i]);
   const int64_t reach = radius > f->weight.re ? (int64_t)ceil(radius * c->inverse) : REACH;
@@ -135,7 +135,7 @@ static int64_t search(const mps_fluid *f, const cells *c, int64_t i, double radi
   for (int64_t column = low; column <= high; column++) {
     int64_t begin, end;
     column_range(c, column, reach, y, &begin, &end);
-    if (found + end - begin >= room) return room;
+    if (found + end - begin >= capacity) return capacity;
     found = f->loops->search(f, i, radius, begin, end, found, index, r2);
   }
   return found;
@@ -224,11 +224,11 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK,
                   pairs = f->most_near * f->count + MPSI_FLUID_CHUNK;
-    const bool room = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
+    const bool good = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
                       mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w) &&
                       mpsi_room_fit(f->context, &f->crowd_room, mps_context_threads(f->context),
                                     sizeof(mpsi_fluid_crowd));
-    if (status == MPS_OK && !room)
+    if (status == MPS_OK && !good)
       status =
           mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;

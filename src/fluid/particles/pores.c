@@ -37,7 +37,7 @@ static bool contains(const mpsi_fluid_rock *rock, double x, double y) {
 
 /* The region at (x, y): its number + 1, or WATER. */
 static int32_t region_at(const mps_fluid *f, double x, double y) {
-  for (int32_t k = 0; k < f->rocks->room; k++)
+  for (int32_t k = 0; k < f->rocks->capacity; k++)
     if (f->rocks->rock[k].used && contains(&f->rocks->rock[k], x, y)) return k + 1;
   return WATER;
 }
@@ -52,7 +52,7 @@ static bool is_free(const mps_fluid *f, int64_t begin, int64_t end) {
       low[c] = f->x[c][i] < low[c] ? f->x[c][i] : low[c];
       high[c] = f->x[c][i] > high[c] ? f->x[c][i] : high[c];
     }
-  for (int32_t k = 0; k < f->rocks->room; k++) {
+  for (int32_t k = 0; k < f->rocks->capacity; k++) {
     const mpsi_fluid_rock *rock = &f->rocks->rock[k];
     bool near = rock->used;
     for (int c = 0; c < 2; c++)

@@ -35,14 +35,14 @@ static int32_t find_room(mps_fluid *f) {
     f->rocks = rocks;
   }
   int32_t k = 0;
-  while (k < f->rocks->room && f->rocks->rock[k].used) k++;
-  if (k < f->rocks->room) return k;
+  while (k < f->rocks->capacity && f->rocks->rock[k].used) k++;
+  if (k < f->rocks->capacity) return k;
   mpsi_fluid_rock *more = mpsi_alloc(f->context, k + 1, sizeof *more);
   if (!more) return -1;
   if (k > 0) memcpy(more, f->rocks->rock, (size_t)k * sizeof *more);
   memset(more + k, 0, sizeof *more);
   mpsi_free(f->context, f->rocks->rock);
-  f->rocks->rock = more, f->rocks->room = k + 1;
+  f->rocks->rock = more, f->rocks->capacity = k + 1;
   return k;
 }
 
@@ -74,7 +74,7 @@ static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_de
 
 static void find_reach(mps_fluid *f) {
   f->reach = f->weight.re;
-  for (int32_t k = 0; f->rocks && k < f->rocks->room; k++)
+  for (int32_t k = 0; f->rocks && k < f->rocks->capacity; k++)
     if (f->rocks->rock[k].used) f->reach = fmax(f->reach, f->rocks->rock[k].weight.re);
   if (!f->rocks) return;
   f->rocks->spacing = f->l0 / sqrt(mpsi_fluid_least_porosity(f));
@@ -82,7 +82,7 @@ static void find_reach(mps_fluid *f) {
 
 /* Without regions there is nothing to look at in a step. */
 static void drop_if_none(mps_fluid *f) {
-  for (int32_t k = 0; k < f->rocks->room; k++)
+  for (int32_t k = 0; k < f->rocks->capacity; k++)
     if (f->rocks->rock[k].used) return;
   mpsi_fluid_drop_rocks(f);
 }
@@ -139,9 +139,9 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
 }
 
 static mps_status check_rock(mps_fluid *f, const char *function, int32_t number) {
-  if (number < 0 || !f->rocks || number >= f->rocks->room || !f->rocks->rock[number].used)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no rock of number %d",
-                     number);
+  if (number < 0 || !f->rocks || number >= f->rocks->capacity || !f->rocks->rock[number].used)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "number is %d: there is no rock of this number", number);
   return MPS_OK;
 }
 
@@ -161,7 +161,7 @@ mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
 void mpsi_fluid_drop_rocks(mps_fluid *f) {
   mpsi_fluid_rocks *rocks = f->rocks;
   if (!rocks) return;
-  for (int32_t k = 0; k < rocks->room; k++) mpsi_free(f->context, rocks->rock[k].xy);
+  for (int32_t k = 0; k < rocks->capacity; k++) mpsi_free(f->context, rocks->rock[k].xy);
   MPSI_FREE(f->context, rocks->rock, rocks->part_room.item, rocks->flow_room.item,
             rocks->free_room.item, rocks->region_room.item, rocks->start_room.item, rocks);
   f->rocks = NULL;
@@ -169,14 +169,14 @@ void mpsi_fluid_drop_rocks(mps_fluid *f) {
 
 double mpsi_fluid_least_porosity(const mps_fluid *f) {
   double least = 1.0;
-  for (int32_t k = 0; f->rocks && k < f->rocks->room; k++)
+  for (int32_t k = 0; f->rocks && k < f->rocks->capacity; k++)
     if (f->rocks->rock[k].used) least = fmin(least, f->rocks->rock[k].def.porosity);
   return least;
 }
 
 void mpsi_fluid_list_rocks(mpsi_state *s, const mps_fluid *f) {
-  mpsi_state_agree_integer(s, "rocks", f->rocks ? f->rocks->room : 0);
-  for (int32_t k = 0; f->rocks && k < f->rocks->room; k++) {
+  mpsi_state_agree_integer(s, "rocks", f->rocks ? f->rocks->capacity : 0);
+  for (int32_t k = 0; f->rocks && k < f->rocks->capacity; k++) {
     const mpsi_fluid_rock *rock = &f->rocks->rock[k];
     mpsi_state_enter(s, "rock%d", k);
     mpsi_state_agree_number(s, "porosity", rock->def.porosity);

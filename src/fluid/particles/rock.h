@@ -16,7 +16,7 @@ typedef struct mpsi_fluid_rock {
 } mpsi_fluid_rock;
 
 struct mpsi_fluid_rocks {
-  int32_t room;
+  int32_t capacity;
   mpsi_fluid_rock *rock;
   double spacing; /* m, the largest of particles in all regions */
   /* of pores.c */

@@ -131,8 +131,8 @@ static void add_entry(block_rows *r, int64_t i, int32_t aggregate, double value)
 
 static block_rows begin_rows(mpsi_fluid_coarse *c, int64_t b) {
   block_rows r = {.coarse = c,
-                  .entry = c->entry + b * c->room,
-                  .at = c->at + b * c->room,
+                  .entry = c->entry + b * c->capacity,
+                  .at = c->at + b * c->capacity,
                   .map = c->map + b * (c->aggregates + 1),
                   .list = c->list + b * (c->aggregates + 1),
                   .first = b * c->block};
@@ -157,7 +157,7 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
     if (alone && f->local[i].h == 0.0 && !f->loops->mixed(f, i, c->of)) continue;
     const double own = split_row(f, i, row);
     if (row->count == 0 && own <= NOTHING * f->system.diagonal[i]) continue;
-    const bool full = r.count + row->count + 1 > c->room,
+    const bool full = r.count + row->count + 1 > c->capacity,
                crowded = r.slots + row->count > UINT16_MAX;
     if (full) atomic_store(&p->full, true);
     if (crowded) atomic_store(&p->crowded, true);
@@ -176,8 +176,8 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
 static void add_rows(void *data, int64_t b, int32_t worker) {
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
-  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
-  const double *entry = c->entry + b * c->room;
+  const mpsi_fluid_coarse_at *at = c->at + b * c->capacity;
+  const double *entry = c->entry + b * c->capacity;
   const int32_t *slot = c->slot + c->slots[b], *of = c->of + b * c->block;
   for (int64_t k = 0; k < c->count[b]; k++) {
     const int32_t row = of[at[k].row] - 1, column = slot[at[k].slot] - 1;
@@ -201,8 +201,8 @@ static void send_values(mps_fluid *f, int64_t count, double *values, int64_t fir
   mpsi_fluid_reduce_max(f, count, values);
 }
 
-static bool fit(mps_fluid *f, mpsi_room *room, int64_t count, size_t size) {
-  return mpsi_room_ensure(f->context, room, count, size);
+static bool fit(mps_fluid *f, mpsi_room *memory, int64_t count, size_t size) {
+  return mpsi_room_ensure(f->context, memory, count, size);
 }
 
 static mps_status make_aggregates(mps_fluid *f, const char *function) {
@@ -237,8 +237,8 @@ static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
   row_pass p = {.fluid = f};
   for (;;) {
     mps_status status = MPS_OK;
-    c->room = c->block * c->most / 16;
-    const int64_t all = c->room * c->blocks;
+    c->capacity = c->block * c->most / 16;
+    const int64_t all = c->capacity * c->blocks;
     if (!mpsi_room_fit(f->context, &c->entry_room, all, sizeof *c->entry) ||
         !mpsi_room_fit(f->context, &c->at_room, all, sizeof *c->at) ||
         !mpsi_envelope_begin(f->context, &c->matrix, c->aggregates))
@@ -326,8 +326,8 @@ mps_status mpsi_fluid_coarsen(mps_fluid *f, const char *function, int64_t block,
 
 void mpsi_fluid_coarse_restrict(mps_fluid *f, int64_t b, const double *v) {
   mpsi_fluid_coarse *c = f->coarse;
-  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
-  const double *entry = c->entry + b * c->room, *own = v + b * c->block;
+  const mpsi_fluid_coarse_at *at = c->at + b * c->capacity;
+  const double *entry = c->entry + b * c->capacity, *own = v + b * c->block;
   double *part = c->part + c->slots[b];
   memset(part, 0, (size_t)(c->slots[b + 1] - c->slots[b]) * sizeof *part);
   for (int64_t k = 0; k < c->count[b]; k++) part[at[k].slot] += entry[k] * own[at[k].row];

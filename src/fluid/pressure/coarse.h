@@ -31,7 +31,7 @@ struct mpsi_fluid_coarse {
   int64_t *own;          /* first aggregate of each block, less 1; and of all */
   int64_t *slots;        /* first slot of each block, and of all */
   int64_t *count;        /* entries of each block */
-  int64_t most, room;    /* room for entries: by 16 rows, and by block */
+  int64_t most, capacity; /* room for entries: by 16 rows, and by block */
   mpsi_room block_room, of_room, map_room, list_room, at_room, entry_room, slot_room, part_room,
       value_room;
   int32_t *of;              /* aggregate of each particle, 0: apart */
@@ -56,8 +56,8 @@ void mpsi_fluid_coarse_restrict(mps_fluid *fluid, int64_t b, const double *v);
 void mpsi_fluid_coarse_solve(mps_fluid *fluid);
 /* r -= A Z e of the rows of block b. */
 static inline void mpsi_fluid_coarse_subtract(const mpsi_fluid_coarse *c, int64_t b, double *r) {
-  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
-  const double *entry = c->entry + b * c->room;
+  const mpsi_fluid_coarse_at *at = c->at + b * c->capacity;
+  const double *entry = c->entry + b * c->capacity;
   const int32_t *slot = c->slot + c->slots[b];
   double *own = r + b * c->block;
   for (int64_t k = 0; k < c->count[b]; k++) own[at[k].row] -= entry[k] * c->value[slot[at[k].slot]];

@@ -56,7 +56,7 @@ static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   }
 }
 
-static mps_status make_room(mps_fluid *f, const char *function) {
+static mps_status reserve(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = &f->outside;
   const int64_t last = f->own[1] - 1, rows = f->own[1] - f->own[0];
   const int64_t entries =
@@ -90,7 +90,7 @@ static void close_gaps(mps_fluid *f) {
 
 mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   const mpsi_fluid_outside *o = &f->outside;
-  MPSI_TRY(mpsi_fluid_agree(f, function, make_room(f, function)));
+  MPSI_TRY(mpsi_fluid_agree(f, function, reserve(f, function)));
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   close_gaps(f);
   mps_linear_matrix matrix = {.all = f->count,

@@ -90,7 +90,7 @@ static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, do
 typedef struct factor_pass {
   mps_fluid *fluid;
   mpsi_fluid_blocks blocks;
-  int64_t room, all; /* entries for each block but the last, and for all */
+  int64_t capacity, all; /* entries for each block but the last, and for all */
   atomic_bool full;
 } factor_pass;
 
@@ -100,10 +100,10 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
   mpsi_fluid_system *s = &f->system;
   const int64_t first = b * p->blocks.size;
   const int64_t end = first + p->blocks.size < f->count ? first + p->blocks.size : f->count;
-  const int64_t limit = (b + 1) * p->room < p->all ? (b + 1) * p->room : p->all;
+  const int64_t limit = (b + 1) * p->capacity < p->all ? (b + 1) * p->capacity : p->all;
   const double modified =
       f->report.surface > 0 && mpsi_fluid_has_coarse(f) ? MODIFIED_DEFLATED : MODIFIED;
-  int64_t at = b * p->room;
+  int64_t at = b * p->capacity;
   for (int64_t i = first; i < end; i++) {
     if (at + f->near[i] > limit) {
       atomic_store(&p->full, true);
@@ -113,7 +113,7 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
       s->inverse[i] = 1.0f, f->u_new[1][i] = -1.0;
     else
       at += lower_row(f, first, end, i, modified, s->lower_col + at, s->lower + at);
-    s->lower_end[i] = (int32_t)(at - b * p->room);
+    s->lower_end[i] = (int32_t)(at - b * p->capacity);
   }
 }
 
@@ -121,7 +121,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   mpsi_fluid_system *s = &f->system;
   factor_pass p = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
   for (;;) {
-    p.room = f->most_lower * p.blocks.size / 8;
+    p.capacity = f->most_lower * p.blocks.size / 8;
     p.all = f->most_lower * f->count / 8 + p.blocks.size;
     mps_status status = MPS_OK;
     if (!mpsi_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
@@ -145,7 +145,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
 typedef struct iteration {
   mps_fluid *fluid;
   mpsi_fluid_blocks blocks;
-  int64_t room;
+  int64_t capacity;
   double alpha, beta;
 } iteration;
 
@@ -179,8 +179,8 @@ static void start_block(void *data, int64_t b, int32_t worker) {
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   const int64_t first = b * it->blocks.size, end = end_of(it, b);
-  f->loops->forward(f, first, end, b * it->room, f->system.r);
-  f->system.sums[2 * b] = f->loops->descend(f, first, end, b * it->room, 0.0, 0.0);
+  f->loops->forward(f, first, end, b * it->capacity, f->system.r);
+  f->system.sums[2 * b] = f->loops->descend(f, first, end, b * it->capacity, 0.0, 0.0);
   if (f->coarse->used) mpsi_fluid_coarse_restrict(f, b, f->system.z);
 }
 
@@ -189,22 +189,23 @@ static void descend(void *data, int64_t b, int32_t worker) {
   mps_fluid *f = it->fluid;
   if (f->coarse->used)
     mpsi_fluid_coarse_deflate(f->coarse, b * it->blocks.size, end_of(it, b), f->system.z);
-  f->system.sums[2 * b] =
-      f->loops->descend(f, b * it->blocks.size, end_of(it, b), b * it->room, it->alpha, it->beta);
+  f->system.sums[2 * b] = f->loops->descend(f, b * it->blocks.size, end_of(it, b), b * it->capacity,
+                                            it->alpha, it->beta);
   if (f->coarse->used) mpsi_fluid_coarse_restrict(f, b, f->system.z);
 }
 
 static void rise(void *data, int64_t b, int32_t worker) {
   const iteration *it = data;
   mps_fluid *f = it->fluid;
-  f->system.sums[2 * b + 1] = f->loops->rise(f, b * it->blocks.size, end_of(it, b), b * it->room);
+  f->system.sums[2 * b + 1] =
+      f->loops->rise(f, b * it->blocks.size, end_of(it, b), b * it->capacity);
 }
 
 static void norm(void *data, int64_t b, int32_t worker) {
   const iteration *it = data;
   mps_fluid *f = it->fluid;
   f->system.sums[2 * b + 1] =
-      f->loops->norm(f, b * it->blocks.size, end_of(it, b), b * it->room, f->system.r);
+      f->loops->norm(f, b * it->blocks.size, end_of(it, b), b * it->capacity, f->system.r);
 }
 
 /* Iterates from the residual r, whose square is rr, until that is `enough`; counts in *done. The
@@ -245,7 +246,7 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   const double tolerance = f->def.tolerance;
   iteration it = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
-  it.room = f->most_lower * it.blocks.size / 8;
+  it.capacity = f->most_lower * it.blocks.size / 8;
   int64_t done = 0;
   for (double left = INFINITY;;) {
     mpsi_fluid_send_halo(f, 1, &s->x);

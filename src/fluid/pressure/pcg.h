@@ -4,6 +4,6 @@
 
 #include <mps/fluid.h>
 
-/* Solves for system.x, starting from what it holds; the number of iterations, or -1. */
+/* Solves for system.x, starting from its values; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
 int64_t mpsi_fluid_pcg(mps_fluid *fluid);

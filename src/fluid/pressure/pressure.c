@@ -2,7 +2,7 @@
  *
  *   sum w (q_j - q_i) + c (q_s - q_i) = S (rho/dt) (D - k/dt),  D = div u,
  *
- * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k holds the
+ * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k has the
  * density: .003 (n/n0 - 1), not below -.0003; near the surface only what is above 0 (Tanaka 2010,
  * Khayyer and Gotoh 2011). It is a rate in time: with steps below .05 (l0/g)^1/2 it is that much
  * less. And it is less by |n/n0 - 1|/.003 where that is below 1: waves change n slightly without

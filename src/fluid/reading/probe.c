@@ -276,7 +276,7 @@ mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
 static mps_status check_wall(const mps_fluid *f, const char *function, int32_t number) {
   if (!MPSI_FLUID_IS_BOUNDARY(f, number) || f->wall[number].open)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "the fluid has no boundary of number %d", number);
+                     "number is %d: there is no boundary of this number", number);
   return MPS_OK;
 }
 
@@ -480,7 +480,9 @@ mps_status mps_fluid_get_segments(const mps_fluid *f, int32_t number, int64_t ca
   const bool line = MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line;
   if (!line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number is %d, and only a polyline has segments", number);
+                     "number is %d: there is no polyline of this number, and other boundaries have "
+                     "no segments",
+                     number);
   if (capacity < 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                      (long long)capacity);

@@ -1,6 +1,6 @@
 /* implicit_solver.h - the implicit solver of thick elastic structures, put together from its parts:
  * each has a header of its own. Vectors over all particles are indexed [i * dim + c], i being the
- * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns hold the
+ * rank of the particle's id: sorting the set does not matter. Vectors of free unknowns are the
  * local directions that no support fixes. Arrays of the operator have the particles of the window
  * (ranks/partition.h), indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
 #pragma once

@@ -54,7 +54,9 @@ mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t side, const d
   if (!e) return mpsi_null(__func__, "elastic");
   if (side < MPS_SIDE_ANY || side >= 2 * e->dim)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "side is %d, allowed are MPS_SIDE_ANY (-1) and 0 to %d", side, 2 * e->dim - 1);
+                     "side is %s, allowed are MPS_SIDE_ANY and MPS_SIDE_X_LOWER to %s",
+                     mpsi_name_of("mps_side", side).text,
+                     mpsi_name_of("mps_side", 2 * e->dim - 1).text);
   if (capacity < 0)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "capacity is %lld, must be >= 0",
                      (long long)capacity);
@@ -153,17 +155,24 @@ mps_status mps_elastic_get_facets_sized(const mps_elastic *handle, const int64_t
   static const char function[] = "mps_elastic_get_facets";
   if (!e) return mpsi_null(__func__, "elastic");
   mps_elastic_facet_arrays a = {0};
-  if (!arrays || size == 0 || count < 0 || (!facets && count != e->facet_count))
+  if (!arrays || size == 0)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "arrays is NULL, or count is %lld (without a list of facets it must be %lld)",
-                     (long long)count, (long long)e->facet_count);
+                     arrays ? "size is 0, must be that of mps_elastic_facet_arrays"
+                            : "arrays is NULL");
+  if (!facets && count != e->facet_count)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld, must be %lld where facets is NULL (all)", (long long)count,
+                     (long long)e->facet_count);
+  if (count < 0)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
   mps_status status = mpsi_elastic_check_between(e, function);
   if (status != MPS_OK) return status;
   memcpy(&a, arrays, size < sizeof a ? size : sizeof a);
   for (int64_t k = 0; facets && k < count; k++)
     if (facets[k] < 0 || facets[k] >= e->facet_count)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "facets[%lld] is %lld, allowed are 0..%lld", (long long)k,
+                       "facets[%lld] is %lld, allowed are 0 to %lld", (long long)k,
                        (long long)facets[k], (long long)e->facet_count - 1);
   for (int64_t k = 0; k < count; k++) write_shape(e, &e->facets[facets ? facets[k] : k], k, &a);
   if (a.displacement)

@@ -30,11 +30,11 @@ static mps_status check(void *solver, const char *function, int32_t number, cons
   if (def->kind == MPS_BOUNDARY_ROLLER &&
       !(isfinite(length) && length > 1e-150)) /* its square must not underflow */
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "the length of normal is %g, must be finite and > 0", length);
+                     "normal has the length %g, must be finite and not zero", length);
   if (def->kind != MPS_BOUNDARY_ROLLER && (def->dofs & ~all))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u: a particle has only MPS_DOF_X, Y%s", def->dofs,
-                     e->dim == 3 ? ", Z" : "");
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y%s, or-ed, and 0 for all",
+                     def->dofs, e->dim == 3 ? ", MPS_DOF_Z" : "");
   return MPS_OK;
 }
 
@@ -117,13 +117,13 @@ static bool same_directions(const mps_elastic *e, const new_supports *s) {
 }
 
 mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
-  int64_t room = 0;
+  int64_t capacity = 0;
   for (int32_t k = 0; k < mpsi_elastic_boundary_count(e); k++)
-    if (mpsi_elastic_boundary_of(e, k)) room += mpsi_elastic_boundary_of(e, k)->def->id_count;
-  if (room > e->n) room = e->n;
+    if (mpsi_elastic_boundary_of(e, k)) capacity += mpsi_elastic_boundary_of(e, k)->def->id_count;
+  if (capacity > e->n) capacity = e->n;
   new_supports s = {.count = 0};
   mps_status status = MPS_OK;
-  if (!(s.supports = mpsi_alloc(e->context, room, sizeof *s.supports)) ||
+  if (!(s.supports = mpsi_alloc(e->context, capacity, sizeof *s.supports)) ||
       !(s.of = mpsi_alloc(e->context, e->n, sizeof *s.of)))
     status = mpsi_fail_memory(e->context, function, (size_t)e->n * sizeof *s.of);
   for (int64_t i = 0; s.of && i < e->n; i++) s.of[i] = -1;

@@ -54,7 +54,7 @@ static mps_status check_ids(void *solver, const char *function, const void *know
   for (int64_t k = 0; k < count; k++) {
     if (facets && (ids[k] < 0 || ids[k] >= e->facet_count))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, facets are 0..%lld", (long long)k, (long long)ids[k],
+                       "ids[%lld] is %lld, facets are 0 to %lld", (long long)k, (long long)ids[k],
                        (long long)e->facet_count - 1);
     if (!facets && mpsi_elastic_find(e, ids[k]) < 0)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,

@@ -72,8 +72,9 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
 static mps_status check_cut(const mps_elastic *e, const char *function, int32_t side,
                             const int64_t *ids, int64_t count) {
   if (side < 0 || side >= 2 * e->dim)
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "side is %d, allowed are 0 to %d",
-                     side, 2 * e->dim - 1);
+    return mpsi_fail(
+        e->context, function, MPS_ERROR_ARGUMENT, "side is %s, allowed are MPS_SIDE_X_LOWER to %s",
+        mpsi_name_of("mps_side", side).text, mpsi_name_of("mps_side", 2 * e->dim - 1).text);
   if (count < 0)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);

@@ -47,7 +47,7 @@ static double dot(const double *a, const double *b, int64_t n) {
   return sum;
 }
 
-/* x = A^-1 b; work holds r, z, p, q. */
+/* x = A^-1 b; work is r, z, p, q. */
 static mps_status iterate(const cg *s, const char *function, const double *b, double *x,
                           double *work, int64_t limit, int64_t *iterations) {
   mps_context *context = s->e->context;

@@ -74,7 +74,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
     if (e->def.solver != MPS_ELASTIC_SOLVER_AUTO)
       return mpsi_fail(e->context, function, MPS_ERROR_MEMORY,
                        "the factor takes %.4g bytes, memory_limit is %.4g: raise it, or set solver "
-                       "to AUTO or CG",
+                       "to MPS_ELASTIC_SOLVER_AUTO or _CG",
                        e->symbolic.bytes, e->def.memory_limit);
     e->use_cg = true;
     mpsi_cholesky_destroy(&e->cholesky);
@@ -132,8 +132,8 @@ static mps_status diagnose(mps_elastic *e, const char *function, int64_t bad) {
   const mps_status status = mpsi_fail(
       e->context, function, MPS_ERROR_NUMERIC,
       "the stiffness matrix is not positive definite at direction %d of particle %lld although the "
-      "supports hold every rigid motion: a part of the body is joined by too few particles, or the "
-      "stiffnesses differ by more than double precision can resolve",
+      "supports prevent every rigid motion: a part of the body is joined by too few particles, or "
+      "the stiffnesses differ by more than double precision can resolve",
       direction, (long long)e->id[particle]);
   mpsi_fail_where(e->context, -1, e->id[particle]);
   return status;
@@ -361,9 +361,12 @@ static mps_status solve_cases(mps_elastic *e, const char *function, int64_t coun
 
 static mps_status check_cases(const mps_elastic *e, const char *function, int64_t count,
                               const double *loads, const double *displacements) {
-  if (count < 0 || (count > 0 && (!loads || !displacements)))
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld (must be >= 0) or an array is NULL", (long long)count);
+  if (count < 0)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (count > 0 && (!loads || !displacements))
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     loads ? "displacements" : "loads");
   for (int64_t k = 0; k < count * e->n * 3; k++)
     if (k % 3 < e->dim && !isfinite(loads[k]))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,

@@ -211,7 +211,7 @@ void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
       sum.kinetic_before += 0.5 * m * before[c] * before[c];
       sum.kinetic += 0.5 * m * v[c] * v[c];
       sum.jump += 0.5 * m * (v[c] - before[c]) * (v[c] - before[c]);
-      sum.holds += m * (damped[k][MPSI_VECTOR + c] - held[k][MPSI_VECTOR + c]) * v[c];
+      sum.boundaries += m * (damped[k][MPSI_VECTOR + c] - held[k][MPSI_VECTOR + c]) * v[c];
       sum.damping += m * (v[c] - damped[k][MPSI_VECTOR + c]) * v[c];
     }
     count_contact(grid, contacts, dt, nodes, k, v, &sum);
@@ -282,7 +282,7 @@ static void add_nodes(const mpsi_grid *grid, mpsi_partition *partition, mpsi_ene
     if (partition && !mpsi_mpm_counts_node_block(grid, g)) continue;
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
-    mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, -e->boundaries);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_FRICTION_LOSS, e->surface - e->friction);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_DAMPING_LOSS, -e->damping);
   }

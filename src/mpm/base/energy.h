@@ -38,7 +38,7 @@ typedef struct mpsi_node_energy {
   double normal;   /* work of the normal forces of bodies */
   double friction; /* work of their friction on the nodes */
   double surface;  /* friction force times the velocity of the bodies */
-  double holds;    /* work of the boundaries' impulses on the nodes */
+  double boundaries; /* work of the boundaries' impulses on the nodes */
   double damping;  /* work of damping */
 } mpsi_node_energy;
 

@@ -1,5 +1,5 @@
 /* mpm_solver.h - the WLS-MPM solver as a whole, for public functions and the stages of a step: its
- * parts, and what the rooms below a step work on, made from it. SPDX-License-Identifier:
+ * parts, and what the subfolders below a step work on, made from it. SPDX-License-Identifier:
  * BSD-3-Clause */
 #pragma once
 

@@ -1,6 +1,6 @@
 /* parts.h - names of the parts of the solver, by which the arguments of functions say what these
  * read and write. A const part does not change, though the arrays that it points to may be written.
- * Each is defined in the header of its room. SPDX-License-Identifier: BSD-3-Clause */
+ * Each is defined in a header of its subfolder. SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
 typedef struct mpsi_columns mpsi_columns;             /* base/columns.h: particles and their laws */

@@ -21,30 +21,31 @@
 
 #include <string.h>
 
-void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *hold,
+void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *boundary,
                             mpsi_dashpot *dashpot, const double *node, const double *before,
                             double *velocity) {
   const double per_mass = dt / node[MPSI_MASS];
-  const bool settles = hold->finds && hold->settle > 0.0;
+  const bool settles = boundary->finds && boundary->settle > 0.0;
   for (int c = 0; c < grid->dim; c++) {
     const double v = node[MPSI_VECTOR + c],
-                 damping = c == hold->axis ? dashpot->across : dashpot->along;
+                 damping = c == boundary->axis ? dashpot->across : dashpot->along;
     if (settles) {
-      const double force = (hold->v[c] - v) / per_mass;
-      dashpot->rest[c] += (force - dashpot->rest[c]) * (dt / hold->found);
-      velocity[c] = hold->v[c];
+      const double force = (boundary->v[c] - v) / per_mass;
+      dashpot->rest[c] += (force - dashpot->rest[c]) * (dt / boundary->found);
+      velocity[c] = boundary->v[c];
       continue;
     }
-    if (hold->finds) dashpot->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
+    if (boundary->finds) dashpot->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
     /* implicit: stable for every dt */
     velocity[c] =
-        (v + per_mass * (dashpot->rest[c] + damping * hold->v[c])) / (1.0 + per_mass * damping);
+        (v + per_mass * (dashpot->rest[c] + damping * boundary->v[c])) / (1.0 + per_mass * damping);
   }
 }
 
 bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries) {
   bool any = false;
-  for (int32_t k = 0; k < MPSI_SIDES; k++) any = any || mpsi_kind_of(&boundaries->hold[k])->absorbs;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    any = any || mpsi_kind_of(&boundaries->boundary[k])->absorbs;
   return any;
 }
 
@@ -76,9 +77,9 @@ static mpsi_dashpot *dashpot_of(const mpsi_grid *grid, const mpsi_boundaries *bo
                                 int32_t number, int64_t node) {
   const mpsi_node_block *nodes = &grid->nodes[node / grid->block_nodes];
   int32_t t = nodes->first_held;
-  while (boundaries->held[t].hold != number) t++;
+  while (boundaries->held[t].boundary != number) t++;
   return &boundaries->dashpot[boundaries->held[t].dashpot +
-                              mpsi_plane_index(boundaries->hold[number].axis,
+                              mpsi_plane_index(boundaries->boundary[number].axis,
                                                (int)(node % grid->block_nodes))];
 }
 
@@ -91,7 +92,7 @@ static int tile_plane_index(int axis, const int *at) {
 static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                          int32_t number, int64_t k, double part, double (*tile)[2]) {
-  const int axis = boundaries->hold[number].axis;
+  const int axis = boundaries->boundary[number].axis;
   const double per_area = part * p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
   double wave, shear;
   mpsi_mpm_saturated(p, k, &wave, &shear);
@@ -100,7 +101,7 @@ static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};
   for (int c = 0; c < grid->dim; c++)
     if (c == axis)
-      base[c] = boundaries->hold[number].first[c];
+      base[c] = boundaries->boundary[number].first[c];
     else
       fit_along(grid, c, mpsi_grid_at(grid, c, p->x[c][k]), &base[c], phi[c]);
   for (int n = 0; n < MPSI_STENCIL; n++) {
@@ -118,9 +119,9 @@ static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
 bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                            int32_t number, double (*tile)[2]) {
-  const int c = boundaries->hold[number].axis;
+  const int c = boundaries->boundary[number].axis;
   /* layer of cells at the wall */
-  const int64_t layer = boundaries->hold[number].first[c] - number % 2;
+  const int64_t layer = boundaries->boundary[number].first[c] - number % 2;
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
@@ -133,12 +134,12 @@ bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
 
 static void add_tile(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                      const mpsi_cell_block *cells, int32_t number, const double *tile) {
-  const mpsi_boundary *hold = &boundaries->hold[number];
-  const int axis = hold->axis, planes = grid->dim == 3 ? MPSI_TILE_SIDE : 1;
+  const mpsi_boundary *boundary = &boundaries->boundary[number];
+  const int axis = boundary->axis, planes = grid->dim == 3 ? MPSI_TILE_SIDE : 1;
   for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
     const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
     int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
-    at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
+    at[axis] = (int)(boundary->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
     if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
     mpsi_dashpot *dashpot =
         dashpot_of(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]));
@@ -168,7 +169,7 @@ static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   for (int c = 2; c >= 0; c--)
     if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
-  return (a->hold > b->hold) - (a->hold < b->hold);
+  return (a->boundary > b->boundary) - (a->boundary < b->boundary);
 }
 
 void mpsi_mpm_carry_dashpots(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
@@ -192,7 +193,7 @@ void mpsi_mpm_find_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
   mpsi_dashpot *all = boundaries->dashpot;
   for (int64_t k = 0; k < boundaries->dashpot_count; k++) all[k].across = all[k].along = 0.0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (mpsi_kind_of(&boundaries->hold[k])->absorbs) add_wall(grid, p, boundaries, ranks, k);
+    if (mpsi_kind_of(&boundaries->boundary[k])->absorbs) add_wall(grid, p, boundaries, ranks, k);
   for (int64_t k = 0; k < boundaries->dashpot_count; k++) { /* fits can be negative */
     all[k].across = fmax(all[k].across, 0.0);
     all[k].along = fmax(all[k].along, 0.0);

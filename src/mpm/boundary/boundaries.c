@@ -52,23 +52,27 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
   const mpsi_selection selection = MPSI_SELECTION(def, grid->dim);
   if (mpsi_selection_given(&selection) || def->dofs != 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "ids, id_count (%lld), lower, upper, all (%d) and dofs (%u) are not for sides "
-                     "of the domain",
-                     (long long)def->id_count, def->all, def->dofs);
+                     "%s given, and a side of the domain is whole: no ids, box, all or dofs",
+                     def->dofs  ? "dofs is"
+                     : def->all ? "all is"
+                     : def->ids ? "ids is"
+                                : "a box (lower, upper) is");
   if (grid->standard && def->kind == MPS_BOUNDARY_ABSORBING)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is 4 (ABSORBING), which the standard method does not allow: its splines "
-                     "reach over the side");
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "kind is MPS_BOUNDARY_ABSORBING, which the standard method does not allow: its "
+        "splines reach over the side");
   if (on_axis(grid, definition, number) && (def->kind > MPS_BOUNDARY_ROLLER || def->signal[0]))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %s with signal[0] %s on the axis r = 0: allowed are HELD, DRIVEN and "
-                     "ROLLER, without a signal[0], as the radial velocity is 0",
-                     mpsi_boundary_kind_name(def->kind), def->signal[0] ? "given" : "NULL");
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "kind is %s with signal[0] %s on the axis r = 0: allowed are MPS_BOUNDARY_HELD, "
+        "_DRIVEN and _ROLLER, without a signal[0], as the radial velocity is 0",
+        mpsi_name_of("mps_boundary_kind", def->kind).text, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < grid->dim; c++)
     if (def->signal[c] && def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "signal[%d] is given, and a side of the kind ROLLER does not hold that "
-                       "component",
+                       "signal[%d] is given, and a side of kind MPS_BOUNDARY_ROLLER prescribes the "
+                       "component across it alone",
                        c);
   return check_motion(context, grid, run, function, number, def);
 }
@@ -103,12 +107,13 @@ static mps_status check_prescribed(const mpsi_boundary_setup *setup, const char 
   const uint32_t all = grid->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d (%s), boxes of nodes and particles are 0 (HELD) or 1 (DRIVEN)",
-                     def->kind, mpsi_boundary_kind_name(def->kind));
+                     "kind is %s, boxes of nodes and particles are MPS_BOUNDARY_HELD or "
+                     "MPS_BOUNDARY_DRIVEN",
+                     mpsi_name_of("mps_boundary_kind", def->kind).text);
   if (def->dofs & ~all)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
-                     grid->dim == 3 ? ", MPS_DOF_Z" : "");
+                     "dofs is %u, allowed are MPS_DOF_X, MPS_DOF_Y%s, or-ed, and 0 for all",
+                     def->dofs, grid->dim == 3 ? ", MPS_DOF_Z" : "");
   return check_motion(context, grid, setup->run, function, number, def);
 }
 
@@ -123,95 +128,92 @@ mps_status mpsi_mpm_check_boundary(const mpsi_boundary_setup *setup, const char 
 
 static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int32_t number,
                        int32_t kind) {
-  mpsi_boundary *hold = &boundaries->hold[number];
+  mpsi_boundary *boundary = &boundaries->boundary[number];
   const int axis = number / 2;
-  hold->axis = axis;
+  boundary->axis = axis;
   /* the standard scheme has nodes beyond the side too */
   const int64_t beyond = grid->standard ? MPSI_SIDE : 0;
   const int64_t inwards = mpsi_boundary_kinds[kind].column ? MPSI_FIELD_PLANES - 1 : 0;
   for (int c = 0; c < grid->dim; c++)
-    hold->first[c] = grid->low[c] - beyond, hold->last[c] = grid->high[c] + beyond;
+    boundary->first[c] = grid->low[c] - beyond, boundary->last[c] = grid->high[c] + beyond;
   if (number % 2)
-    hold->first[axis] = grid->high[axis] - inwards;
+    boundary->first[axis] = grid->high[axis] - inwards;
   else
-    hold->last[axis] = grid->low[axis] + inwards;
-  hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
-  hold->finds = mpsi_boundary_kinds[kind].absorbs;
-  hold->found = 0.0;
-  hold->kind = kind == MPS_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
+    boundary->last[axis] = grid->low[axis] + inwards;
+  boundary->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
+  boundary->finds = mpsi_boundary_kinds[kind].absorbs;
+  boundary->found = 0.0;
+  boundary->kind = kind == MPS_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
 }
 
 /* Memory for the sums of a boundary, which stays with its number. */
-static bool make_sums(mps_context *context, mpsi_boundary *hold) {
-  if (!hold->sums) hold->sums = mpsi_alloc(context, 1, sizeof *hold->sums);
-  return hold->sums != NULL;
+static bool make_sums(mps_context *context, mpsi_boundary *boundary) {
+  if (!boundary->sums) boundary->sums = mpsi_alloc(context, 1, sizeof *boundary->sums);
+  return boundary->sums != NULL;
 }
 
 bool mpsi_mpm_begin_sides(mps_context *context, const mpsi_grid *grid,
                           mpsi_boundaries *boundaries) {
   bool good = true;
-  boundaries->hold = boundaries->hold_room.item;
-  boundaries->holds = MPSI_SIDES;
-  for (int32_t k = 0; k < MPSI_SIDES; k++) boundaries->hold[k].kind = MPSI_BOUNDARY_NONE;
+  boundaries->boundary = boundaries->boundary_room.item;
+  boundaries->count = MPSI_SIDES;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) boundaries->boundary[k].kind = MPSI_BOUNDARY_NONE;
   for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
     if (!mpsi_mpm_has_side(grid, k)) continue;
     place_side(grid, boundaries, k, MPS_BOUNDARY_ROLLER);
-    good = make_sums(context, &boundaries->hold[k]);
+    good = make_sums(context, &boundaries->boundary[k]);
   }
   return good;
 }
 
 mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
                                 mpsi_boundaries *boundaries, const char *function) {
-  mpsi_boundary *hold = boundaries->hold;
+  mpsi_boundary *boundary = boundaries->boundary;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind == MPS_BOUNDARY_ABSORBING)
+    if (boundary[k].kind == MPS_BOUNDARY_ABSORBING || boundary[k].kind == MPS_BOUNDARY_FREE_FIELD)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "mpm: boundary %d is absorbing, which the standard method does not allow",
-                       k);
-    else if (hold[k].kind == MPS_BOUNDARY_FREE_FIELD)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "mpm: boundary %d is of kind 5 (FREE_FIELD), which the standard method does "
-                       "not allow",
-                       k);
+                       "mpm: %s is of kind %s, which the standard method does not allow",
+                       mpsi_name_of("mps_side", k).text,
+                       mpsi_name_of("mps_boundary_kind", boundary[k].kind).text);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(grid, boundaries, k, hold[k].kind);
+    if (boundary[k].kind != MPSI_BOUNDARY_NONE) place_side(grid, boundaries, k, boundary[k].kind);
   boundaries->outdated = true;
   return MPS_OK;
 }
 
-static void take_numbers(mpsi_boundary *hold, const mps_mpm_boundary_def *def) {
-  hold->friction = def->friction;
-  hold->settle = def->settle;
-  for (int c = 0; c < 3; c++) hold->signal[c] = def->signal[c], hold->factor[c] = def->factor[c];
+static void take_numbers(mpsi_boundary *boundary, const mps_mpm_boundary_def *def) {
+  boundary->friction = def->friction;
+  boundary->settle = def->settle;
+  for (int c = 0; c < 3; c++)
+    boundary->signal[c] = def->signal[c], boundary->factor[c] = def->factor[c];
 }
 
-static void drop(mps_context *context, mpsi_boundary *hold) {
+static void drop(mps_context *context, mpsi_boundary *boundary) {
   const mps_mpm_boundary_def rest = mps_mpm_boundary_defaults();
-  take_numbers(hold, &rest);
-  mpsi_mpm_free_field_free(context, &hold->field);
-  hold->ids = NULL;
-  hold->id_count = 0;
-  hold->kind = MPSI_BOUNDARY_NONE;
+  take_numbers(boundary, &rest);
+  mpsi_mpm_free_field_free(context, &boundary->field);
+  boundary->ids = NULL;
+  boundary->id_count = 0;
+  boundary->kind = MPSI_BOUNDARY_NONE;
 }
 
 void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *boundaries) {
-  for (int32_t k = 0; k < boundaries->holds; k++) {
-    drop(context, &boundaries->hold[k]);
-    mpsi_free(context, boundaries->hold[k].sums);
+  for (int32_t k = 0; k < boundaries->count; k++) {
+    drop(context, &boundaries->boundary[k]);
+    mpsi_free(context, boundaries->boundary[k].sums);
   }
-  mpsi_free(context, boundaries->hold_room.item);
+  mpsi_free(context, boundaries->boundary_room.item);
 }
 
 /* Memory for boundary `number`. */
 static mps_status reserve(mps_context *context, mpsi_boundaries *b, const char *function,
                           int32_t number) {
-  if (!mpsi_room_keep(context, &b->hold_room, number + 1, sizeof *b->hold))
-    return mpsi_fail_memory(context, function, (size_t)(number + 1) * sizeof *b->hold);
-  b->hold = b->hold_room.item;
-  while (b->holds <= number) b->hold[b->holds++].kind = MPSI_BOUNDARY_NONE;
-  if (make_sums(context, &b->hold[number])) return MPS_OK;
-  return mpsi_fail_memory(context, function, sizeof *b->hold->sums);
+  if (!mpsi_room_keep(context, &b->boundary_room, number + 1, sizeof *b->boundary))
+    return mpsi_fail_memory(context, function, (size_t)(number + 1) * sizeof *b->boundary);
+  b->boundary = b->boundary_room.item;
+  while (b->count <= number) b->boundary[b->count++].kind = MPSI_BOUNDARY_NONE;
+  if (make_sums(context, &b->boundary[number])) return MPS_OK;
+  return mpsi_fail_memory(context, function, sizeof *b->boundary->sums);
 }
 
 mps_status mpsi_mpm_make_boundary(const mpsi_boundary_setup *setup, const char *function,
@@ -244,45 +246,45 @@ static mps_status make_field(const mpsi_boundary_setup *setup, const char *funct
 
 static mps_status set_side(const mpsi_boundary_setup *setup, const char *function, int32_t number,
                            const mps_mpm_boundary_def *def) {
-  mpsi_boundary *hold = &setup->boundaries->hold[number];
+  mpsi_boundary *boundary = &setup->boundaries->boundary[number];
   mpsi_free_field *field = NULL;
   MPSI_TRY(
       mpsi_mpm_check_beside_field(setup->context, setup->boundaries, function, number, def->kind));
   if (def->kind == MPS_BOUNDARY_FREE_FIELD) MPSI_TRY(make_field(setup, function, number, &field));
-  mpsi_mpm_free_field_free(setup->context, &hold->field);
-  hold->field = field;
+  mpsi_mpm_free_field_free(setup->context, &boundary->field);
+  boundary->field = field;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
   const int32_t kind = def->kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def->kind;
-  if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {
+  if (boundary->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {
     place_side(setup->grid, setup->boundaries, number, kind);
     setup->boundaries->outdated = setup->boundaries->renew = true;
   }
-  take_numbers(hold, def);
+  take_numbers(boundary, def);
   return MPS_OK;
 }
 
 /* The boundary `number` becomes one of a box or a list of particles. */
 static void set_prescribed(mpsi_boundaries *boundaries, int32_t number, const mpsi_boundary *made,
                            const mps_mpm_boundary_def *def) {
-  mpsi_boundary *hold = &boundaries->hold[number];
-  const bool is_new = hold->kind == MPSI_BOUNDARY_NONE;
-  if (is_new || made->ids || hold->ids ||
-      memcmp(made->first, hold->first, sizeof made->first) != 0 ||
-      memcmp(made->last, hold->last, sizeof made->last) != 0)
+  mpsi_boundary *boundary = &boundaries->boundary[number];
+  const bool is_new = boundary->kind == MPSI_BOUNDARY_NONE;
+  if (is_new || made->ids || boundary->ids ||
+      memcmp(made->first, boundary->first, sizeof made->first) != 0 ||
+      memcmp(made->last, boundary->last, sizeof made->last) != 0)
     boundaries->outdated = true;
-  hold->kind = made->kind;
-  hold->dofs = made->dofs;
-  hold->ids = made->ids;
-  hold->id_count = made->id_count;
-  memcpy(hold->first, made->first, sizeof made->first);
-  memcpy(hold->last, made->last, sizeof made->last);
-  take_numbers(hold, def);
+  boundary->kind = made->kind;
+  boundary->dofs = made->dofs;
+  boundary->ids = made->ids;
+  boundary->id_count = made->id_count;
+  memcpy(boundary->first, made->first, sizeof made->first);
+  memcpy(boundary->last, made->last, sizeof made->last);
+  take_numbers(boundary, def);
   if (!is_new) return;
   /* work of a former boundary with this number */
-  mpsi_exact_merge(&boundaries->work, &hold->sums->all[MPSI_BOUNDARY_WORK]);
-  mpsi_exact_merge(&boundaries->work, &hold->sums->step[MPSI_BOUNDARY_WORK]);
-  memset(hold->sums, 0, sizeof *hold->sums);
-  hold->count = hold->removed = 0;
+  mpsi_exact_merge(&boundaries->work, &boundary->sums->all[MPSI_BOUNDARY_WORK]);
+  mpsi_exact_merge(&boundaries->work, &boundary->sums->step[MPSI_BOUNDARY_WORK]);
+  memset(boundary->sums, 0, sizeof *boundary->sums);
+  boundary->count = boundary->removed = 0;
 }
 
 mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *function,
@@ -297,26 +299,26 @@ mps_status mpsi_mpm_remove_boundary(const mpsi_boundary_setup *setup, const char
                                     int32_t number) {
   if (on_axis(setup->grid, setup->def, number))
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "number: boundary is 0, the axis r = 0, which cannot be free");
-  drop(setup->context, &setup->boundaries->hold[number]);
+                     "number is MPS_SIDE_X_LOWER, the axis r = 0, which cannot be free");
+  drop(setup->context, &setup->boundaries->boundary[number]);
   setup->boundaries->outdated = true;
   return MPS_OK;
 }
 
-void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
-                                   double work, int64_t count) {
+void mpsi_mpm_boundary_add_impulse(mpsi_boundary *boundary, const double *impulse,
+                                   const double *moment, double work, int64_t count) {
   for (int c = 0; c < 3; c++) {
-    mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_IMPULSE + c], impulse[c]);
-    mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_MOMENT + c], moment[c]);
+    mpsi_exact_add(&boundary->sums->step[MPSI_BOUNDARY_IMPULSE + c], impulse[c]);
+    mpsi_exact_add(&boundary->sums->step[MPSI_BOUNDARY_MOMENT + c], moment[c]);
   }
-  mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_WORK], work);
-  hold->count += count;
+  mpsi_exact_add(&boundary->sums->step[MPSI_BOUNDARY_WORK], work);
+  boundary->count += count;
 }
 
 void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *sum) {
   mpsi_exact_merge(sum, &boundaries->work);
-  for (int32_t k = 0; k < boundaries->holds; k++) {
-    const mpsi_boundary_sums *sums = boundaries->hold[k].sums;
+  for (int32_t k = 0; k < boundaries->count; k++) {
+    const mpsi_boundary_sums *sums = boundaries->boundary[k].sums;
     if (!sums) continue;
     mpsi_exact_merge(sum, &sums->all[MPSI_BOUNDARY_WORK]);
     mpsi_exact_merge(sum, &sums->step[MPSI_BOUNDARY_WORK]);
@@ -325,10 +327,11 @@ void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *
 
 /* Sums over all ranks: of the last step, and since the boundary was made. */
 static mps_status sum_ranks(mpsi_partition *partition, const char *function,
-                            const mpsi_boundary *hold, mpsi_boundary_sums *out, int64_t *counts) {
-  *out = *hold->sums;
+                            const mpsi_boundary *boundary, mpsi_boundary_sums *out,
+                            int64_t *counts) {
+  *out = *boundary->sums;
   for (int k = 0; k < MPSI_BOUNDARY_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
-  counts[0] = hold->count, counts[1] = hold->removed;
+  counts[0] = boundary->count, counts[1] = boundary->removed;
   if (!partition) return MPS_OK;
   MPSI_TRY(mpsi_domain_sum(partition->domain, function, 2, counts));
   return mpsi_domain_sum_exact(partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1, out->step);
@@ -341,7 +344,8 @@ mps_status mpsi_mpm_find_reaction(const mpsi_boundary_setup *setup, const char *
   if (setup->partition)
     status = mpsi_domain_agree_same(setup->partition->domain, function, status, "number", number);
   if (status != MPS_OK) return status;
-  MPSI_TRY(sum_ranks(setup->partition, function, &setup->boundaries->hold[number], &sums, counts));
+  MPSI_TRY(
+      sum_ranks(setup->partition, function, &setup->boundaries->boundary[number], &sums, counts));
   const double rate = setup->run->dt > 0.0 ? 1.0 / setup->run->dt : 0.0;
   *out = (mps_reaction){.count = counts[0],
                         .removed = counts[1],

@@ -56,21 +56,21 @@ typedef struct mpsi_range {
 } mpsi_range;
 
 /* Range in the block at `at`; false: none of its nodes. */
-static inline bool mpsi_find_range(int dim, const int32_t *at, const mpsi_boundary *hold,
+static inline bool mpsi_find_range(int dim, const int32_t *at, const mpsi_boundary *boundary,
                                    mpsi_range *out) {
   for (int c = 0; c < 3; c++) {
     const int64_t first = (int64_t)at[c] * MPSI_SIDE;
     const int64_t last = first + (c < dim ? MPSI_SIDE - 1 : 0);
-    if (hold->first[c] > last || hold->last[c] < first) return false;
-    out->low[c] = hold->first[c] > first ? (int)(hold->first[c] - first) : 0;
-    out->high[c] = (int)((hold->last[c] < last ? hold->last[c] : last) - first);
+    if (boundary->first[c] > last || boundary->last[c] < first) return false;
+    out->low[c] = boundary->first[c] > first ? (int)(boundary->first[c] - first) : 0;
+    out->high[c] = (int)((boundary->last[c] < last ? boundary->last[c] : last) - first);
   }
   return true;
 }
 
 /* A boundary condition on the nodes of one block. */
 typedef struct mpsi_held {
-  int32_t hold, at[3];          /* at: coordinates of the block */
+  int32_t boundary, at[3];      /* at: coordinates of the block */
   int64_t dashpot;              /* absorbing: first of its plane's dashpots, else -1 */
   double impulse[3], moment[3]; /* N s, N m s, of the step being made */
   double work;                  /* J, likewise */
@@ -80,9 +80,9 @@ typedef struct mpsi_held {
 } mpsi_held;
 
 typedef struct mpsi_boundaries {
-  mpsi_boundary *hold; /* by number: the sides, then added boundaries */
-  int32_t holds;       /* numbers in use, with those of removed boundaries */
-  mpsi_room hold_room;
+  mpsi_boundary *boundary; /* by number: the sides, then added boundaries */
+  int32_t count;           /* numbers in use, with those of removed boundaries */
+  mpsi_room boundary_room;
   mpsi_held *held;
   mpsi_dashpot *dashpot;
   int64_t held_count, dashpot_count;
@@ -155,8 +155,8 @@ void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
                             const mpsi_dashpot *dashpot);
 /* walls.c: adds dt to the time at rest of absorbing sides. */
 void mpsi_mpm_begin_boundaries(const mpsi_boundaries *boundaries, double dt);
-void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
-                                   double work, int64_t count);
+void mpsi_mpm_boundary_add_impulse(mpsi_boundary *boundary, const double *impulse,
+                                   const double *moment, double work, int64_t count);
 /* boundaries.c: adds the work (J) of all boundaries. */
 void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *sum);
 /* walls.c: sets the impulses on the nodes of a block to zero, before the boundaries act. */
@@ -167,17 +167,17 @@ void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *bo
                                 const mpsi_mirrors *mirrors, double dt, int64_t g);
 /* Normal impulses (N s) of frictional sides at the nodes of a block. */
 typedef double mpsi_side_impulses[MPSI_SIDES][MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
-/* walls.c: applies all boundaries to the nodes of a block. `room`: for its use, with any contents.
- * `fixed`: of each node, bit c where a boundary alone determines component c; not written where
- * none acts. */
+/* walls.c: applies all boundaries to the nodes of a block. `scratch`: for its use, with any
+ * contents. `fixed`: of each node, bit c where a boundary alone determines component c; not written
+ * where none acts. */
 void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
-                              int64_t g, mpsi_side_impulses room, uint8_t *fixed);
+                              int64_t g, mpsi_side_impulses scratch, uint8_t *fixed);
 void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
                              const mpsi_mirrors *mirrors, mpsi_energy *energy);
 /* boundaries.c: rollers on the sides of a new solver; frees all boundaries. */
 bool mpsi_mpm_begin_sides(
     mps_context *context, const mpsi_grid *grid,
-    mpsi_boundaries *boundaries); /* hold_room has memory for them; false: no memory */
+    mpsi_boundaries *boundaries); /* boundary_room has memory for them; false: no memory */
 void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *boundaries);
 /* boundaries.c: extends the sides to the nodes beyond them, which the standard method has. */
 mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
@@ -209,7 +209,7 @@ mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_boundaries *boundaries, mpsi_partition *partition,
                                   const char *function, const mpsi_value *blocks,
                                   mpsi_value *dashpots);
-void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *hold,
+void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *boundary,
                             mpsi_dashpot *dashpot, const double *node, const double *before,
                             double *velocity);
 /* outflow.c: memory for the marks of removed particles, where sides are open or bodies remove

@@ -4,13 +4,13 @@
 #include "corners.h"
 #include "mpm/contact/thin_bodies.h"
 
-double mpsi_mpm_corner_share(int32_t count, const mpsi_boundary *const *hold, uint32_t some, int c,
-                             int32_t s) {
+double mpsi_mpm_corner_share(int32_t count, const mpsi_boundary *const *boundary, uint32_t some,
+                             int c, int32_t s) {
   int32_t members = 0, across = -1;
   for (int32_t k = 0; k < count; k++) {
     if (!(some >> k & 1)) continue;
     members++;
-    if (hold[k]->axis == c) across = k;
+    if (boundary[k]->axis == c) across = k;
   }
   if (!(some >> s & 1)) return 0.0;
   if (across >= 0) return s == across ? 1.0 : 0.0;
@@ -19,69 +19,70 @@ double mpsi_mpm_corner_share(int32_t count, const mpsi_boundary *const *hold, ui
 
 /* ---- dashpots -------------------------------------------------------------------------------- */
 
-static double damping_of(const mpsi_boundary *hold, const mpsi_dashpot *dashpot, int c) {
-  return c == hold->axis ? dashpot->across : dashpot->along;
+static double damping_of(const mpsi_boundary *boundary, const mpsi_dashpot *dashpot, int c) {
+  return c == boundary->axis ? dashpot->across : dashpot->along;
 }
 
-static void hold_component(double dt, double per_mass, int32_t count,
-                           const mpsi_boundary *const *hold, mpsi_dashpot *const *dashpot,
-                           uint32_t settle, int c, double *v, double (*force)[3]) {
+static void prescribe_component(double dt, double per_mass, int32_t count,
+                                const mpsi_boundary *const *boundary, mpsi_dashpot *const *dashpot,
+                                uint32_t settle, int c, double *v, double (*force)[3]) {
   double target = 0.0;
   for (int32_t s = 0; s < count; s++)
-    target += mpsi_mpm_corner_share(count, hold, settle, c, s) * hold[s]->v[c];
+    target += mpsi_mpm_corner_share(count, boundary, settle, c, s) * boundary[s]->v[c];
   double rest = (target - *v) / per_mass;
   for (int32_t s = 0; s < count; s++) {
     if (settle >> s & 1) continue;
     force[s][c] =
-        dashpot[s]->rest[c] + damping_of(hold[s], dashpot[s], c) * (hold[s]->v[c] - target);
+        dashpot[s]->rest[c] + damping_of(boundary[s], dashpot[s], c) * (boundary[s]->v[c] - target);
     rest -= force[s][c];
   }
   for (int32_t s = 0; s < count; s++) {
     if (!(settle >> s & 1)) continue;
-    force[s][c] = mpsi_mpm_corner_share(count, hold, settle, c, s) * rest;
-    dashpot[s]->rest[c] += (force[s][c] - dashpot[s]->rest[c]) * (dt / hold[s]->found);
+    force[s][c] = mpsi_mpm_corner_share(count, boundary, settle, c, s) * rest;
+    dashpot[s]->rest[c] += (force[s][c] - dashpot[s]->rest[c]) * (dt / boundary[s]->found);
   }
   *v = target;
 }
 
 /* Forces at rest of the sides that find them in this step: what the others leave of the forces at
  * the node. */
-static void find_rest(int32_t count, const mpsi_boundary *const *hold, mpsi_dashpot *const *dashpot,
-                      uint32_t finds, int c, double balance) {
+static void find_rest(int32_t count, const mpsi_boundary *const *boundary,
+                      mpsi_dashpot *const *dashpot, uint32_t finds, int c, double balance) {
   for (int32_t s = 0; s < count; s++)
     if (!(finds >> s & 1)) balance -= dashpot[s]->rest[c];
   for (int32_t s = 0; s < count; s++)
     if (finds >> s & 1)
-      dashpot[s]->rest[c] = mpsi_mpm_corner_share(count, hold, finds, c, s) * balance;
+      dashpot[s]->rest[c] = mpsi_mpm_corner_share(count, boundary, finds, c, s) * balance;
 }
 
-void mpsi_mpm_apply_dashpots(int dim, double dt, int32_t count, const mpsi_boundary *const *hold,
-                             mpsi_dashpot *const *dashpot, const double *node, const double *before,
-                             double *v, double (*force)[3]) {
+void mpsi_mpm_apply_dashpots(int dim, double dt, int32_t count,
+                             const mpsi_boundary *const *boundary, mpsi_dashpot *const *dashpot,
+                             const double *node, const double *before, double *v,
+                             double (*force)[3]) {
   const double per_mass = dt / node[MPSI_MASS];
   uint32_t settle = 0, finds = 0;
   for (int32_t s = 0; s < count; s++) {
-    if (hold[s]->finds && hold[s]->settle > 0.0) settle |= 1u << s;
-    if (hold[s]->finds && !(hold[s]->settle > 0.0)) finds |= 1u << s;
+    if (boundary[s]->finds && boundary[s]->settle > 0.0) settle |= 1u << s;
+    if (boundary[s]->finds && !(boundary[s]->settle > 0.0)) finds |= 1u << s;
   }
   for (int c = 0; c < dim; c++) {
     v[c] = node[MPSI_VECTOR + c];
     if (finds)
-      find_rest(count, hold, dashpot, finds, c, before ? (before[c] - v[c]) / per_mass : 0.0);
+      find_rest(count, boundary, dashpot, finds, c, before ? (before[c] - v[c]) / per_mass : 0.0);
     if (settle) {
-      hold_component(dt, per_mass, count, hold, dashpot, settle, c, &v[c], force);
+      prescribe_component(dt, per_mass, count, boundary, dashpot, settle, c, &v[c], force);
       continue;
     }
     double push = 0.0, damping = 0.0;
     for (int32_t s = 0; s < count; s++) {
-      const double own = damping_of(hold[s], dashpot[s], c);
-      push += dashpot[s]->rest[c] + own * hold[s]->v[c];
+      const double own = damping_of(boundary[s], dashpot[s], c);
+      push += dashpot[s]->rest[c] + own * boundary[s]->v[c];
       damping += own;
     }
     v[c] = (v[c] + per_mass * push) / (1.0 + per_mass * damping); /* implicit, as in absorb.c */
     for (int32_t s = 0; s < count; s++)
       force[s][c] =
-          dashpot[s]->rest[c] + damping_of(hold[s], dashpot[s], c) * (hold[s]->v[c] - v[c]);
+          dashpot[s]->rest[c] + damping_of(boundary[s], dashpot[s], c) * (boundary[s]->v[c] - v[c]);
   }
 }
 

@@ -23,7 +23,7 @@ static void pack(void *data, int64_t b, int32_t worker, double *message) {
   for (int32_t side = 0; side < MPSI_SIDES; side++, message += plane_doubles(grid)) {
     double tile[MPSI_DASH_PLANE][2];
     memset(message, 0, bytes);
-    if (mpsi_kind_of(&setup->boundaries->hold[side])->absorbs &&
+    if (mpsi_kind_of(&setup->boundaries->boundary[side])->absorbs &&
         mpsi_mpm_sum_dashpots(grid, setup->p, setup->boundaries, &grid->cells[b], side, tile))
       memcpy(message, tile, bytes);
   }
@@ -47,7 +47,7 @@ mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const ch
 
 /* Head of a record of the dashpots of a block of nodes; those of its plane follow. */
 typedef struct place {
-  int32_t at[3], hold;
+  int32_t at[3], boundary;
 } place;
 
 typedef struct sending {
@@ -90,7 +90,7 @@ static int64_t list_sendings(const mpsi_grid *grid, mpsi_partition *partition, c
 
 static void write_record(const mpsi_grid *grid, const mpsi_held *held, const mpsi_dashpot *dashpot,
                          char *to) {
-  const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
+  const place at = {{held->at[0], held->at[1], held->at[2]}, held->boundary};
   memcpy(to, &at, sizeof at);
   to += sizeof at;
   memcpy(to, &dashpot[held->dashpot], (size_t)plane_nodes(grid) * sizeof *dashpot);
@@ -100,7 +100,7 @@ static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const c
   place at;
   memcpy(&at, from, sizeof at);
   from += sizeof at;
-  mpsi_held key = {.hold = at.hold};
+  mpsi_held key = {.boundary = at.boundary};
   memcpy(key.at, at.at, sizeof key.at);
   int64_t low;
   MPSI_BISECT(low, b->held_count, middle, mpsi_mpm_compare_held(&b->held[middle], &key) < 0);
@@ -166,8 +166,8 @@ static int by_place(const void *left, const void *right) {
   place p, q;
   memcpy(&p, left, sizeof p);
   memcpy(&q, right, sizeof q);
-  memcpy(a.at, p.at, sizeof a.at), a.hold = p.hold;
-  memcpy(b.at, q.at, sizeof b.at), b.hold = q.hold;
+  memcpy(a.at, p.at, sizeof a.at), a.boundary = p.boundary;
+  memcpy(b.at, q.at, sizeof b.at), b.boundary = q.boundary;
   return mpsi_mpm_compare_held(&a, &b);
 }
 
@@ -177,7 +177,7 @@ static int64_t fill_rows(const mpsi_boundaries *b, int64_t row, char *to) {
     const mpsi_held *held = &b->held[t];
     if (held->dashpot < 0 || !held->counted) continue;
     if (to) {
-      const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
+      const place at = {{held->at[0], held->at[1], held->at[2]}, held->boundary};
       memcpy(to + rows * row, &at, sizeof at);
       memcpy(to + rows * row + sizeof at, b->dashpot + held->dashpot, (size_t)row - sizeof at);
     }
@@ -265,9 +265,10 @@ mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
   const int64_t count = list_under(grid, partition, blocks, nodes);
   for (int64_t g = 0; g < count; g++)
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
-      const mpsi_boundary *hold = &boundaries->hold[side];
+      const mpsi_boundary *boundary = &boundaries->boundary[side];
       mpsi_range r;
-      if (!mpsi_kind_of(hold)->absorbs || !mpsi_find_range(grid->dim, nodes[g].at, hold, &r))
+      if (!mpsi_kind_of(boundary)->absorbs ||
+          !mpsi_find_range(grid->dim, nodes[g].at, boundary, &r))
         continue;
       if (nodes[g].own && from + plane <= dashpots->rows) {
         memmove(dashpot + to, dashpot + from, bytes);

@@ -11,36 +11,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAME_ROW 1e-6            /* cells */
+#define SAME_ROW 1e-6 /* cells */
+#define BESIDE "allowed there are MPS_BOUNDARY_HELD, _DRIVEN, _ROLLER, _ABSORBING, _FREE and _OPEN"
 enum { MARGIN = 8, GHOSTS = 2 }; /* nodes above and below the particles; beyond a side */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 bool mpsi_mpm_has_free_field(const mpsi_boundaries *boundaries) {
-  return mpsi_kind_of(&boundaries->hold[0])->column || mpsi_kind_of(&boundaries->hold[1])->column;
+  return mpsi_kind_of(&boundaries->boundary[0])->column ||
+         mpsi_kind_of(&boundaries->boundary[1])->column;
 }
 
 mps_status mpsi_mpm_check_beside_field(mps_context *context, const mpsi_boundaries *boundaries,
                                        const char *function, int32_t number, int32_t kind) {
   if (number / 2 != 1 || kind != MPS_BOUNDARY_FRICTIONAL || !mpsi_mpm_has_free_field(boundaries))
     return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                   "kind is 3 (FRICTIONAL) of a side across y beside a free-field side (5), whose "
-                   "column allows 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 4 (ABSORBING), 6 (FREE) and 7 "
-                   "(OPEN)");
+  return mpsi_fail(
+      context, function, MPS_ERROR_ARGUMENT,
+      "kind is MPS_BOUNDARY_FRICTIONAL beside a side of kind MPS_BOUNDARY_FREE_FIELD: " BESIDE);
 }
 
 mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const char *function,
                                      int32_t number) {
   const mpsi_grid *grid = setup->grid;
-  static const char kind[] = "kind is 5 (FREE_FIELD)";
+  static const char kind[] = "kind is MPS_BOUNDARY_FREE_FIELD";
   if (grid->geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN)
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "%s with geometry %d, allowed in plane strain (0) alone", kind,
-                     (int)grid->geometry);
+                     "%s with geometry %s, must be MPS_MPM_GEOMETRY_PLANE_STRAIN", kind,
+                     mpsi_name_of("mps_mpm_geometry", (int32_t)grid->geometry).text);
   if (number / 2 != 0)
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "%s of side %d, allowed on the sides across x, 0 and 1", kind, number);
+                     "%s at %s, must be at MPS_SIDE_X_LOWER or MPS_SIDE_X_UPPER", kind,
+                     mpsi_name_of("mps_side", number).text);
   if (grid->standard || grid->by_weight)
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                      "%s, which the standard method and transfer by weights do not allow", kind);
@@ -54,11 +56,10 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
                      "%s of a domain %lld cells wide, must be at least %d", kind,
                      (long long)(grid->high[0] - grid->low[0]), MPSI_FIELD_CELLS);
   for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++)
-    if (setup->boundaries->hold[k].kind == MPS_BOUNDARY_FRICTIONAL)
+    if (setup->boundaries->boundary[k].kind == MPS_BOUNDARY_FRICTIONAL)
       return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                       "%s beside side %d of kind 3 (FRICTIONAL): allowed there are 0 (HELD), 1 "
-                       "(DRIVEN), 2 (ROLLER), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
-                       kind, k);
+                       "%s beside %s of kind MPS_BOUNDARY_FRICTIONAL: " BESIDE, kind,
+                       mpsi_name_of("mps_side", k).text);
   if (setup->has_relaxation)
     return mpsi_fail(setup->context, function, MPS_ERROR_STATE,
                      "%s after mps_mpm_settle was cancelled, which has left velocities that are no "
@@ -218,9 +219,9 @@ mps_status mpsi_mpm_make_free_field(const mpsi_boundary_setup *setup, const char
   const int64_t count = find_sources(grid, p, number, NULL);
   if (count == 0)
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is 5 (FREE_FIELD) of side %d, and the cells at that side hold no "
-                     "particles, must hold the ground that is beyond it too",
-                     number);
+                     "kind is MPS_BOUNDARY_FREE_FIELD at %s, and the cells at that side have no "
+                     "particles: the ground that continues beyond it must reach it",
+                     mpsi_name_of("mps_side", number).text);
   mpsi_free_field *f = mpsi_alloc(setup->context, 1, sizeof *f);
   source *from = f ? mpsi_alloc(setup->context, count, sizeof *from) : NULL;
   double(*scratch)[2] = from ? mpsi_alloc(setup->context, count, sizeof *scratch) : NULL;

@@ -92,5 +92,5 @@ mps_status mpsi_mpm_move_free_fields(const mpsi_boundary_setup *setup, const cha
 void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries);
 /* free_field_step.c: node of the column beside node k of the block at `at`, and the plane that this
  * node is in, counted from the side; NULL: none. */
-const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *hold,
+const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *boundary,
                                        const int32_t *at, int k, int *plane);

@@ -71,8 +71,8 @@ static mps_status refuse_place(mps_context *context, const mpsi_run *run, const 
                                int32_t number, double y) {
   return mpsi_fail(context, function, MPS_ERROR_DIVERGED,
                    "step %lld: ground at y = %g m has left the nodes of the free-field column at "
-                   "side %d: set the side again, which makes the column of the present ground",
-                   (long long)run->steps, y, number);
+                   "%s: set the side again, which makes the column of the present ground",
+                   (long long)run->steps, y, mpsi_name_of("mps_side", number).text);
 }
 
 /* ---- water ----------------------------------------------------------------------------------- */
@@ -242,11 +242,11 @@ static mps_status scatter(const mpsi_boundary_setup *setup, const char *function
 static bool find_mirror(const mpsi_boundary_setup *setup, int32_t number, double *keeps,
                         double *carried) {
   if (!mpsi_is_mirror(setup->mirrors, number)) return false;
-  const mpsi_boundary *hold = &setup->boundaries->hold[number];
+  const mpsi_boundary *boundary = &setup->boundaries->boundary[number];
   for (int c = 0; c < 2; c++) {
-    const bool turns = mpsi_side_turns(hold, Y, c);
+    const bool turns = mpsi_side_turns(boundary, Y, c);
     keeps[c] = turns ? -1.0 : 1.0;
-    carried[c] = turns ? 2.0 * hold->v[c] : 0.0;
+    carried[c] = turns ? 2.0 * boundary->v[c] : 0.0;
   }
   return true;
 }
@@ -308,13 +308,13 @@ static void update(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
 static void absorb(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t number,
                    mpsi_field_node *node, double *dashpot) {
   double *rest = f->rest + 3 * (number % 2), v[3];
-  mpsi_boundary hold = setup->boundaries->hold[number];
-  hold.finds = hold.finds || rest[2] != 0.0;
-  if (hold.finds) hold.found += setup->run->dt;
-  if (!setup->boundaries->hold[number].finds) hold.settle = 0.0;
+  mpsi_boundary boundary = setup->boundaries->boundary[number];
+  boundary.finds = boundary.finds || rest[2] != 0.0;
+  if (boundary.finds) boundary.found += setup->run->dt;
+  if (!setup->boundaries->boundary[number].finds) boundary.settle = 0.0;
   mpsi_dashpot of = {dashpot[0], dashpot[1], {rest[0], rest[1], 0.0}};
   const double values[4] = {node->mass, node->v[0], node->v[1], 0.0};
-  mpsi_mpm_apply_dashpot(setup->grid, setup->run->dt, &hold, &of, values, node->before, v);
+  mpsi_mpm_apply_dashpot(setup->grid, setup->run->dt, &boundary, &of, values, node->before, v);
   for (int c = 0; c < 2; c++) node->v[c] = v[c], rest[c] = of.rest[c];
   rest[2] = 0.0;
 }
@@ -333,9 +333,9 @@ static void find_dashpot(const mpsi_boundary_setup *setup, const mpsi_free_field
 }
 
 /* Applies side `number` to its node; `fixed`: bits of the components that it prescribes. */
-static void hold_node(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t number,
-                      int64_t *at, unsigned *fixed) {
-  const mpsi_boundary *hold = &setup->boundaries->hold[number];
+static void prescribe_node(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t number,
+                           int64_t *at, unsigned *fixed) {
+  const mpsi_boundary *boundary = &setup->boundaries->boundary[number];
   const int64_t wall = number % 2 ? setup->grid->high[Y] : setup->grid->low[Y];
   *at = wall - f->first;
   *fixed = 0;
@@ -343,11 +343,11 @@ static void hold_node(const mpsi_boundary_setup *setup, mpsi_free_field *f, int3
   mpsi_field_node *node = &f->node[*at];
   double dashpot[2];
   for (int c = 0; c < 2; c++) {
-    if (!mpsi_side_turns(hold, Y, c)) continue;
-    node->v[c] = hold->v[c];
+    if (!mpsi_side_turns(boundary, Y, c)) continue;
+    node->v[c] = boundary->v[c];
     *fixed |= 1u << c;
   }
-  if (mpsi_kind_of(hold)->absorbs && node->mass > 0.0) {
+  if (mpsi_kind_of(boundary)->absorbs && node->mass > 0.0) {
     find_dashpot(setup, f, number, dashpot);
     absorb(setup, f, number, node, dashpot);
   }
@@ -475,7 +475,8 @@ static mps_status step(const mpsi_boundary_setup *setup, const char *function, i
   MPSI_TRY(scatter(setup, function, number, f));
   for (int32_t k = MPS_SIDE_Y_LOWER; k <= MPS_SIDE_Y_UPPER; k++) fold(setup, f, k);
   update(setup, f);
-  for (int32_t k = 0; k < 2; k++) hold_node(setup, f, MPS_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
+  for (int32_t k = 0; k < 2; k++)
+    prescribe_node(setup, f, MPS_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
   damp(setup, f, wall, fixed);
   for (int32_t k = MPS_SIDE_Y_UPPER; k >= MPS_SIDE_Y_LOWER; k--) unfold(setup, f, k);
   gather(setup, f);
@@ -487,33 +488,33 @@ mps_status mpsi_mpm_move_free_fields(const mpsi_boundary_setup *setup, const cha
   if (!mpsi_mpm_has_free_field(setup->boundaries)) return status;
   if (setup->water && !mpsi_pore_responds(setup->water))
     return mpsi_fail(setup->context, function, MPS_ERROR_STATE,
-                     "there is a free-field side (5) and pressures of pore water are implicit "
-                     "(scheme 1), which its column has not: choose explicit ones (0), or rollers "
-                     "(2) or absorbing sides (4)");
+                     "a side is of kind MPS_BOUNDARY_FREE_FIELD, whose column has no implicit pore "
+                     "pressures: choose MPS_PORE_SCHEME_EXPLICIT, or the kind MPS_BOUNDARY_ROLLER "
+                     "or MPS_BOUNDARY_ABSORBING");
   for (int32_t k = 0; k < 2; k++) {
-    mpsi_free_field *f = setup->boundaries->hold[k].field;
+    mpsi_free_field *f = setup->boundaries->boundary[k].field;
     if (f) memcpy(f->kept, f->state, (size_t)f->doubles * sizeof *f->state);
   }
   for (int32_t k = 0; k < 2 && status == MPS_OK; k++)
-    if (setup->boundaries->hold[k].field)
-      status = step(setup, function, k, setup->boundaries->hold[k].field);
+    if (setup->boundaries->boundary[k].field)
+      status = step(setup, function, k, setup->boundaries->boundary[k].field);
   if (status != MPS_OK) mpsi_mpm_return_free_fields(setup->boundaries);
   return status;
 }
 
 void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries) {
   for (int32_t k = 0; k < 2; k++) {
-    mpsi_free_field *f = boundaries->hold[k].field;
+    mpsi_free_field *f = boundaries->boundary[k].field;
     if (f) memcpy(f->state, f->kept, (size_t)f->doubles * sizeof *f->state);
   }
 }
 
-const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *hold,
+const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *boundary,
                                        const int32_t *at, int k, int *plane) {
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
   const int64_t x = (int64_t)at[0] * MPSI_SIDE + place[0];
-  const int64_t n = (int64_t)at[Y] * MPSI_SIDE + place[Y] - hold->field->first;
-  *plane = (int)(hold->first[0] == grid->low[0] ? x - grid->low[0] : grid->high[0] - x);
-  return n >= 0 && n < hold->field->nodes ? &hold->field->node[n] : NULL;
+  const int64_t n = (int64_t)at[Y] * MPSI_SIDE + place[Y] - boundary->field->first;
+  *plane = (int)(boundary->first[0] == grid->low[0] ? x - grid->low[0] : grid->high[0] - x);
+  return n >= 0 && n < boundary->field->nodes ? &boundary->field->node[n] : NULL;
 }

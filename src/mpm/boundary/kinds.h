@@ -52,12 +52,12 @@ typedef struct mpsi_boundary_kind {
 extern const mpsi_boundary_kind mpsi_boundary_kinds[];
 
 /* What a boundary does: nothing where it is removed. */
-static inline const mpsi_boundary_kind *mpsi_kind_of(const mpsi_boundary *hold) {
-  return &mpsi_boundary_kinds[hold->kind < 0 ? MPS_BOUNDARY_FREE : hold->kind];
+static inline const mpsi_boundary_kind *mpsi_kind_of(const mpsi_boundary *boundary) {
+  return &mpsi_boundary_kinds[boundary->kind < 0 ? MPS_BOUNDARY_FREE : boundary->kind];
 }
 
 /* Whether the side across `axis` prescribes component c, or as a mirror turns it. */
-static inline bool mpsi_side_turns(const mpsi_boundary *hold, int axis, int c) {
-  const mpsi_prescribes which = mpsi_kind_of(hold)->prescribes;
+static inline bool mpsi_side_turns(const mpsi_boundary *boundary, int axis, int c) {
+  const mpsi_prescribes which = mpsi_kind_of(boundary)->prescribes;
   return which == MPSI_PRESCRIBES_ALL || (which == MPSI_PRESCRIBES_ACROSS && c == axis);
 }

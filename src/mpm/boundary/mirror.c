@@ -17,7 +17,7 @@ enum { LAYERS = 2 }; /* layers of ghosts: round-off alone puts particles in reac
 
 static bool is_mirror(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                       const mps_mpm_def *def, int32_t k) {
-  const mpsi_mirrored when = mpsi_kind_of(&boundaries->hold[k])->mirror;
+  const mpsi_mirrored when = mpsi_kind_of(&boundaries->boundary[k])->mirror;
   return when == MPSI_MIRROR_ALWAYS ||
          (when == MPSI_MIRROR_WALLS && !grid->standard && def->edge == MPS_MPM_EDGE_MIRROR);
 }
@@ -85,7 +85,7 @@ typedef struct side {
   int wall, inwards;  /* tile node of the wall along the axis; +1 or -1 */
   double keeps[3];    /* the diagonal of R */
   double velocity[3]; /* m/s, (I - R) v_w */
-  const mpsi_boundary *hold;
+  const mpsi_boundary *boundary;
   mpsi_mirror *mirrors, *mirror; /* of the tile; of the side */
   double *mass;
 } side;
@@ -93,7 +93,7 @@ typedef struct side {
 static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                     const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int32_t k,
                     bool across) {
-  const mpsi_boundary *hold = &boundaries->hold[k];
+  const mpsi_boundary *boundary = &boundaries->boundary[k];
   const int c = k / 2;
   const int64_t node = k % 2 ? grid->high[c] : grid->low[c];
   side out = {.grid = grid,
@@ -102,14 +102,14 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
   for (int a = 0; a < 3; a++) {
-    const bool turns = mpsi_side_turns(hold, c, a);
+    const bool turns = mpsi_side_turns(boundary, c, a);
     out.keeps[a] = turns ? -1.0 : 1.0;
-    out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
+    out.velocity[a] = turns ? 2.0 * boundary->v[a] : 0.0;
   }
   int64_t number = cells->first_mirror;
   for (uint32_t lower = cells->mirrors & ((1u << k) - 1); lower; lower &= lower - 1) number++;
   out.mirror = &mirrors->mirror[number];
-  out.hold = boundaries->hold;
+  out.boundary = boundaries->boundary;
   out.mirrors = &mirrors->mirror[cells->first_mirror];
   if (across) number += mirrors->count;
   out.mass = mirrors->mass + number * mpsi_mirror_plane(grid->tile_nodes);
@@ -130,7 +130,7 @@ static others find_others(const side *s, const int *at, int c) {
     const int a = k / 2;
     const int64_t node = (int64_t)s->cells->at[a] * MPSI_SIDE + at[a];
     const bool beyond = k % 2 ? node > s->grid->high[a] : node < s->grid->low[a];
-    if (beyond && mpsi_side_turns(&s->hold[k], a, c)) out.side[out.count++] = k;
+    if (beyond && mpsi_side_turns(&s->boundary[k], a, c)) out.side[out.count++] = k;
   }
   return out;
 }
@@ -140,8 +140,9 @@ static others find_others(const side *s, const int *at, int c) {
  * cancel, if the first takes that of the other; of three their mean is left. */
 static double velocity_of(const side *s, const others *o, int c) {
   if (o->count == 0) return s->velocity[c];
-  const double first = 2.0 * s->hold[o->side[0]].v[c];
-  return o->count == 1 ? first : (s->velocity[c] + first + 2.0 * s->hold[o->side[1]].v[c]) / 3.0;
+  const double first = 2.0 * s->boundary[o->side[0]].v[c];
+  return o->count == 1 ? first
+                       : (s->velocity[c] + first + 2.0 * s->boundary[o->side[1]].v[c]) / 3.0;
 }
 
 /* A ghost and its partner, with positions in m. */
@@ -431,9 +432,9 @@ void mpsi_mpm_sum_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundari
     for (int32_t k = 0; k < MPSI_SIDES && !cells->ghost; k++) {
       if (!(cells->mirrors >> k & 1)) continue;
       const mpsi_mirror *m = &mirrors->mirror[number++];
-      mpsi_boundary *hold = &boundaries->hold[k];
-      const double work = mpsi_dot3(m->impulse, hold->v);
-      mpsi_mpm_boundary_add_impulse(hold, m->impulse, m->moment, work, 0);
+      mpsi_boundary *boundary = &boundaries->boundary[k];
+      const double work = mpsi_dot3(m->impulse, boundary->v);
+      mpsi_mpm_boundary_add_impulse(boundary, m->impulse, m->moment, work, 0);
       mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
       mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
     }

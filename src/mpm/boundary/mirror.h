@@ -1,6 +1,6 @@
 /* mirror.h - plane walls without friction, and the axis, as mirrors. The stencils of particles near
  * a wall stay complete: they include ghosts, nodes beyond the wall, which are images of their
- * partners, the nodes as far inside. A tile (blocks.h) holds both, so that the particles of one
+ * partners, the nodes as far inside. A tile (blocks.h) contains both, so that the particles of one
  * block of cells are folded and mirrored back independently of other blocks, axis by axis: after
  * P2G mass m_g, momentum q_g and force f_g of a ghost are added to its partner,
  *

@@ -12,7 +12,7 @@ mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p,
                                     mpsi_rooms *rooms, bool bodies, const char *function) {
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (mpsi_kind_of(&b->hold[k])->open) b->open |= 1u << k;
+    if (mpsi_kind_of(&b->boundary[k])->open) b->open |= 1u << k;
   const bool any = b->open != 0 || bodies;
   if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
   return mpsi_fail_memory(context, function, (size_t)p->count);
@@ -30,7 +30,7 @@ static int32_t passed(const mpsi_grid *grid, const mpsi_columns *p,
 
 /* Subtracts the momentum of a removed particle from the total, as an impulse of the side. */
 static void subtract_particle(const mpsi_grid *grid, const mpsi_columns *p, mpsi_energy *energy,
-                              int64_t k, mpsi_boundary *hold) {
+                              int64_t k, mpsi_boundary *boundary) {
   const double m = p->m[k], h = grid->cell;
   const double second = grid->standard ? 0.0 : h * h / (grid->spline == 3 ? 3.0 : 4.0);
   double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
@@ -46,7 +46,7 @@ static void subtract_particle(const mpsi_grid *grid, const mpsi_columns *p, mpsi
     moment[c] = -spin;
     kinetic += 0.5 * m * v[c] * v[c];
   }
-  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, -kinetic, 1);
+  mpsi_mpm_boundary_add_impulse(boundary, impulse, moment, -kinetic, 1);
   mpsi_mpm_energy_add_at_once(energy, MPSI_ENERGY_BOUNDARIES, -kinetic);
   mpsi_mpm_energy_add_at_once(energy, MPSI_ENERGY_KINETIC, -kinetic);
 }
@@ -60,10 +60,10 @@ static int64_t through_sides(const mpsi_grid *grid, const mpsi_columns *p,
     for (int64_t k = cells->begin; k < cells->end && cells->gone; k++) {
       const int32_t side = passed(grid, p, boundaries, k);
       if (side < 0) continue;
-      mpsi_boundary *hold = &boundaries->hold[side];
-      subtract_particle(grid, p, energy, k, hold);
-      hold->removed++;
-      mpsi_exact_add(&hold->sums->all[MPSI_BOUNDARY_MASS], p->m[k]);
+      mpsi_boundary *boundary = &boundaries->boundary[side];
+      subtract_particle(grid, p, energy, k, boundary);
+      boundary->removed++;
+      mpsi_exact_add(&boundary->sums->all[MPSI_BOUNDARY_MASS], p->m[k]);
       gone[k] = 1;
       count++;
     }

@@ -141,10 +141,10 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_cell_block *cells = &grid->cells[grid->coloured[all->area_first + unit]];
-  double *tile = grid->workers[worker].room;
+  double *tile = grid->workers[worker].scratch;
   _Static_assert(sizeof(double[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE]) <=
-                     MPSI_WORKER_ROOM,
-                 "room of a worker");
+                     MPSI_WORKER_SCRATCH,
+                 "scratch of a worker");
   for (int32_t q = 0; q < cells->pairs; q++) {
     const mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
     if (!mpsi_mpm_sum_areas(grid, stage->transfer.p, stage->contact, pair, tile)) continue;

@@ -75,7 +75,7 @@ static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, doub
   return mpsi_impulse_near(foot->distance - half, half, closing, dt);
 }
 
-/* Whether the box that holds all particles of the block (mpsi_cell_block.left) lies farther than
+/* Whether the box around all particles of the block (mpsi_cell_block.left) lies farther than
  * `reach` (m) from the body. */
 static bool is_block_far(const mpsi_grid *grid, const mpsi_cell_block *cells,
                          const mps_contact *contact, double reach) {

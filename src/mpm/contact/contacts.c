@@ -116,8 +116,8 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
   const mps_status status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                                       "%lld particles lie inside the body, the first is %lld, the "
                                       "deepest %.4g m below the surface: "
-                                      "place it outside, or let them be pushed out by inside = "
-                                      "MPS_CONTACT_INSIDE_PUSH",
+                                      "place it outside, or make inside MPS_CONTACT_INSIDE_PUSH, "
+                                      "which pushes them out, or _REMOVE",
                                       (long long)count, (long long)first, deepest);
   mpsi_fail_where(context, -1, first);
   return status;

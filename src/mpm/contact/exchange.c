@@ -111,8 +111,8 @@ static char *write_constraint(const mpsi_grid *grid, const mpsi_contacts *contac
 static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                const mpsi_constraint_block *block, head *h, char *to) {
   const mpsi_cell_block *cells = &grid->cells[block->cells];
-  int32_t *number = grid->workers[0].room; /* no other thread is at work */
-  _Static_assert(2 * PLACES * sizeof *number <= MPSI_WORKER_ROOM, "room of a worker");
+  int32_t *number = grid->workers[0].scratch; /* no other thread is at work */
+  _Static_assert(2 * PLACES * sizeof *number <= MPSI_WORKER_SCRATCH, "scratch of a worker");
   h->nodes = name_nodes(grid, contacts, block, number, (named_node *)to);
   h->constraints = block->count + block->groups;
   h->groups = block->groups;
@@ -125,7 +125,7 @@ static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *conta
 static char *write_areas(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_contacts *contacts, const mpsi_cell_block *cells, head *h,
                          char *to) {
-  double *tile = grid->workers[0].room;
+  double *tile = grid->workers[0].scratch;
   named_area *out = (named_area *)to;
   for (int32_t q = 0; q < cells->pairs && contacts->impulses.areas; q++) {
     const mpsi_cell_pair *pair = &contacts->cell_pair[cells->first_pair + q];
@@ -210,7 +210,7 @@ static int by_colour(const void *left, const void *right) {
   return 0;
 }
 
-static bool make_room(exchange *m, int64_t slots) {
+static bool reserve(exchange *m, int64_t slots) {
   mps_context *context = m->stage->context;
   mpsi_impulses *all = &m->stage->contact->impulses;
   mpsi_contact_exchange *r = &m->stage->contact->exchange;
@@ -313,7 +313,7 @@ static mps_status join(exchange *m) {
   m->entry = NULL;
   read_entries(m);
   while (slots < 2 * m->nodes) slots *= 2;
-  if (!mpsi_room_ensure(context, &r->list, m->entries, sizeof *m->entry) || !make_room(m, slots))
+  if (!mpsi_room_ensure(context, &r->list, m->entries, sizeof *m->entry) || !reserve(m, slots))
     return mpsi_fail_memory(context, m->function,
                             (size_t)(m->constraints + 1) * sizeof(mpsi_constraint) +
                                 (size_t)m->nodes * sizeof(mpsi_shared_node));

@@ -39,16 +39,16 @@ static void find_cell(const mpsi_grid *grid, const mpsi_columns *p, int64_t k, i
 void mpsi_mpm_list_particles(const mpsi_transfer *work, mpsi_prescribed *all, int64_t *key) {
   const mpsi_grid *grid = work->grid;
   all->listed_count = 0;
-  for (int32_t b = MPSI_SIDES; b < work->boundaries->holds; b++) {
-    const mpsi_boundary *hold = &work->boundaries->hold[b];
-    for (int64_t i = 0; mpsi_is_list(hold) && i < hold->id_count;
+  for (int32_t b = MPSI_SIDES; b < work->boundaries->count; b++) {
+    const mpsi_boundary *boundary = &work->boundaries->boundary[b];
+    for (int64_t i = 0; mpsi_is_list(boundary) && i < boundary->id_count;
          i++, key += key ? MPSI_LISTED_KEY : 0) {
-      const int64_t k = mps_particles_index(work->p->set, hold->ids[i]);
+      const int64_t k = mps_particles_index(work->p->set, boundary->ids[i]);
       if (key) memset(key, 0, MPSI_LISTED_KEY * sizeof *key);
       if (k < 0) continue;
       mpsi_listed *one = &all->listed[all->listed_count++];
-      *one =
-          (mpsi_listed){.particle = k, .id = hold->ids[i], .list = b, .block = block_of(grid, k)};
+      *one = (mpsi_listed){
+          .particle = k, .id = boundary->ids[i], .list = b, .block = block_of(grid, k)};
       find_cell(grid, work->p, k, one->cell);
       for (int c = 0; c < grid->dim; c++) one->x[c] = work->p->x[c][k];
       for (int c = 0; c < 3 && key; c++)
@@ -286,7 +286,7 @@ static void add_particle(const mpsi_contact_stage *stage, const mpsi_transfer *w
 
 /* Takes the components of nodes that sides and boxes prescribe out of a constraint, and finds the
  * inverses of its mobilities. In the contact stage of a step no boundary has acted yet. */
-static void end_weights(const mpsi_contact_stage *stage, const mpsi_boundary *hold, int64_t n,
+static void end_weights(const mpsi_contact_stage *stage, const mpsi_boundary *boundary, int64_t n,
                         mpsi_listed_group *group) {
   const mpsi_grid *grid = stage->transfer.grid;
   mpsi_impulses *impulses = &stage->contact->impulses;
@@ -313,8 +313,8 @@ static void end_weights(const mpsi_contact_stage *stage, const mpsi_boundary *ho
   }
   for (int a = 0; a < grid->dim; a++) {
     const double mobility = constraint->impulse.mobility[a];
-    const bool held = hold->dofs >> a & 1 && mobility > LEAST_FREE * whole[a];
-    constraint->carried[a] -= hold->v[a];
+    const bool held = boundary->dofs >> a & 1 && mobility > LEAST_FREE * whole[a];
+    constraint->carried[a] -= boundary->v[a];
     if (acted) constraint->carried[a] *= damps;
     constraint->impulse.normal[a] = held ? 1.0 / mobility : 0.0;
   }
@@ -342,7 +342,7 @@ void mpsi_mpm_fit_prescribed(const mpsi_contact_stage *stage, const mpsi_transfe
       for (int a = 0; a < 3 && warm; a++)
         constraint->impulse.tangent_impulse[a] += stage->transfer.run->dt * warm->by[a];
     }
-    end_weights(stage, &work->boundaries->hold[member->list], n, group);
+    end_weights(stage, &work->boundaries->boundary[member->list], n, group);
     for (int a = 0; a < 3; a++)
       if (constraint->impulse.normal[a] == 0.0) constraint->impulse.tangent_impulse[a] = 0.0;
   }

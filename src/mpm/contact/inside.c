@@ -133,7 +133,7 @@ static bool find_own_corners(const mpsi_grid *grid, const mpsi_columns *p,
   return within;
 }
 
-/* Calls `work` for the corners of all cells that hold particles and may have corners inside bodies,
+/* Calls `work` for the corners of all cells with particles that may have corners inside bodies,
  * for some corners more than once. */
 static void for_corners(const mpsi_inside_search *of, const mpsi_cell_block *cells, corner_fn work,
                         void *data) {
@@ -216,7 +216,7 @@ static void pack_corners(void *search, int64_t b, int32_t worker, double *messag
   bits[corner_words(of->grid) - 1] = of->grid->cells[b].thin;
 }
 
-/* On several ranks: exchanges the corners of cells that hold particles, and whether thin bodies
+/* On several ranks: exchanges the corners of cells with particles, and whether thin bodies
  * make nodes of the block two-sided. */
 mps_status mpsi_mpm_exchange_corners(mpsi_inside_search *of, mpsi_partition *partition,
                                      const char *function) {

@@ -49,7 +49,7 @@ typedef struct mpsi_contact_state {
   bool parts;  /* the body makes nodes two-sided in this step (thin_bodies.h) */
   bool warned; /* the log has a warning that the penalty is too stiff for dt */
   double v[3],
-      spin[3]; /* m/s, rad/s: velocity of the body outside mps_mpm_settle, which holds it at rest */
+      spin[3]; /* m/s, rad/s: velocity of the body outside mps_mpm_settle, which keeps it at rest */
   mpsi_last_distance last; /* bounds from the last block of a loop over blocks */
 } mpsi_contact_state;
 
@@ -72,7 +72,7 @@ typedef struct mpsi_contacts {
   mpsi_parted *across; /* of each particle beside thin bodies: mpsi_mpm_find_parted */
   uint8_t *beside;     /* indexed as `inside`: the node is beside or in a thin body */
   _Atomic uint8_t
-      *reached; /* indexed as `inside`: the node is a corner of a cell that holds a particle */
+      *reached; /* indexed as `inside`: the node is a corner of a cell with a particle */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
   mpsi_contact_partners partners; /* on several ranks; allocated with the first contact */
@@ -106,10 +106,10 @@ void mpsi_mpm_clear_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts
 void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
                           const mpsi_cell_block *cells, const mpsi_worker *worker);
 /* inside.c: tasks of a pass, whose data is an mpsi_inside_search (base/kernels.h): nodes of a block
- * that lie inside bodies; corners of a block's cells that hold particles. */
+ * that lie inside bodies; corners of a block's cells with particles. */
 void mpsi_mpm_find_inside(void *search, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(void *search, int64_t b, int32_t worker);
-/* inside.c: marks the corners of the cells of ghost blocks that hold particles, as their ranks have
+/* inside.c: marks the corners of the cells of ghost blocks with particles, as their ranks have
  * found them. Collective. */
 mps_status mpsi_mpm_exchange_corners(mpsi_inside_search *of, mpsi_partition *partition,
                                      const char *function);

@@ -32,13 +32,13 @@
 /* Number of entries of all lists. */
 static int64_t count_entries(const mpsi_boundaries *boundaries) {
   int64_t count = 0;
-  for (int32_t b = MPSI_SIDES; b < boundaries->holds; b++)
-    if (mpsi_is_list(&boundaries->hold[b])) count += boundaries->hold[b].id_count;
+  for (int32_t b = MPSI_SIDES; b < boundaries->count; b++)
+    if (mpsi_is_list(&boundaries->boundary[b])) count += boundaries->boundary[b].id_count;
   return count;
 }
 
-static mps_status make_room(const mpsi_contact_stage *stage, const char *function, bool before,
-                            int64_t entries) {
+static mps_status reserve(const mpsi_contact_stage *stage, const char *function, bool before,
+                          int64_t entries) {
   mpsi_prescribed *all = stage->prescribed;
   mps_context *context = stage->context;
   const int64_t blocks = stage->transfer.grid->cell_count;
@@ -72,7 +72,7 @@ mps_status mpsi_mpm_find_prescribed(const mpsi_contact_stage *stage, const char 
     all->constraints.impulses.warm_count = 0;
     return status;
   }
-  if (status == MPS_OK) status = make_room(stage, function, before, entries);
+  if (status == MPS_OK) status = reserve(stage, function, before, entries);
   int64_t *key = NULL;
   if (stage->partition) {
     mps_domain *domain = stage->partition->domain;
@@ -148,7 +148,7 @@ static void add_reaction(const mpsi_contact_stage *stage, mpsi_energy *energy,
   const mpsi_listed_group *group = &all->group[constraint->particle];
   const mpsi_listed *member = &all->listed[group->first];
   const double *J = constraint->impulse.tangent_impulse;
-  mpsi_boundary *hold = &stage->transfer.boundaries->hold[member->list];
+  mpsi_boundary *boundary = &stage->transfer.boundaries->boundary[member->list];
   double x[3] = {0.0}, impulse[3], moment[3], work = 0.0;
   for (int64_t i = 0; i < group->count; i++)
     for (int c = 0; c < 3; c++) x[c] += p->m[member[i].particle] / group->mass * member[i].x[c];
@@ -156,9 +156,9 @@ static void add_reaction(const mpsi_contact_stage *stage, mpsi_energy *energy,
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     impulse[c] = (1.0 - group->lost[c]) * J[c];
     moment[c] = (x[a] - group->lost_at[b][a]) * J[b] - (x[b] - group->lost_at[a][b]) * J[a];
-    work += impulse[c] * hold->v[c];
+    work += impulse[c] * boundary->v[c];
   }
-  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, work, 0);
+  mpsi_mpm_boundary_add_impulse(boundary, impulse, moment, work, 0);
   mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
   mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, work);
 }
@@ -186,19 +186,19 @@ static void check_place(const mpsi_transfer *work, const mpsi_listed *one) {
 static void drive_particle(const mpsi_contact_stage *stage, mpsi_energy *energy,
                            const mpsi_listed *one) {
   const mpsi_columns *p = stage->transfer.p;
-  mpsi_boundary *hold = &stage->transfer.boundaries->hold[one->list];
+  mpsi_boundary *boundary = &stage->transfer.boundaries->boundary[one->list];
   const int64_t k = one->particle;
   double impulse[3] = {0.0}, moment[3], work = 0.0, kinetic = 0.0;
   for (int c = 0; c < stage->transfer.grid->dim; c++) {
-    if (!(hold->dofs >> c & 1)) continue;
-    impulse[c] = p->m[k] * (hold->v[c] - p->v[c][k]);
-    work += impulse[c] * hold->v[c];
-    kinetic += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
-    p->v[c][k] = hold->v[c];
-    p->x[c][k] = one->x[c] + stage->transfer.run->dt * hold->v[c];
+    if (!(boundary->dofs >> c & 1)) continue;
+    impulse[c] = p->m[k] * (boundary->v[c] - p->v[c][k]);
+    work += impulse[c] * boundary->v[c];
+    kinetic += 0.5 * impulse[c] * (boundary->v[c] + p->v[c][k]);
+    p->v[c][k] = boundary->v[c];
+    p->x[c][k] = one->x[c] + stage->transfer.run->dt * boundary->v[c];
   }
   mpsi_cross3(one->x, impulse, moment);
-  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, work, 1);
+  mpsi_mpm_boundary_add_impulse(boundary, impulse, moment, work, 1);
   mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
   mpsi_mpm_energy_add(energy, MPSI_ENERGY_KINETIC, kinetic);
   mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, work - kinetic);

@@ -59,8 +59,8 @@ typedef struct mpsi_prescribed {
  * boundary is a list. `stage`: that of mpsi_mpm_prescribed_stage. */
 mps_status mpsi_mpm_find_prescribed(const mpsi_contact_stage *stage, const char *function,
                                     bool before, mps_status status);
-static inline bool mpsi_is_list(const mpsi_boundary *hold) {
-  return hold->kind != MPSI_BOUNDARY_NONE && hold->ids != NULL;
+static inline bool mpsi_is_list(const mpsi_boundary *boundary) {
+  return boundary->kind != MPSI_BOUNDARY_NONE && boundary->ids != NULL;
 }
 /* groups.c: lists the particles that this rank has (`key`: of all entries, each with its cell, its
  * block and 1 + its boundary, or NULL on one rank), then, with the keys of all ranks, the groups.

@@ -14,7 +14,7 @@
  * them one after the other, in the order of their colours (pass.h). No two tasks write the same
  * memory, and no sum depends on the number of threads.
  *
- * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
+ * Arrays of three are x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
@@ -88,7 +88,7 @@ typedef struct mpsi_node_block {
   int32_t low[3], high[3];   /* range low to high - 1 of these nodes */
   int32_t first_pair, pairs; /* bodies near it, or near a block of cells whose tile covers it: range
                                 of contact.node_pair */
-  int32_t first_held, holds; /* range of boundaries.held */
+  int32_t first_held, held_count; /* range of boundaries.held */
   int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
   bool late;    /* a ghost, or a block that adds after one, adds to it (partition.h) */
   bool foreign; /* only ghosts cover it: its sums are not complete */
@@ -111,10 +111,10 @@ typedef struct mpsi_worker {
   mpsi_node *across_tile, *across_force; /* values across thin bodies (thin_bodies.h) */
   struct mpsi_penalty_node *penalty;     /* one tile for each pair of the block: see penalty.c */
   uint8_t *state;                        /* states of the tile's nodes, MPSI_... bits; 0: free */
-  void *room; /* MPSI_WORKER_ROOM bytes, aligned to 64: arrays of one call of P2G, G2P or the update
-                 of nodes, too large for the stack of a host's thread */
+  void *scratch; /* MPSI_WORKER_SCRATCH bytes, aligned to 64: arrays of one call of P2G, G2P or the
+                 update of nodes, too large for the stack of a host's thread */
 } mpsi_worker;
-enum { MPSI_WORKER_ROOM = 104 << 10 };
+enum { MPSI_WORKER_SCRATCH = 104 << 10 };
 
 /* Least-squares fit of a particle beside bodies, stored by the scatter of a step for its gather
  * (least_squares.h). */
@@ -127,7 +127,7 @@ enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
 /* Bits of a state. */
 #define MPSI_OUTSIDE 1u  /* not in the domain */
 #define MPSI_INSIDE 2u   /* in a body */
-#define MPSI_REACHED 4u  /* in a body, and corner of a cell that holds a particle */
+#define MPSI_REACHED 4u  /* in a body, and corner of a cell with a particle */
 #define MPSI_PLAIN 8u    /* any node with the standard method, whose supports are cut everywhere */
 #define MPSI_THIN 16u    /* beside or in a thin body (thin_bodies.h) */
 #define MPSI_IMPULSE 32u /* in a body with contact by impulses, */
@@ -269,7 +269,7 @@ static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ?
 
 /* Bytes of scratch memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
-  return MPSI_WORKER_ROOM + (size_t)grid->tile_nodes * (3 * sizeof(mpsi_node) + 1) +
+  return MPSI_WORKER_SCRATCH + (size_t)grid->tile_nodes * (3 * sizeof(mpsi_node) + 1) +
          sizeof(uint64_t);
 }
 

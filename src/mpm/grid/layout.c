@@ -1,4 +1,4 @@
-/* layout.c - the blocks of cells that hold particles, and the blocks of nodes that their tiles
+/* layout.c - the blocks of cells with particles, and the blocks of nodes that their tiles
  * need. Both lists ascend in z, then y, then x. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/run.h"
 #include "mpm/grid/blocks.h"

@@ -78,7 +78,7 @@ static int64_t block_at(const mpsi_grid *grid, int c, double x) {
   return mpsi_block_of((int64_t)mpsi_base(grid->spline, mpsi_grid_at(grid, c, x)));
 }
 
-/* First block and number of bits of each axis, and whether one word holds them all. */
+/* First block and number of bits of each axis, and whether they fit in one word. */
 static void find_range(sorter *s) {
   for_chunks(s, find_extent);
   int32_t bits = s->own_bits;

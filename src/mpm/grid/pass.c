@@ -154,10 +154,10 @@ static bool gather_in_turn(wave *w, bool late) {
  * are in the cache from the scatter: a large set would be read from memory twice otherwise. Blocks
  * that wait for ghosts are last, but scatter while the ghosts' message is on its way. */
 static void run_wave(const mpsi_grid *grid, const mpsi_pass *pass) {
-  _Atomic int32_t *room = counters_of(grid);
-  wave w = {grid, pass, room, room + grid->cell_count};
+  _Atomic int32_t *counters = counters_of(grid);
+  wave w = {grid, pass, counters, counters + grid->cell_count};
   for (int64_t k = 0; k < grid->cell_count + grid->node_count; k++)
-    atomic_store_explicit(&room[k], 0, memory_order_relaxed);
+    atomic_store_explicit(&counters[k], 0, memory_order_relaxed);
   for (int32_t g = 0; pass->between && g < grid->node_count; g++)
     if (grid->nodes[g].waits) update_in_turn(&w, g);
   if (pass->between && !pass->between(pass->step)) return;
@@ -396,7 +396,7 @@ void mpsi_mpm_run_pass(mps_context *context, const mpsi_grid *grid, const mpsi_c
     run_wave(grid, pass);
     return;
   }
-  _Atomic int32_t *room = counters_of(grid);
+  _Atomic int32_t *counters = counters_of(grid);
   flow f = {.context = context,
             .grid = grid,
             .pass = pass,
@@ -404,10 +404,10 @@ void mpsi_mpm_run_pass(mps_context *context, const mpsi_grid *grid, const mpsi_c
             .nodes = (int32_t)grid->node_count,
             .lanes = grid->worker_count,
             .lane = grid->pass_room.item,
-            .scatter_waits = room,
-            .gather_waits = room + grid->cell_count};
+            .scatter_waits = counters,
+            .gather_waits = counters + grid->cell_count};
   const int64_t rounds = mpsi_executor_is_own(context) ? 1 : ROUNDS;
-  make_lanes(&f, room + 2 * grid->cell_count);
+  make_lanes(&f, counters + 2 * grid->cell_count);
   fill(&f);
   mpsi_parallel_for(context, rounds * grid->worker_count, run_worker, &f);
   if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;

@@ -23,7 +23,7 @@ static bool has_side(const void *solver, int32_t number) {
 
 /* Sides are rollers until the caller says otherwise, and free once removed. */
 static void describe_side(const void *solver, int32_t number, void *def) {
-  const int32_t kind = ((const mps_mpm *)solver)->boundaries.hold[number].kind;
+  const int32_t kind = ((const mps_mpm *)solver)->boundaries.boundary[number].kind;
   ((mps_mpm_boundary_def *)def)->kind = kind == MPSI_BOUNDARY_NONE ? MPS_BOUNDARY_FREE : kind;
 }
 

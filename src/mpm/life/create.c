@@ -40,9 +40,10 @@ static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
   if (d->spline == 0) d->spline = 3;
   if (!d->kernel) return MPS_OK;
   if (kind != MPS_KERNEL_SPLINE2 && kind != MPS_KERNEL_SPLINE3)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "kernel is of kind %d, allowed are 1 and 2 (quadratic and cubic B-spline)",
-                     kind);
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "kernel: its kind is %s, allowed are MPS_KERNEL_SPLINE2 and MPS_KERNEL_SPLINE3",
+        mpsi_name_of("mps_kernel_kind", kind).text);
   d->spline = kind == MPS_KERNEL_SPLINE2 ? 2 : 3;
   const double wanted = radius_of(d), radius = mps_kernel_radius(d->kernel);
   if (fabs(radius - wanted) <= ON_NODE * wanted) return MPS_OK;
@@ -182,7 +183,7 @@ static mps_status save_columns(mps_context *context, const mpsi_columns *p, doub
   return MPS_OK;
 }
 
-static void put_columns_back(const mpsi_columns *p, const double *copy) {
+static void restore_columns(const mpsi_columns *p, const double *copy) {
   const int64_t count = p->count;
   for (int32_t c = 0; c < written_count(p); c++)
     if (written(p, c)) memcpy(written(p, c), copy + c * count, (size_t)count * sizeof *copy);
@@ -198,8 +199,8 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     mpsi_worker *w = &grid->workers[k];
     char *memory = w->memory = mpsi_alloc(context, 1, bytes);
     if (!memory) return mpsi_fail_memory(context, create, bytes);
-    w->room = memory;
-    w->tile = (mpsi_node *)(memory + MPSI_WORKER_ROOM);
+    w->scratch = memory;
+    w->tile = (mpsi_node *)(memory + MPSI_WORKER_SCRATCH);
     w->force = w->tile + tile;
     w->strain = w->force + tile;
     w->state = (uint8_t *)(w->strain + tile); /* with a margin: rows are read as four */
@@ -279,7 +280,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     status = mpsi_fail_of(mpm->context, status, "particles");
     if (status == MPS_OK && !shared) status = save_columns(mpm->context, &mpm->p, &copy);
     if (status == MPS_OK) status = begin(mpm);
-    if (status != MPS_OK && copy) put_columns_back(&mpm->p, copy);
+    if (status != MPS_OK && copy) restore_columns(&mpm->p, copy);
     mpsi_free(mpm->context, copy);
   }
   if (shared)
@@ -339,10 +340,12 @@ static mps_status complete(mps_context *context, mps_particles *particles, mps_m
                            int64_t *low, int64_t *high) {
   mps_status status = check_set(context, particles);
   if (status == MPS_OK && mps_particles_dim(particles) != dim_of(def))
-    status = mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                       "geometry is %d, and the set has %d dimensions: it needs %s", def->geometry,
-                       mps_particles_dim(particles),
-                       dim_of(def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
+    status = mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "geometry is %s, and the set has %d dimensions: it needs %s",
+        mpsi_name_of("mps_mpm_geometry", def->geometry).text, mps_particles_dim(particles),
+        dim_of(def) == 3 ? "MPS_MPM_GEOMETRY_PLANE_STRAIN or MPS_MPM_GEOMETRY_AXISYMMETRIC"
+                         : "MPS_MPM_GEOMETRY_SPACE");
   if (status == MPS_OK) status = read_kernel(context, def);
   if (isnan(def->measure))
     def->measure = def->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 8.0 * atan(1.0) : 1.0;
@@ -378,7 +381,7 @@ static void free_rooms(mps_mpm *mpm) {
       mpm->rooms.force.item, mpm->rooms.radix.item, mpm->rooms.stencil.item, mpm->rooms.places.item,
       mpm->rooms.strain.item, mpm->rooms.rough.item, mpm->rooms.gone.item, mpm->undo.list_room.item,
       mpm->undo.room.item, mpm->undo.dashpot_room.item, mpm->undo.sums_room.item,
-      mpm->undo.hold_room.item);
+      mpm->undo.boundary_room.item);
 }
 
 static void destroy(void *solver) {
@@ -469,8 +472,8 @@ static const mpsi_solver_kind mpm_kind = {
     .destroy = destroy,
 };
 
-static void hold(mps_mpm *mpm, const char *function, mps_context *context, mps_particles *particles,
-                 mps_domain *domain, bool shared) {
+static void enter_set(mps_mpm *mpm, const char *function, mps_context *context,
+                      mps_particles *particles, mps_domain *domain, bool shared) {
   mpsi_holder holder = {.name = "a WLS-MPM solver (mps_mpm)",
                         .kind = MPSI_USE_MOVE,
                         .commit = mpsi_mpm_note_edit,
@@ -525,20 +528,20 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
-  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.hold_room, MPSI_SIDES,
-                                                   sizeof(mpsi_boundary))))
+  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.boundary_room,
+                                                   MPSI_SIDES, sizeof(mpsi_boundary))))
     status = mpsi_fail_memory(context, __func__, sizeof *mpm + MPSI_SIDES * sizeof(mpsi_boundary));
   if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
     status = mpsi_particles_back_up(particles, __func__, &backup);
   status = mpsi_domain_agree(def.domain, __func__, status);
   if (status != MPS_OK) {
     if (backup.memory) mpsi_backup_drop(particles, &backup);
-    if (mpm) mpsi_free(context, mpm->boundaries.hold_room.item);
+    if (mpm) mpsi_free(context, mpm->boundaries.boundary_room.item);
     mpsi_free(context, mpm);
     return status;
   }
   mpm->reader.mpm = mpm;
-  hold(mpm, __func__, context, particles, def.domain, is_shared(&def)); /* checked above */
+  enter_set(mpm, __func__, context, particles, def.domain, is_shared(&def)); /* checked above */
   mpm->run.changed = mpm->run.renewed = true;
   describe(mpm, &def, low, high);
   if (!mpsi_mpm_begin_sides(mpm->context, &mpm->grid, &mpm->boundaries))
@@ -585,14 +588,18 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer));
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+                     "transfer is %d, allowed are MPS_EXPERIMENTAL_TRANSFER_SHAPE and _WEIGHT",
+                     transfer);
   if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpm->def.flip_time > 0.0)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is 1 (weight), but flip_time of the definition is %g s: must be 0",
-                     mpm->def.flip_time);
+    return mpsi_fail(
+        mpm->context, __func__, MPS_ERROR_ARGUMENT,
+        "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT, but flip_time of the definition "
+        "is %g s: must be 0",
+        mpm->def.flip_time);
   if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpsi_mpm_has_free_field(&mpm->boundaries))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "transfer is 1 (weight), which a side of kind 5 (FREE_FIELD) does not allow");
+                     "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT, which a side of kind "
+                     "MPS_BOUNDARY_FREE_FIELD does not allow");
   mpm->grid.by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
   return MPS_OK;
 }
@@ -602,7 +609,8 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   MPSI_TRY(check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain));
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
+                     "strain is %d, allowed are MPS_EXPERIMENTAL_STRAIN_DERIVATIVE and _FIT",
+                     strain);
   mpm->grid.strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
   return MPS_OK;
 }

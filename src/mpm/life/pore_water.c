@@ -200,8 +200,7 @@ static mps_status sum_ranks(const mps_mpm *mpm, const char *function, mps_status
                             int32_t count, mpsi_exact *sum) {
   if (!mpm->partition) return status;
   status = mpsi_domain_agree(mpm->domain, function, status);
-  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->domain, function, count, sum)
-                          : status;
+  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->domain, function, count, sum) : status;
 }
 
 mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *out, size_t size) {
@@ -233,8 +232,9 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
   mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status == MPS_OK && (number < -1 || number >= mpm->water->faces))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "number is %d, must be -1 (the free surface) to %lld", number,
-                       (long long)mpm->water->faces - 1);
+                       "number is %d: there is no pore face of this number, and the free surface "
+                       "is -1",
+                       number);
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->domain, __func__, status, "number", number);
   const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
@@ -339,7 +339,7 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
   if (status == MPS_OK && (number < 0 || number >= mpm->water->faces))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "number is %d, must be 0 to %lld", number, (long long)mpm->water->faces - 1);
+                       "number is %d: there is no pore face of this number", number);
   MPSI_TRY(agree_on_face(mpm, __func__, status, &def, number));
   const bool drained = mpm->water->face[number].kind == MPS_PORE_FACE_DRAINED;
   mpm->water->face[number] = def;

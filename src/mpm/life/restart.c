@@ -242,10 +242,11 @@ static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_warm_sta
 static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads *all_loads,
                          const mpsi_contacts *contacts, const mps_mpm_def *def) {
   int64_t loads = 0;
-  for (int32_t k = 0; k < all_loads->list->room; k++) loads += mpsi_load_of(all_loads, k) != NULL;
-  mpsi_state_agree_integer(s, "geometry", grid->geometry);
+  for (int32_t k = 0; k < all_loads->list->capacity; k++)
+    loads += mpsi_load_of(all_loads, k) != NULL;
+  mpsi_state_agree_choice(s, "geometry", "mps_mpm_geometry", (int32_t)grid->geometry);
   mpsi_state_agree_integer(s, "scheme", grid->standard);
-  mpsi_state_agree_integer(s, "walls", def->edge);
+  mpsi_state_agree_choice(s, "walls", "mps_mpm_edge", def->edge);
   mpsi_state_agree_integer(s, "spline", grid->spline);
   mpsi_state_agree_number(s, "cell", grid->cell);
   for (int c = 0; c < grid->dim; c++) {
@@ -275,8 +276,9 @@ static void list_settling(mpsi_state *s, mpsi_settling *settling) {
 
 /* Number of boundaries that a state lists: up to the last in use. */
 static int32_t listed_boundaries(const mpsi_boundaries *boundaries) {
-  int32_t count = boundaries->holds;
-  while (count > FILE_BOUNDARIES && boundaries->hold[count - 1].kind == MPSI_BOUNDARY_NONE) count--;
+  int32_t count = boundaries->count;
+  while (count > FILE_BOUNDARIES && boundaries->boundary[count - 1].kind == MPSI_BOUNDARY_NONE)
+    count--;
   return count > FILE_BOUNDARIES ? count : FILE_BOUNDARIES;
 }
 
@@ -286,18 +288,19 @@ static void list_state(mpsi_state *s, void *solver) {
   const int32_t numbers = listed_boundaries(&mpm->boundaries);
   if (numbers > FILE_BOUNDARIES) mpsi_state_agree_integer(s, "boundaries", numbers);
   for (int32_t k = 0; k < numbers; k++) {
-    mpsi_boundary *hold = k < mpm->boundaries.holds ? &mpm->boundaries.hold[k] : NULL;
+    mpsi_boundary *boundary = k < mpm->boundaries.count ? &mpm->boundaries.boundary[k] : NULL;
     mpsi_state_enter(s, "boundary%d", k);
-    mpsi_state_agree_integer(s, "kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
+    mpsi_state_agree_choice(s, "kind", "mps_boundary_kind",
+                            boundary ? boundary->kind : MPSI_BOUNDARY_NONE);
     /* a side that has been set free still shows its last force and what it has done */
-    if (hold && hold->field) mpsi_mpm_list_free_field(s, hold->field);
-    if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
-      mpsi_state_exact(s, "step", hold->sums->step, MPSI_BOUNDARY_MASS);
-      mpsi_state_exact(s, "all", hold->sums->all, MPSI_BOUNDARY_MASS + 1);
-      mpsi_state_i64(s, "count", &hold->count, 1);
-      mpsi_state_i64(s, "removed", &hold->removed, 1);
-      mpsi_state_bool(s, "finds", &hold->finds);
-      mpsi_state_f64(s, "found", &hold->found, 1);
+    if (boundary && boundary->field) mpsi_mpm_list_free_field(s, boundary->field);
+    if (boundary && (boundary->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && boundary->sums))) {
+      mpsi_state_exact(s, "step", boundary->sums->step, MPSI_BOUNDARY_MASS);
+      mpsi_state_exact(s, "all", boundary->sums->all, MPSI_BOUNDARY_MASS + 1);
+      mpsi_state_i64(s, "count", &boundary->count, 1);
+      mpsi_state_i64(s, "removed", &boundary->removed, 1);
+      mpsi_state_bool(s, "finds", &boundary->finds);
+      mpsi_state_f64(s, "found", &boundary->found, 1);
     }
     mpsi_state_leave(s);
   }
@@ -392,7 +395,7 @@ static int place_of(const mpsi_grid *grid, const int64_t *block, bool stale, con
 
 /* Whether the blocks of a file contain their particles, and the laws of these exist. A step relies
  * on it: a stencil outside its tile would be memory outside. */
-static bool holds_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_snapshot *from) {
+static bool contains_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_snapshot *from) {
   const mpsi_value *blocks = mpsi_values_find(&from->state, "blocks");
   const mpsi_value *x = mpsi_values_find(&from->fields, "position");
   const mpsi_value *law = mpsi_values_find(&from->fields, "material");
@@ -413,7 +416,7 @@ static bool holds_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_sn
   return true;
 }
 
-static bool holds_impulses(const mpsi_contacts *contacts, const mps_snapshot *from) {
+static bool contains_impulses(const mpsi_contacts *contacts, const mps_snapshot *from) {
   const mpsi_value *owners = mpsi_values_find(&from->state, "impulses_of");
   const mpsi_value *impulses = mpsi_values_find(&from->state, "impulses");
   const double dt = *(const double *)mpsi_values_find(&from->state, "impulses_dt")->data;
@@ -433,7 +436,7 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
   const mps_mpm *mpm = solver;
   const mpsi_value *sizes = mpsi_values_find(&from->state, "sizes");
   const double speed = *(const double *)mpsi_values_find(&from->state, "speed")->data;
-  *what = "its blocks do not hold its particles";
+  *what = "its blocks do not contain its particles";
   if (!(speed > 0.0 || (speed == 0.0 && from->particles == 0)) || !isfinite(speed) ||
       sizes->rows != 1 || from->particles > MPSI_MPM_MOST_PARTICLES)
     return false;
@@ -441,14 +444,14 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
     const int64_t size = ((const int64_t *)sizes->data)[k];
     if (size < 0 || size > MPSI_NO_WALL) return false;
   }
-  if (!holds_particles(&mpm->grid, &mpm->p, from)) return false;
+  if (!contains_particles(&mpm->grid, &mpm->p, from)) return false;
   *what = "the columns of its free-field sides have other laws or rows";
   for (int32_t k = 0; k < 2; k++) {
-    const mpsi_free_field *field = mpm->boundaries.hold[k].field;
+    const mpsi_free_field *field = mpm->boundaries.boundary[k].field;
     if (field && !mpsi_mpm_free_field_fits(field, k, &mpm->p.laws, from)) return false;
   }
   *what = "its impulses of contact are not one of each particle and body";
-  return holds_impulses(&mpm->contact, from);
+  return contains_impulses(&mpm->contact, from);
 }
 
 /* ---- public functions ------------------------------------------------------------------------ */
@@ -479,7 +482,7 @@ mpsi_state_of mpsi_mpm_state(void *solver) {
                          .identity = &mpm->identity,
                          .list = list_state,
                          .fits = fits,
-                         .make_room = mpsi_mpm_hold_room,
+                         .reserve = mpsi_mpm_hold_room,
                          .take_share = mpsi_mpm_restore_on_ranks,
                          .settle = settle,
                          .bind = bind,

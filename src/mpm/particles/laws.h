@@ -36,7 +36,7 @@ typedef struct mpsi_laws {
   mpsi_law_use *law; /* 0: of creation */
   int32_t count;
   mpsi_room room;     /* of these */
-  bool one_modulus;   /* law[0].modulus holds for all particles, whatever their state */
+  bool one_modulus;   /* law[0].modulus is that of all particles, whatever their state */
   bool at_once;       /* all laws act within G2P, by each particle's own change of volume */
   bool some_own;      /* some law takes each particle's own change of volume, */
   bool some_filtered; /* its mean stress is filtered */

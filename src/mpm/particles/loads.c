@@ -68,7 +68,7 @@ mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mps
   if (!rooms->force.item) return MPS_OK;
   field_forces of = {grid, p, loads};
   mpsi_mpm_for_cells(context, grid, p, begin_forces, &of);
-  for (int32_t k = 0; k < loads->list->room; k++)
+  for (int32_t k = 0; k < loads->list->capacity; k++)
     if (mpsi_load_of(loads, k)) add_traction(grid, p, mpsi_load_of(loads, k));
   return MPS_OK;
 }

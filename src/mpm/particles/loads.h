@@ -20,7 +20,7 @@ typedef struct mpsi_loads {
   double *external_force[3];    /* N; likewise */
 } mpsi_loads;
 
-/* The load of a number below list->room; NULL where it is free. */
+/* The load of a number below list->capacity; NULL where it is free. */
 static inline mpsi_traction *mpsi_load_of(const mpsi_loads *loads, int32_t number) {
   return loads->list->own[number];
 }

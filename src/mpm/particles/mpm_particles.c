@@ -86,7 +86,7 @@ mps_status mpsi_mpm_check_lost(mps_context *context, const mpsi_grid *grid, cons
     return MPS_OK;
   mps_error found = *mps_context_error(context);
   return mpsi_fail(context, function, MPS_ERROR_STATE,
-                   "%s, since the last step: edit its position, remove it or go back",
+                   "%s, since the last step: edit its position, remove it or roll back",
                    found.message);
 }
 

@@ -290,9 +290,13 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
     return mpsi_fail(mpm->context, function, MPS_ERROR_FIELD,
                      "the set has no field '%.60s' of float64", field);
   if (component < -1 || component >= *components)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "component of field '%s' is %d, allowed are 0 to %d, and -1 for all", field,
-                     component, *components - 1);
+    return *components == 1
+               ? mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                           "component of field '%s' is %d, and the field has one alone: 0 or -1",
+                           field, component)
+               : mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                           "component of field '%s' is %d, allowed are 0 to %d, and -1 for all",
+                           field, component, *components - 1);
   for (int64_t i = 0; i < count; i++)
     for (int c = 0; c < mpm->grid.dim; c++)
       if (!(fabs(points[3 * i + c]) <= 1e15))

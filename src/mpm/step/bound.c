@@ -65,12 +65,12 @@ bool mpsi_bound_is_calm(const mps_mpm *mpm) {
   const double dt = mpm->run.dt, most = CALM * mpm->grid.cell / dt;
   bool calm = !mpm->run.changed && dt <= mps_mpm_limit(mpm) && mpm->bound.fastest <= most &&
               !(applies(mpm) && mpm->bound.kinetic > FILLED * mpm->bound.most);
-  for (int32_t k = 0; k < mpm->loads.list->room; k++)
+  for (int32_t k = 0; k < mpm->loads.list->capacity; k++)
     if (load_jumps(mpsi_load_of(&mpm->loads, k))) calm = false;
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++)
+  for (int32_t k = 0; k < mpm->boundaries.count; k++)
     for (int c = 0; c < mpm->grid.dim; c++)
-      calm = calm && (mpm->boundaries.hold[k].kind == MPSI_BOUNDARY_NONE ||
-                      fabs(mpm->boundaries.hold[k].v[c]) <= most);
+      calm = calm && (mpm->boundaries.boundary[k].kind == MPSI_BOUNDARY_NONE ||
+                      fabs(mpm->boundaries.boundary[k].v[c]) <= most);
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     calm = calm && mpsi_contact_speed(mpm->contact.handle[b]) <= most;
   return calm;
@@ -78,7 +78,7 @@ bool mpsi_bound_is_calm(const mps_mpm *mpm) {
 
 void mpsi_bound_keep(mps_mpm *mpm) {
   mpm->run.changed = false;
-  for (int32_t k = 0; k < mpm->loads.list->room; k++) {
+  for (int32_t k = 0; k < mpm->loads.list->capacity; k++) {
     mpsi_traction *load = mpsi_load_of(&mpm->loads, k);
     if (load) memcpy(load->former, load->now, sizeof load->former);
   }
@@ -123,9 +123,9 @@ static double work_of_forces(const mps_mpm *mpm, double kinetic) {
 
 static double work_of_boundaries(const mpsi_boundaries *boundaries) {
   double work = 0.0;
-  for (int32_t k = 0; k < boundaries->holds; k++)
-    if (boundaries->hold[k].sums)
-      work += mpsi_exact_value(&boundaries->hold[k].sums->step[MPSI_BOUNDARY_WORK]);
+  for (int32_t k = 0; k < boundaries->count; k++)
+    if (boundaries->boundary[k].sums)
+      work += mpsi_exact_value(&boundaries->boundary[k].sums->step[MPSI_BOUNDARY_WORK]);
   return work;
 }
 

@@ -103,8 +103,8 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
   const bool apart = mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) || mpm->grid.apart;
   bool finds = false; /* an absorbing side needs the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
-    const mpsi_boundary *hold = &mpm->boundaries.hold[k];
-    finds = finds || (hold->finds && !(hold->settle > 0.0));
+    const mpsi_boundary *boundary = &mpm->boundaries.boundary[k];
+    finds = finds || (boundary->finds && !(boundary->settle > 0.0));
   }
   for (int64_t g = 0; g < mpm->grid.node_count; g++)
     mpm->grid.nodes[g].side = -1, mpm->grid.nodes[g].split = false;

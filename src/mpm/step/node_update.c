@@ -64,17 +64,17 @@ void mpsi_mpm_update_nodes(void *data, int64_t g, int32_t worker) {
   if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }
 
-/* Copies of the nodes of a block, in the worker's room. */
+/* Copies of the nodes of a block, in the worker's scratch memory. */
 typedef struct copies {
   mpsi_node before[MOST], old[MOST], held[MOST], damped[MOST];
   mpsi_side_impulses impulses;
 } copies;
-_Static_assert(sizeof(copies) <= MPSI_WORKER_ROOM, "room of a worker");
+_Static_assert(sizeof(copies) <= MPSI_WORKER_SCRATCH, "scratch of a worker");
 
 /* Friction with bodies, after mirrors. `held` receives the velocities that the nodes would have
  * without boundaries. */
-static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held, copies *room) {
-  mpsi_node *before = room->before, *old = room->old;
+static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held, copies *scratch) {
+  mpsi_node *before = scratch->before, *old = scratch->old;
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   memcpy(held, node, bytes);
@@ -104,11 +104,11 @@ static void damp(mps_mpm *mpm, int64_t g, const uint8_t *fixed, const mpsi_node 
                           (const mpsi_node *)damped);
 }
 
-static void finish_and_damp(mps_mpm *mpm, int64_t g, copies *room) {
+static void finish_and_damp(mps_mpm *mpm, int64_t g, copies *scratch) {
   uint8_t fixed[MOST] = {0};
-  apply_body_friction(mpm, g, room->held, room);
-  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
-  damp(mpm, g, fixed, (const mpsi_node *)room->held, room->damped);
+  apply_body_friction(mpm, g, scratch->held, scratch);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, scratch->impulses, fixed);
+  damp(mpm, g, fixed, (const mpsi_node *)scratch->held, scratch->damped);
 }
 
 static bool damps(const mps_mpm *mpm) {
@@ -116,42 +116,43 @@ static bool damps(const mps_mpm *mpm) {
          mpm->def.viscous_damping > 0.0;
 }
 
-static void finish(mps_mpm *mpm, int64_t g, copies *room) {
+static void finish(mps_mpm *mpm, int64_t g, copies *scratch) {
   uint8_t own[MOST], *fixed = own;
   if (mpm->prescribed.on) {
     fixed = mpm->prescribed.fixed + mpsi_first_node(&mpm->grid, g);
     if (damps(mpm)) {
-      apply_body_friction(mpm, g, mpm->prescribed.before + mpsi_first_node(&mpm->grid, g), room);
-      mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
+      apply_body_friction(mpm, g, mpm->prescribed.before + mpsi_first_node(&mpm->grid, g), scratch);
+      mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, scratch->impulses,
+                               fixed);
       return;
     }
   } else if (damps(mpm)) {
-    finish_and_damp(mpm, g, room);
+    finish_and_damp(mpm, g, scratch);
     return;
   }
   if (mpm->grid.nodes[g].pairs > 0) {
     mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
     mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   }
-  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, room->impulses, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, scratch->impulses, fixed);
 }
 
 void mpsi_mpm_finish_nodes(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
-  copies *room = mpm->grid.workers[worker].room;
+  copies *scratch = mpm->grid.workers[worker].scratch;
   const int32_t across = mpm->grid.nodes[g].across;
   mpsi_mpm_begin_held(&mpm->grid, &mpm->boundaries, g);
-  finish(mpm, g, room);
-  if (across >= 0) finish(mpm, across, room);
+  finish(mpm, g, scratch);
+  if (across >= 0) finish(mpm, across, scratch);
 }
 
 void mpsi_mpm_damp_after_lists(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   if (!damps(mpm)) return;
-  copies *room = mpm->grid.workers[worker].room;
+  copies *scratch = mpm->grid.workers[worker].scratch;
   damp(mpm, g, mpm->prescribed.fixed + first, (const mpsi_node *)mpm->prescribed.before + first,
-       room->damped);
+       scratch->damped);
   if (mpm->grid.nodes[g].across >= 0)
     mpsi_mpm_damp_after_lists(data, mpm->grid.nodes[g].across, worker);
 }

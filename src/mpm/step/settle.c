@@ -247,9 +247,9 @@ static mps_status read_def(mps_context *context, const char *function,
 static mps_status check_sides(mps_context *context, const mpsi_boundaries *boundaries,
                               const char *function) {
   if (!mpsi_mpm_has_free_field(boundaries)) return MPS_OK;
-  return mpsi_fail(
-      context, function, MPS_ERROR_STATE,
-      "a side is of kind 5 (FREE_FIELD): settle between rollers (2), then make it one");
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
+                   "a side is of kind MPS_BOUNDARY_FREE_FIELD: settle with MPS_BOUNDARY_ROLLER, "
+                   "then make it one");
 }
 
 mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mps_mpm_settled *out,

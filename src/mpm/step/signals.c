@@ -9,7 +9,7 @@
 static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
                                  const mpsi_loads *loads, const mpsi_run *run,
                                  const char *function) {
-  for (int32_t k = 0; k < loads->list->room; k++) {
+  for (int32_t k = 0; k < loads->list->capacity; k++) {
     mpsi_traction *load = mpsi_load_of(loads, k);
     for (int c = 0; load && c < grid->dim; c++) {
       const mpsi_signal_use use = {context, function, "load", k, c};
@@ -30,15 +30,15 @@ static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *gri
                                       const mpsi_boundaries *boundaries,
                                       const mpsi_settling *settling, const mpsi_run *run,
                                       const char *function, double dt) {
-  for (int32_t k = 0; k < boundaries->holds; k++) {
-    mpsi_boundary *hold = &boundaries->hold[k];
+  for (int32_t k = 0; k < boundaries->count; k++) {
+    mpsi_boundary *boundary = &boundaries->boundary[k];
     for (int c = 0; c < grid->dim; c++) {
       const mpsi_signal_use use = {context, function, "boundary", k, c};
       mpsi_signal_motion m = {0};
-      hold->v[c] = 0.0;
-      if (!hold->signal[c] || settling->on) continue;
-      MPSI_TRY(mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m));
-      hold->v[c] = hold->factor[c] * m.v;
+      boundary->v[c] = 0.0;
+      if (!boundary->signal[c] || settling->on) continue;
+      MPSI_TRY(mpsi_signal_evaluate(boundary->signal[c], use, run->time + 0.5 * dt, &m));
+      boundary->v[c] = boundary->factor[c] * m.v;
     }
   }
   return MPS_OK;
@@ -72,11 +72,11 @@ bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
   for (int32_t b = 0; b < contacts->bodies; b++)
     may = may || mpsi_signal_may_fail(contacts->handle[b]->def.friction_factor);
   for (int c = 0; c < grid->dim; c++) {
-    for (int32_t k = 0; k < loads->list->room; k++)
+    for (int32_t k = 0; k < loads->list->capacity; k++)
       may = may || (mpsi_load_of(loads, k) &&
                     mpsi_signal_may_fail(mpsi_load_of(loads, k)->def->signal[c]));
-    for (int32_t k = 0; k < boundaries->holds; k++)
-      may = may || mpsi_signal_may_fail(boundaries->hold[k].signal[c]);
+    for (int32_t k = 0; k < boundaries->count; k++)
+      may = may || mpsi_signal_may_fail(boundaries->boundary[k].signal[c]);
   }
   return may;
 }
@@ -87,10 +87,10 @@ bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
 static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
                          const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
                          const mpsi_settling *settling, mpsi_given *list) {
-  for (int32_t k = 0; k < boundaries->holds; k++)
-    if (boundaries->hold[k].kind != MPSI_BOUNDARY_NONE)
-      mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->hold[k].v);
-  for (int32_t k = 0; k < loads->list->room; k++)
+  for (int32_t k = 0; k < boundaries->count; k++)
+    if (boundaries->boundary[k].kind != MPSI_BOUNDARY_NONE)
+      mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->boundary[k].v);
+  for (int32_t k = 0; k < loads->list->capacity; k++)
     if (mpsi_load_of(loads, k))
       mpsi_give_vector(list, "the present factor on a load", grid->dim,
                        mpsi_load_of(loads, k)->now);

@@ -168,8 +168,8 @@ static mps_status find_lists(step *s) {
   const mpsi_contact_stage stage = mpsi_prescribed_stage_of(mpm);
   const bool before =
       mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) || mpm->def.viscous_damping > 0.0;
-  for (int32_t b = MPSI_SIDES; b < mpm->boundaries.holds && predicts(s); b++)
-    if (s->status == MPS_OK && mpm->boundaries.hold[b].ids)
+  for (int32_t b = MPSI_SIDES; b < mpm->boundaries.count && predicts(s); b++)
+    if (s->status == MPS_OK && mpm->boundaries.boundary[b].ids)
       s->status = mpsi_fail(mpm->context, s->function, MPS_ERROR_UNSUPPORTED,
                             "boundary %d is a list of particles, which is not possible with "
                             "implicit pore pressures: prescribe a box of nodes, or use explicit "

@@ -52,8 +52,8 @@ static void restore_impulses(mpsi_contacts *contacts, const mpsi_undo *undo, int
 /* Copies the sums of boundaries, or restores them (`back`). */
 static void copy_sums(const mpsi_boundaries *boundaries, const mpsi_undo *undo, bool back) {
   mpsi_boundary_sums *saved = undo->sums_room.item;
-  for (int32_t k = 0; k < boundaries->holds; k++) {
-    mpsi_boundary_sums *sums = boundaries->hold[k].sums;
+  for (int32_t k = 0; k < boundaries->count; k++) {
+    mpsi_boundary_sums *sums = boundaries->boundary[k].sums;
     if (!sums) continue;
     if (back)
       *sums = *saved++;
@@ -71,13 +71,13 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   mpsi_bound_begin(mpm);
   u->on = !mpsi_bound_is_calm(mpm) || mpm->water || mpsi_bound_by_law(&mpm->p);
   if (!u->on) return MPS_OK;
-  int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
-  for (int32_t k = 0; k < b->holds; k++) holds += b->hold[k].sums != NULL;
+  int64_t most = MPSI_UNDO_COLUMNS, sums = 0;
+  for (int32_t k = 0; k < b->count; k++) sums += b->boundary[k].sums != NULL;
   for (int32_t k = 0; k < mpm->p.laws.count; k++) most += mpm->p.laws.law[k].columns;
   bool good =
       mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
-      mpsi_room_ensure(mpm->context, &u->hold_room, b->holds, sizeof *b->hold) &&
-      mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_boundary_sums)) &&
+      mpsi_room_ensure(mpm->context, &u->boundary_room, b->count, sizeof *b->boundary) &&
+      mpsi_room_ensure(mpm->context, &u->sums_room, sums, sizeof(mpsi_boundary_sums)) &&
       mpsi_room_ensure(mpm->context, &u->dashpot_room, b->dashpot_count, sizeof *b->dashpot);
   u->column = u->list_room.item;
   if (good) list_columns(&mpm->grid, &mpm->p, seepage, &mpm->undo);
@@ -86,7 +86,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   if (!good)
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
-  memcpy(u->hold_room.item, b->hold, (size_t)b->holds * sizeof *b->hold);
+  memcpy(u->boundary_room.item, b->boundary, (size_t)b->count * sizeof *b->boundary);
   copy_sums(&mpm->boundaries, &mpm->undo, false);
   save_impulses(&mpm->contact, &mpm->undo, 0);
   save_impulses(&mpm->prescribed.constraints, &mpm->undo, 1);
@@ -107,7 +107,7 @@ void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries
                    mpsi_contacts *contacts, mpsi_prescribed *prescribed, const mpsi_undo *u) {
   for (int32_t c = 0; c < u->columns; c++)
     memcpy(u->column[c], saved(u, c, p->count), (size_t)p->count * sizeof(double));
-  memcpy(b->hold, u->hold_room.item, (size_t)b->holds * sizeof *b->hold);
+  memcpy(b->boundary, u->boundary_room.item, (size_t)b->count * sizeof *b->boundary);
   copy_sums(b, u, true);
   restore_impulses(contacts, u, 0);
   restore_impulses(&prescribed->constraints, u, 1);

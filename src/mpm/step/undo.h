@@ -17,7 +17,7 @@ typedef struct mpsi_undo {
       *column; /* columns that the step writes; memory for MPSI_UNDO_COLUMNS and all histories */
   int32_t columns;
   mpsi_room list_room, room, dashpot_room;
-  mpsi_room hold_room; /* mpsi_boundary, of each number */
+  mpsi_room boundary_room; /* mpsi_boundary, of each number */
   mpsi_room sums_room; /* mpsi_boundary_sums, of each boundary that has some */
   struct {
     void *kept; /* impulses in the step before: of contacts, of lists of particles */

@@ -6,7 +6,7 @@
  *
  * The particles of a cell are those with the same stencil at the beginning of the step, whichever
  * block they are sorted to. After G2P the values of the nodes are not needed any more: the lowest
- * node of each stencil then holds {sum V, sum V tr(d)} of its cell. In plane strain a deviation
+ * node of each stencil then has {sum V, sum V tr(d)} of its cell. In plane strain a deviation
  * from the mean changes the out-of-plane strain too, by its third, as in 3D: else the deviatoric
  * part would change.
  *

@@ -177,14 +177,14 @@ MPSI_INLINE void gather_body(const mpsi_transfer *work, int dim, int spline, boo
   }
 }
 
-/* Arrays of a chunk, in the worker's room; the last two of a segment at a wall. */
-typedef struct g2p_room {
+/* Arrays of a chunk, in the worker's scratch memory; the last two of a segment at a wall. */
+typedef struct g2p_scratch {
   mpsi_places places;
   mpsi_gathered from, old; /* after and before the forces */
   mpsi_wall wall;
   mpsi_gathered along;
-} g2p_room;
-_Static_assert(sizeof(g2p_room) <= MPSI_WORKER_ROOM, "room of a worker");
+} g2p_scratch;
+_Static_assert(sizeof(g2p_scratch) <= MPSI_WORKER_SCRATCH, "scratch of a worker");
 
 /* Velocities, slopes and derivatives of a segment of at most MPSI_LANES particles at the wall
  * across `axis`, where the derivative across the wall is the slope of the fit. */
@@ -193,9 +193,9 @@ MPSI_INLINE void gather_wall_body(const mpsi_transfer *work, int dim, int spline
                                   mpsi_gathered *out) {
   const int k = segment->begin;
   const size_t bytes = (size_t)(segment->end - k) * sizeof(double);
-  g2p_room *room = work->worker->room;
-  mpsi_wall *wall = &room->wall;
-  mpsi_gathered *along = &room->along;
+  g2p_scratch *scratch = work->worker->scratch;
+  mpsi_wall *wall = &scratch->wall;
+  mpsi_gathered *along = &scratch->along;
   const lanes of = {&wall->places, 0, rows};
   for (int part = 0; part < 2; part++) {
     mpsi_wall_places(work, dim, spline, segment, axis,
@@ -477,8 +477,8 @@ MPSI_INLINE void keep_stencils(const mpsi_places *places, int dim, int spline,
 /* Velocities and gradients of particles [begin, begin + n), one segment after the other. */
 MPSI_INLINE void gather_chunk(const mpsi_transfer *work, int dim, int spline, int64_t begin, int n,
                               mpsi_gathered *out) {
-  g2p_room *room = work->worker->room;
-  mpsi_places *places = &room->places;
+  g2p_scratch *scratch = work->worker->scratch;
+  mpsi_places *places = &scratch->places;
   /* weights of x and z; the sums along y are polynomials */
   mpsi_find_places(work, dim, spline, 5, 5, begin, n, places);
   mpsi_pad_places(dim, spline, 5, n, places);
@@ -511,7 +511,7 @@ static mpsi_transfer before_forces(const mpsi_transfer *work, mpsi_worker *worke
 MPSI_INLINE void find_flip_part(const mpsi_transfer *work, int dim, int spline, int64_t begin,
                                 int n, mpsi_gathered *out) {
   mpsi_worker worker;
-  mpsi_gathered *old = &((g2p_room *)work->worker->room)->old;
+  mpsi_gathered *old = &((g2p_scratch *)work->worker->scratch)->old;
   const mpsi_transfer before = before_forces(work, &worker);
   gather_chunk(&before, dim, spline, begin, n, old);
   for (int c = 0; c < dim; c++)
@@ -522,7 +522,7 @@ MPSI_INLINE void find_flip_part(const mpsi_transfer *work, int dim, int spline, 
 MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
                            int n, const mpsi_law_block *laws) {
   const int dim = mpsi_dim_of(geometry);
-  mpsi_gathered *from = &((g2p_room *)work->worker->room)->from;
+  mpsi_gathered *from = &((g2p_scratch *)work->worker->scratch)->from;
   double *D[9];
   gather_chunk(work, dim, spline, begin, n, from);
   if (work->keep > 0.0) find_flip_part(work, dim, spline, begin, n, from);

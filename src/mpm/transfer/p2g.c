@@ -436,17 +436,17 @@ typedef struct chunk {
   arranged_parts sum, force;
 } chunk;
 
-/* Arrays of a chunk, in the worker's room; `part` also for a segment at a wall, behind it those of
- * such a segment alone. */
-typedef struct p2g_room {
+/* Arrays of a chunk, in the worker's scratch memory; `part` also for a segment at a wall, behind it
+ * those of such a segment alone. */
+typedef struct p2g_scratch {
   mpsi_places places;
   chunk all;
   parts part;
   columns along; /* forces that act along the wall */
   mpsi_wall wall;
   arranged_parts added;
-} p2g_room;
-_Static_assert(sizeof(p2g_room) <= MPSI_WORKER_ROOM, "room of a worker");
+} p2g_scratch;
+_Static_assert(sizeof(p2g_scratch) <= MPSI_WORKER_SCRATCH, "scratch of a worker");
 
 /* Adds a segment at the wall across `axis`: mass and momentum to the tile, force and
  * excess mass (see mpsi_node) to the tile of forces. Derivatives across the wall and along it have
@@ -455,29 +455,29 @@ MPSI_INLINE void add_at_wall(const mpsi_transfer *work, int geometry, int spline
                              const mpsi_segment *segment, int axis) {
   const int dim = mpsi_dim_of(geometry), n = segment->end - segment->begin;
   const size_t bytes = sizeof(double[4][MPSI_CHUNK]);
-  p2g_room *room = work->worker->room;
-  mpsi_wall *wall = &room->wall;
-  parts *part = &room->part;
-  arranged_parts *added = &room->added;
-  memset(room->along, 0, sizeof room->along);
+  p2g_scratch *scratch = work->worker->scratch;
+  mpsi_wall *wall = &scratch->wall;
+  parts *part = &scratch->part;
+  arranged_parts *added = &scratch->added;
+  memset(scratch->along, 0, sizeof scratch->along);
   find_parts(work, geometry, spline, true, segment->places->chunk + segment->begin, n, part);
   mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_VALUE, wall);
   arrange_parts(dim, spline, &wall->places, n, part->sum, added);
   add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->tile);
   for (int k = 0; k < n; k++) {
-    room->along[0][MPSI_EXCESS][k] = part->sum[0][MPSI_MASS][k] * wall->mass[k];
+    scratch->along[0][MPSI_EXCESS][k] = part->sum[0][MPSI_MASS][k] * wall->mass[k];
     part->force[0][MPSI_EXCESS][k] = -part->sum[0][MPSI_MASS][k];
   }
   for (int d = 0; d < dim; d++) {
     if (d == axis) continue;
-    memcpy(room->along[1 + d], part->force[1 + d], bytes);
+    memcpy(scratch->along[1 + d], part->force[1 + d], bytes);
     memset(part->force[1 + d], 0, bytes);
   }
   mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_SLOPE, wall);
   arrange_parts(dim, spline, &wall->places, n, part->force, added);
   add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->force);
   mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_ALONG, wall);
-  arrange_parts(dim, spline, &wall->places, n, room->along, added);
+  arrange_parts(dim, spline, &wall->places, n, scratch->along, added);
   add_segment(dim, spline, &wall->places, &wall->rows, 0, n, added, work->worker->force);
 }
 
@@ -534,9 +534,9 @@ MPSI_INLINE void flush(const mpsi_grid *grid, double dt, const mpsi_cell_block *
 }
 
 MPSI_INLINE void find_chunk(const mpsi_transfer *work, int geometry, int spline, bool split,
-                            p2g_room *room) {
-  mpsi_places *places = &room->places;
-  chunk *out = &room->all;
+                            p2g_scratch *scratch) {
+  mpsi_places *places = &scratch->places;
+  chunk *out = &scratch->all;
   const int dim = mpsi_dim_of(geometry), n = places->count;
   find_rows(spline, dim == 2 && MPSI_WIDE == 1, places, n, &out->rows);
   if (dim == 3) {
@@ -547,9 +547,9 @@ MPSI_INLINE void find_chunk(const mpsi_transfer *work, int geometry, int spline,
 #if MPSI_WIDE == 2
   find_pair_parts(work, geometry, spline, split, places, &out->sum.pair, &out->force.pair);
 #else
-  find_parts(work, geometry, spline, split, places->chunk, n, &room->part);
-  arrange_parts(dim, spline, places, n, room->part.sum, &out->sum);
-  if (split) arrange_parts(dim, spline, places, n, room->part.force, &out->force);
+  find_parts(work, geometry, spline, split, places->chunk, n, &scratch->part);
+  arrange_parts(dim, spline, places, n, scratch->part.sum, &out->sum);
+  if (split) arrange_parts(dim, spline, places, n, scratch->part.force, &out->force);
 #endif
 }
 
@@ -570,15 +570,15 @@ MPSI_INLINE void p2g_chunk(const mpsi_transfer *work, int geometry, int spline, 
   const int dim = mpsi_dim_of(geometry);
   const mpsi_cell_block *cells = work->cells;
   const mpsi_worker *worker = work->worker;
-  p2g_room *room = worker->room;
-  const mpsi_places *places = &room->places;
-  const chunk *all = &room->all;
+  p2g_scratch *scratch = worker->scratch;
+  const mpsi_places *places = &scratch->places;
+  const chunk *all = &scratch->all;
   mpsi_find_places(work, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0, begin,
-                   n, &room->places);
+                   n, &scratch->places);
   if (cells->split)
-    find_chunk(work, geometry, spline, true, room);
+    find_chunk(work, geometry, spline, true, scratch);
   else
-    find_chunk(work, geometry, spline, false, room);
+    find_chunk(work, geometry, spline, false, scratch);
   for (int k = 0, end; k < n; k = end) {
     for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places->first[end] == places->first[k];)
       end++;

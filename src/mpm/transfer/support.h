@@ -3,7 +3,7 @@
  * each in a lane of a vector.
  *
  * Active for a particle are the nodes of its stencil in the domain that lie outside all bodies; the
- * corners of its own cell; and corners of other cells that hold particles, if they are on the
+ * corners of its own cell; and corners of other cells with particles, if they are on the
  * particle's side of the surface, n . (x_p - x_i) > 0. Without the corners of its own cell the
  * moment matrix M can be singular; without the test of the side momentum passes through thin walls.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -73,7 +73,7 @@ MPSI_INLINE void mpsi_make_support(const mpsi_grid *grid, const mpsi_cell_block 
     }
 }
 
-/* Block that holds node (i, j, k) of the stencil, and the node's number in that block. */
+/* Block that contains node (i, j, k) of the stencil, and the node's number in that block. */
 MPSI_INLINE int32_t mpsi_support_block(const mpsi_cell_block *cells, const mpsi_support *s, int i,
                                        int j, int k) {
   return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];

@@ -499,7 +499,7 @@ static void exchange_in_column(mps_mpm *mpm, int side, mpsi_free_field *f) {
 void mpsi_pore_update_columns(mps_mpm *mpm) {
   if (!mpsi_pore_responds(mpm->water)) return;
   for (int side = 0; side < 2; side++) {
-    mpsi_free_field *f = mpm->boundaries.hold[side].field;
+    mpsi_free_field *f = mpm->boundaries.boundary[side].field;
     if (!f) continue;
     if (mpm->water->due) exchange_in_column(mpm, side, f);
     for (int64_t k = 0; k < f->count; k++) {

@@ -92,7 +92,7 @@ static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *g
   for (int c = 0; c < grid->dim; c++) {
     const bool above = node[c] > grid->high[c];
     if (!above && node[c] >= grid->low[c]) continue;
-    const mpsi_boundary *side = &mpm->boundaries.hold[2 * c + above];
+    const mpsi_boundary *side = &mpm->boundaries.boundary[2 * c + above];
     node[c] = 2 * (above ? grid->high[c] : grid->low[c]) - node[c];
     for (int a = 0; a < grid->dim; a++) {
       if (!mpsi_side_turns(side, c, a)) continue;

@@ -75,9 +75,9 @@ static void foresee(const mps_mpm *mpm, const wall_nodes *to, const mpsi_held *a
                     const mpsi_boundary *hold, int k) {
   const mpsi_boundary_kind *kind = mpsi_kind_of(hold);
   const bool whole = kind->prescribes == MPSI_PRESCRIBES_ALL;
-  const uint32_t dofs = at->hold < MPSI_SIDES && !whole ? 1u << hold->axis : hold->dofs;
+  const uint32_t dofs = at->boundary < MPSI_SIDES && !whole ? 1u << hold->axis : hold->dofs;
   if (kind->friction) {
-    foresee_friction(to, hold, at->hold, k);
+    foresee_friction(to, hold, at->boundary, k);
   } else if (kind->absorbs) {
     const mpsi_dashpot *plane = &mpm->boundaries.dashpot[at->dashpot];
     foresee_dashpot(to, hold, &plane[mpsi_plane_index(hold->axis, k)], k);
@@ -90,9 +90,9 @@ static void foresee(const mps_mpm *mpm, const wall_nodes *to, const mpsi_held *a
 static void apply_boundaries(const mps_mpm *mpm, const wall_nodes *to, int64_t g) {
   const mpsi_grid *grid = &mpm->grid;
   for (int turn = MPSI_TURN_ACROSS; turn < MPSI_TURNS; turn++)
-    for (int32_t t = 0; t < grid->nodes[g].holds; t++) {
+    for (int32_t t = 0; t < grid->nodes[g].held_count; t++) {
       const mpsi_held *at = &mpm->boundaries.held[grid->nodes[g].first_held + t];
-      const mpsi_boundary *hold = &mpm->boundaries.hold[at->hold];
+      const mpsi_boundary *hold = &mpm->boundaries.boundary[at->boundary];
       mpsi_range in;
       if ((int)mpsi_kind_of(hold)->turn != turn ||
           !mpsi_find_range(grid->dim, grid->nodes[g].at, hold, &in))

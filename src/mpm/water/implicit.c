@@ -131,7 +131,7 @@ static void add_reaction(mps_mpm *mpm, int64_t g, int local) {
   const double middle[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
   mpsi_node_position(grid, grid->nodes[g].at, middle, x);
   for (int d = 0; d < 2 * grid->dim; d++) {
-    mpsi_boundary *side = &mpm->boundaries.hold[d];
+    mpsi_boundary *side = &mpm->boundaries.boundary[d];
     double impulse[3] = {0.0}, moment[3];
     impulse[d / 2] = mpm->run.dt * (s->ahead[cell] + s->change[cell]) * s->turned[cell][d];
     if (impulse[d / 2] == 0.0) continue;

@@ -86,15 +86,14 @@ static mps_status refuse_scene(const mps_mpm *mpm, const char *function) {
     if (mpm->contact.state[b].parts)
       return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                        "contact %d is with a body that has a wall thinner than %g cells of %g m: "
-                       "implicit pressures of pore water (scheme 1) do not hold beside it, choose "
-                       "smaller cells or explicit pressures (scheme 0)",
+                       "MPS_PORE_SCHEME_IMPLICIT does not hold beside it, choose smaller cells or "
+                       "MPS_PORE_SCHEME_EXPLICIT",
                        b, MPSI_THIN_CELLS, mpm->grid.cell);
   if (mpm->def.local_damping > 0.0)
-    return mpsi_fail(
-        mpm->context, function, MPS_ERROR_STATE,
-        "local_damping is %g: with implicit pressures of pore water (scheme 1) it must "
-        "be 0, use viscous_damping",
-        mpm->def.local_damping);
+    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                     "local_damping is %g, must be 0 where the scheme of pore water is "
+                     "MPS_PORE_SCHEME_IMPLICIT: use viscous_damping",
+                     mpm->def.local_damping);
   return MPS_OK;
 }
 
@@ -104,7 +103,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   status = renew_layers(mpm, function, status);
   int64_t column = 0;
   for (int side = 0; side < 2; side++) {
-    const mpsi_free_field *field = mpm->boundaries.hold[side].field;
+    const mpsi_free_field *field = mpm->boundaries.boundary[side].field;
     if (field && field->nodes > column) column = field->nodes;
   }
   if (status == MPS_OK)
