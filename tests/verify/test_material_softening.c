@@ -19,14 +19,12 @@ static mps_material_mohr_coulomb_def coulomb(double phi, double c) {
 }
 
 static mps_material *make_mises(const mps_material_von_mises_def *d) {
-  mps_material *m = NULL;
-  OK(mps_material_create_von_mises(context, d, &m));
+  MAKE_KEPT(material, m, create_von_mises, context, d);
   return m;
 }
 
 static mps_material *make_coulomb(const mps_material_mohr_coulomb_def *d) {
-  mps_material *m = NULL;
-  OK(mps_material_create_mohr_coulomb(context, d, &m));
+  MAKE_KEPT(material, m, create_mohr_coulomb, context, d);
   return m;
 }
 
