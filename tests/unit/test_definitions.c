@@ -991,9 +991,11 @@ TEST(definitions_come_back_with_the_callers_size) {
   assert_int_equal(part.size, size);
   OK(mps_fluid_get_def(fluid, &part.fluid));
   assert_int_equal(part.size, sizeof part.fluid);
+  mps_fluid_destroy(&fluid);
   OK(mps_dynamics_create(context, set, NULL, &dynamics));
   OK(mps_solver_get_def(mps_dynamics_solver(dynamics), MPS_DEF_DYNAMICS, &part.dynamics, size));
   assert_int_equal(part.size, size);
+  mps_dynamics_destroy(&dynamics);
   MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
   USING(mpm, mps_mpm_create(context, set, material, &given, &mpm), .cell = 1.0);
   OK(mps_solver_get_def(mps_mpm_solver(mpm), MPS_DEF_MPM, &part.mpm, size));

@@ -59,6 +59,7 @@ TEST(solvers_name_constants_and_one_argument) {
   const mps_grid *grid = mps_mpm_grid(mpm);
   said(mps_grid_evaluate(grid, NULL, 0, 1, &value, &value, NULL), "field is NULL");
   said(mps_grid_evaluate(grid, "velocity", 0, 1, NULL, &value, NULL), "points is NULL");
+  mps_mpm_destroy(&mpm);
   mps_geostatic_def ground = mps_geostatic_defaults();
   said(mps_particles_set_geostatic(set, &ground),
        "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
