@@ -133,26 +133,6 @@ TEST(no_path_goes_beyond) {
   }
 }
 
-/* ---- refused --------------------------------------------------------------------------------- */
-
-TEST(bad_ratios_are_refused) {
-  static const struct {
-    double e, e_max;
-    const char *text;
-  } bad[] = {{0.6, NAN, "max_void_ratio is nan"},
-             {NAN, 0.9, "void_ratio is NaN"},
-             {0.0, 0.9, "void_ratio is 0, must be 0.001 to 100"},
-             {0.6, 0.5, "max_void_ratio is 0.5, must be at least void_ratio, 0.6"},
-             {0.6, 101.0, "max_void_ratio is 101"},
-             {-1.0, 0.9, "void_ratio is -1"}};
-  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-    DEF(material_mohr_coulomb, def, .young = YOUNG, .friction = PHI, .dilation = PSI,
-        .void_ratio = bad[k].e, .max_void_ratio = bad[k].e_max);
-    mps_material *m = NULL;
-    REFUSES(mps_material_create_mohr_coulomb(context, &def, &m), bad[k].text);
-  }
-}
-
 /* ---- in a solver ----------------------------------------------------------------------------- */
 
 static int warnings;
