@@ -62,8 +62,7 @@ static inline void bounds_print(const bounds_ground *g) {
 static inline mps_material *bounds_sand(mps_context *context, const bounds_ground *g) {
   DEF(material_mohr_coulomb, law, .young = g->young, .poisson = g->poisson, .friction = g->friction,
       .dilation = g->dilation, .cohesion = g->cohesion, .void_ratio = 0.6, .max_void_ratio = 0.9);
-  mps_material *m = NULL;
-  OK(mps_material_create_mohr_coulomb(context, &law, &m));
+  MAKE_KEPT(material, m, create_mohr_coulomb, context, &law);
   return m;
 }
 
@@ -231,14 +230,11 @@ static inline void bounds_footing(mps_context *context, int number, double *marg
   OK(mps_particles_set(s.particles, "density", 0, 2000.0));
   DEF(material_von_mises, law, .young = stiff * su, .poisson = bounds_even(&d, 0.3, 0.49),
       .yield_stress = sqrt(3.0) * su);
-  mps_material *clay = NULL;
-  OK(mps_material_create_von_mises(context, &law, &clay));
-  DEF(mpm, def, .cell = h, .spline = 2 + bounds_choice(&d, 2));
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width;
+  MAKE(material, clay, create_von_mises, context, &law);
+  DEF(mpm, def, .cell = h, .spline = 2 + bounds_choice(&d, 2), .lower[0] = def.lower[1] = 0.0,
+      .upper[0] = width);
   OK(mps_mpm_create(context, s.particles, clay, &def, &s.mpm));
-  mps_material_destroy(&clay);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  scoped_body *footing = NULL;
   scoped_contact *contact = NULL;
   DEF(body, at, .position[1] = depth + 0.25);
   DEF(contact, surface, .friction = bounds_choice(&d, 2) ? 1.0 : 0.0, .corner = 0.6 * h);
@@ -246,7 +242,7 @@ static inline void bounds_footing(mps_context *context, int number, double *marg
   const double way = 40.0 * BOUNDS_PRANDTL * b / stiff; /* ten times the elastic settlement */
   const double wave = sqrt(law.young * 2.0 / 2000.0);
   motion.velocity[1] = -4e-4 * wave * 500.0 / stiff;
-  OK(mps_body_create_box(context, &at, 2.0 * b, 0.5, &footing));
+  MAKE(body, footing, create_box, context, &at, 2.0 * b, 0.5);
   OK(mps_mpm_add_contact(s.mpm, footing, &surface, &contact));
   OK(mps_body_set_motion(footing, &motion));
   mps_reaction r[2];
@@ -281,8 +277,7 @@ static inline void bounds_tank(mps_context *context, int number) {
   mps_edit u;
   OK(mps_particles_edit(t.water, "velocity", &u));
   const double speed = bounds_even(&d, 0.05, 0.3) * sqrt(TANK_G * depth) * depth / length;
-  mps_view x;
-  OK(mps_particles_view(t.water, "position", &x));
+  mps_view x = view_field(t.water, "position");
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&u, k, 0) = speed * sin(TANK_PI * *mps_view_f64(&x, k, 0) / length);
   OK(mps_particles_commit(t.water, &u));
@@ -315,21 +310,19 @@ static inline void bounds_consolidation(mps_context *context, int number) {
   const double n = bounds_even(&d, 0.3, 0.5), start = bounds_scale(&d, 1e-4, 5e-3) * g.young;
   g.cohesion = g.young; /* elastic */
   scoped_mpm_scene s = bounds_bed(context, &g, 2.0 * g.cell, 1.0, 0.0, true, false);
-  mps_pore_water_def water = mps_pore_water_defaults();
   const double modulus =
       g.young * (1.0 - g.poisson) / ((1.0 + g.poisson) * (1.0 - 2.0 * g.poisson));
-  water.porosity = n, water.bulk = bounds_scale(&d, 10.0, 100.0) * n * modulus;
+  DEF(pore_water, water, .porosity = n, .bulk = bounds_scale(&d, 10.0, 100.0) * n * modulus);
   /* Terzaghi's time factor after the steps is about .3 */
   water.permeability = fmin(1e-2, bounds_scale(&d, 0.2, 2.0) * 1e3 * 9.81 / sqrt(2e3 * modulus));
   OK(mps_mpm_add_pore_water(s.mpm, &water));
-  mps_edit u = mpm_scene_edit(&s, "pore_pressure");
-  mps_edit stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < u.view.shape[0]; k++) {
-    *mps_edit_f64(&u, k, 0) = start;
-    for (int c = 0; c < 3; c++) *mps_edit_f64(&stress, k, c) = start; /* in equilibrium: u - u */
-  }
-  mpm_scene_commit(&s, &u);
-  mpm_scene_commit(&s, &stress);
+  EDIT(u, s.particles, "pore_pressure")
+    EDIT(stress, s.particles, "stress")
+      for (int64_t k = 0; k < u.view.shape[0]; k++) {
+        *mps_edit_f64(&u, k, 0) = start;
+        for (int c = 0; c < 3; c++)
+          *mps_edit_f64(&stress, k, c) = start; /* in equilibrium: u - u */
+      }
   const double before = mpm_scene_totals(&s).volume;
   OK(mps_mpm_step(s.mpm, 3000));
   mps_pore_budget budget;

@@ -31,9 +31,8 @@ static inline void undone_is_told(mps_context *context, mps_status status, const
 static inline void undone_all_finite(mps_particles *set) {
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
-    mps_view view;
     OK(mps_particles_get_field_info(set, f, &info));
-    OK(mps_particles_view(set, info.name, &view));
+    mps_view view = view_field(set, info.name);
     for (int64_t k = 0; info.dtype.code == 2 && k < view.shape[0]; k++)
       for (int64_t c = 0; c < view.shape[1]; c++) assert_true(isfinite(*mps_view_f64(&view, k, c)));
   }
@@ -45,10 +44,9 @@ static inline void undone_all_finite(mps_particles *set) {
 static inline mpm_scene undone_block(mps_context *context, double h, double young, bool wet,
                                      bool given) {
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, young);
-  mps_mpm_def def = mps_mpm_defaults();
   const double c = sqrt((young * 1.35 + (wet ? 1e8 / 0.4 : 0.0)) / 1000.0);
   mpm_scene_box(&s, 0.0, 0.0, 6.0 * h, 5.0 * h);
-  def.cell = h, def.lower[1] = 0.0, def.gravity[1] = -9.81;
+  DEF(mpm, def, .cell = h, .lower[1] = 0.0, .gravity[1] = -9.81);
   if (given) def.dt = 0.5 * h / c;
   mpm_scene_solve(&s, &def);
   if (wet) {
@@ -68,12 +66,11 @@ static inline void undone_mpm_load(mps_context *context, int grid, int stiff, bo
   mpm_scene s[2];
   const int64_t id = 7;
   int32_t number = -1;
-  mps_mpm_load_def load = mps_mpm_load_defaults();
   for (int k = 0; k < 2; k++) {
     s[k] = undone_block(context, undone_cells[grid], undone_young[stiff], wet, false);
     OK(mps_mpm_step(s[k].mpm, 12));
   }
-  load.ids = &id, load.id_count = 1;
+  DEF(mpm_load, load, .ids = &id, .id_count = 1);
   static const double strong[3] = {1e60, 1e125, -1e140};
   for (int k = 0; k < 3; k++) {
     load.traction[k % 2] = strong[k];
@@ -123,18 +120,15 @@ static inline void undone_dynamics(mps_context *context, int grid, int stiff, in
   const bool euler = integrator == MPS_DYNAMICS_INTEGRATOR_EULER;
   scoped_particles *set = soil_particles(context, D, 8.0 * D, 6.0 * D, 1, &layer);
   DEF(dynamics, def, .integrator = integrator, .dt = euler ? 0.5 * D / vs : NAN);
-  scoped_dynamics *d = NULL;
-  mps_edit v;
   mps_status status = MPS_OK;
   uint64_t before = 0;
   int steps = 0;
   bounds_draw draw = bounds_begin(grid);
   OK(mps_particles_set(set, "velocity", 0, 0.0));
-  OK(mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = 0; k < v.view.shape[0]; k++)
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&v, k, c) = 1e-3 * bounds_even(&draw, -1.0, 1.0);
-  OK(mps_particles_commit(set, &v));
-  OK(mps_dynamics_create(context, set, &def, &d));
+  EDIT(v, set, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++)
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&v, k, c) = 1e-3 * bounds_even(&draw, -1.0, 1.0);
+  MAKE(dynamics, d, create, context, set, &def);
   mps_dynamics_linear_limit of;
   OK(mps_dynamics_find_limit(d, 0.0, &of));
   const double limit = of.dt;
@@ -164,9 +158,8 @@ static inline void undone_fluid(mps_context *context, int grid, double factor) {
   const double l0 = 0.2 * undone_cells[grid];
   scoped_tank t = tank_make(context, 16.0 * l0, 8.0 * l0, l0, NULL, 0.02 * sqrt(l0 / TANK_G));
   mps_edit u;
-  mps_view x;
   OK(mps_particles_edit(t.water, "velocity", &u));
-  OK(mps_particles_view(t.water, "position", &x));
+  mps_view x = view_field(t.water, "position");
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&u, k, 0) =
         0.3 * sqrt(TANK_G * l0) * sin(TANK_PI * *mps_view_f64(&x, k, 0) / (16.0 * l0));
@@ -191,23 +184,14 @@ static inline void undone_elastic(mps_context *context, int grid, int stiff) {
   const double D = undone_cells[grid], lo[2] = {0.0, 0.0}, hi[2] = {6.0 * D, 4.0 * D};
   const int64_t id = 9;
   const double force[3] = {1e140, 0.0, 0.0};
-  DEF(particles, set_def, .spacing = D);
-  scoped_particles *set = NULL;
-  scoped_elastic *e = NULL;
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   mps_elastic_load_def load = mps_elastic_load_defaults();
   int32_t number = -1;
-  OK(mps_particles_create(context, &set_def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_particles_set(set, "young", 0, undone_young[stiff]));
-  OK(mps_particles_set(set, "poisson", 0, 0.3));
-  OK(mps_elastic_create(context, set, NULL, &e));
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = D;
+  scoped_particles *set = box_of(context, D, lo, hi);
+  SET_FIELDS(set, {"density", 1000.0}, {"young", undone_young[stiff]}, {"poisson", 0.3});
+  MAKE(elastic, e, create, context, set, NULL);
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = D);
   OK(mps_elastic_add_boundary(e, &foot, NULL));
-  motion.dt = 1e-3;
-  OK(mps_elastic_start(e, &motion));
+  USING(elastic_motion, mps_elastic_start(e, &given), .dt = 1e-3);
   OK(mps_elastic_step(e, 3));
   load.kind = MPS_ELASTIC_LOAD_FORCE, load.ids = &id, load.id_count = 1, load.values = force;
   OK(mps_elastic_add_load(e, &load, &number));

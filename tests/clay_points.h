@@ -23,8 +23,7 @@ static inline mps_material_cam_clay_def clay_def(const clay *c) {
 
 static inline mps_material *make_clay(const clay *c) {
   const mps_material_cam_clay_def def = clay_def(c);
-  mps_material *m = NULL;
-  OK(mps_material_create_cam_clay(context, &def, &m));
+  MAKE_KEPT(material, m, create_cam_clay, context, &def);
   return m;
 }
 

@@ -265,11 +265,10 @@ static inline mps_status fill(subject *s, mps_particles **out, double spacing, d
 }
 
 static inline mps_status make_mpm_and_fluid(subject *s) {
-  mps_mpm_def def = mps_mpm_defaults();
   mps_fluid_def water = mps_fluid_defaults();
   DEF(body, body, .position[0] = 0.2, .position[1] = 2.0);
-  def.domain = water.domain = s->domain;
-  def.cell = 0.08, def.lower[0] = def.lower[1] = 0.0, def.budget = 1;
+  DEF(mpm, def, .domain = water.domain = s->domain, .cell = 0.08, .lower[0] = def.lower[1] = 0.0,
+      .budget = 1);
   mps_status status = fill(s, &s->soil, 0.04, 0.8);
   TRY(mps_mpm_create(s->own, s->soil, s->material, &def, &s->mpm));
   TRY(mps_mpm_snapshot(s->mpm, &s->then[0]));
@@ -281,19 +280,16 @@ static inline mps_status make_mpm_and_fluid(subject *s) {
 }
 
 static inline mps_status make_solvers(subject *s) {
-  mps_dynamics_def def = mps_dynamics_defaults();
   mps_elastic_def body = mps_elastic_defaults();
-  mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
   mps_status status = mps_material_create_linear_elastic(s->own, 1e6, 0.3, &s->material);
   TRY(make_mpm_and_fluid(s));
-  def.domain = body.domain = s->domain;
-  def.material = body.material = s->material;
+  DEF(dynamics, def, .domain = body.domain = s->domain, .material = body.material = s->material);
   TRY(fill(s, &s->ground, 0.01, 0.4));
   TRY(mps_dynamics_create(s->own, s->ground, &def, &s->dynamics));
   TRY(mps_dynamics_snapshot(s->dynamics, &s->then[2]));
   TRY(fill(s, &s->plate, 0.1, 0.8));
   TRY(mps_elastic_create(s->own, s->plate, &body, &s->elastic));
-  held.lower[0] = held.lower[1] = -1.0, held.upper[0] = 0.1, held.upper[1] = 1.0;
+  DEF(elastic_boundary, held, .lower[0] = held.lower[1] = -1.0, .upper[0] = 0.1, .upper[1] = 1.0);
   TRY(mps_elastic_add_boundary(s->elastic, &held, NULL));
   return status;
 }

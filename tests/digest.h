@@ -18,8 +18,7 @@ static inline uint64_t digest_add(uint64_t hash, const void *value) {
 static inline uint64_t digest_fields(mps_particles *particles, const char *const *names) {
   uint64_t hash = DIGEST_START;
   for (; *names; names++) {
-    mps_view view;
-    OK(mps_particles_view(particles, *names, &view));
+    mps_view view = view_field(particles, *names);
     for (int64_t c = 0; c < view.shape[1]; c++)
       for (int64_t k = 0; k < view.shape[0]; k++)
         hash = digest_add(hash,

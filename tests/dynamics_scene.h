@@ -55,8 +55,7 @@ static inline mps_status make_set(mps_context *own, mps_domain *domain, int what
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
   const bool strip = what == STRIP || what == UNSTABLE;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {strip ? 400.0 : 45.0, strip ? 2.5 : 30};
-  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
+  TRY(mps_particles_fill_box(*out, AT(0.0, 0.0), AT(strip ? 400.0 : 45.0, strip ? 2.5 : 30), NULL));
   if (what == SCATTERED && status == MPS_OK) {
     mps_edit x;
     mps_view id;
@@ -92,16 +91,12 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
       mps_signal_create_user(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, ramp, NULL, NULL, &signal);
   TRY(mps_signal_create_user(own, MPS_SIGNAL_QUANTITY_VALUE, ramp, NULL, NULL, &factor));
   if (domain) status = mps_domain_agree(domain, status);
-  mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
-  boundary.lower[0] = boundary.lower[1] = -INFINITY;
-  boundary.upper[0] = INFINITY, boundary.upper[1] = 0.4;
-  boundary.kind = what == LAYERS ? MPS_BOUNDARY_ABSORBING : MPS_BOUNDARY_DRIVEN;
-  boundary.dofs = what == LAYERS ? 0 : MPS_DOF_Y | MPS_DOF_ROTATION;
-  boundary.signal[0] = signal;
+  DEF(dynamics_boundary, boundary, .lower[0] = boundary.lower[1] = -INFINITY, .upper[0] = INFINITY,
+      .upper[1] = 0.4, .kind = what == LAYERS ? MPS_BOUNDARY_ABSORBING : MPS_BOUNDARY_DRIVEN,
+      .dofs = what == LAYERS ? 0 : MPS_DOF_Y | MPS_DOF_ROTATION, .signal[0] = signal);
   TRY(mps_dynamics_add_boundary(dynamics, &boundary, base));
-  mps_dynamics_boundary_def point = mps_dynamics_boundary_defaults();
   const int64_t ids[3] = {700, 20, 1403};
-  point.ids = ids, point.id_count = 3, point.dofs = MPS_DOF_Y;
+  DEF(dynamics_boundary, point, .ids = ids, .id_count = 3, .dofs = MPS_DOF_Y);
   TRY(mps_dynamics_add_boundary(dynamics, &point, &number));
   DEF(dynamics_load, load, .lower[0] = 3.0, .upper[0] = 30.0,
       .lower[1] = what == STRIP || what == UNSTABLE ? 2.0 : 29.0, .upper[1] = INFINITY,

@@ -15,14 +15,10 @@ static inline int test_dim(const mps_elastic *e) {
 /* Component `component` of `count` particles is values[i], or 0. */
 static inline mps_status test_prescribe(mps_elastic *e, int component, int64_t count,
                                         const int64_t *ids, const double *values) {
-  mps_elastic_boundary_def def = mps_elastic_boundary_defaults();
   double *all = values ? calloc((size_t)(3 * (count > 0 ? count : 1)), sizeof *all) : NULL;
   for (int64_t k = 0; values && k < count; k++) all[3 * k + component] = values[k];
-  def.ids = ids;
-  def.id_count = count;
-  def.dofs = 1u << component;
-  def.kind = values ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD;
-  def.values = all;
+  DEF(elastic_boundary, def, .ids = ids, .id_count = count, .dofs = 1u << component,
+      .kind = values ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD, .values = all);
   const mps_status status = mps_elastic_add_boundary(e, &def, NULL);
   free(all);
   return status;
@@ -137,15 +133,13 @@ static inline test_body test_body_begin(mps_context *context, int32_t dim, doubl
 /* `box` is lo, hi; lattice sites are at (i + 1/2) spacing. */
 static inline void test_body_box(test_body *b, double x0, double y0, double z0, double x1,
                                  double y1, double z1) {
-  const double lo[3] = {x0, y0, z0}, hi[3] = {x1, y1, z1};
-  OK(mps_particles_fill_box(b->particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(b->particles, AT(x0, y0, z0), AT(x1, y1, z1), NULL));
 }
 
 static inline void test_body_finish_by(test_body *b, double young, double poisson,
                                        const mps_elastic_def *def, test_method method) {
   b->n = mps_particles_count(b->particles);
-  OK(mps_particles_set(b->particles, "young", 0, young));
-  OK(mps_particles_set(b->particles, "poisson", 0, poisson));
+  SET_FIELDS(b->particles, {"young", young}, {"poisson", poisson});
   OK(test_create(b->context, b->particles, def, method, &b->elastic));
 }
 static inline void test_body_finish(test_body *b, double young, double poisson,
@@ -179,8 +173,7 @@ static inline int64_t *test_facets(const test_body *b, int32_t axis, int32_t sid
 }
 
 static inline double test_value(const test_body *b, const char *field, int64_t i, int32_t c) {
-  mps_view view;
-  OK(mps_particles_view(b->particles, field, &view));
+  mps_view view = view_field(b->particles, field);
   return *mps_view_f64(&view, i, c);
 }
 
@@ -201,12 +194,10 @@ static inline void test_compare(const test_body *a, const test_body *b, const ch
  * at an angle; a body force. */
 static inline void test_inclined(test_body *b, bool (*stiff)(double x, double y), double slide,
                                  bool cut) {
-  mps_edit young;
-  OK(mps_particles_edit(b->particles, "young", &young));
-  for (int64_t i = 0; i < b->n; i++)
-    if (stiff(test_value(b, "position", i, 0), test_value(b, "position", i, 1)))
-      *mps_edit_f64(&young, i, 0) = 10.0;
-  OK(mps_particles_commit(b->particles, &young));
+  EDIT(young, b->particles, "young")
+    for (int64_t i = 0; i < b->n; i++)
+      if (stiff(test_value(b, "position", i, 0), test_value(b, "position", i, 1)))
+        *mps_edit_f64(&young, i, 0) = 10.0;
   int64_t count, top = b->n - 1, *ids = test_select(b, 1, -1, 0.2, &count);
   for (int c = 0; c < b->dim; c++) OK(test_prescribe(b->elastic, c, count, ids, NULL));
   if (cut) OK(mps_elastic_cut(b->elastic, MPS_SIDE_Y_LOWER, ids, count));

@@ -36,18 +36,16 @@ static inline void cantilever_hold(mps_context *c, cantilever *w) {
   int64_t *ids = malloc(ROOM * sizeof *ids), count;
   const double low[2] = {-9.0, -1e-6}, high[2] = {9.0, 1e-6};
   DEF(elastic, def, .state = MPS_ELASTIC_STATE_PLANE_STRAIN);
-  mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
   OK(mps_elastic_create(c, w->wall, &def, &w->elastic));
   OK(mps_particles_select_box(w->wall, low, high, ROOM, &count, ids));
   OK(mps_elastic_cut(w->elastic, MPS_SIDE_Y_LOWER, ids, count));
-  held.ids = ids, held.id_count = count;
+  DEF(elastic_boundary, held, .ids = ids, .id_count = count);
   OK(mps_elastic_add_boundary(w->elastic, &held, NULL));
   free(ids);
 }
 
 /* The wall at rest under the still water. */
 static inline void cantilever_rest(cantilever *w, double dt, double rho_inf) {
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   OK(mps_elastic_select_facets(w->elastic, MPS_SIDE_X_LOWER, NULL, NULL, CANTILEVER_FACETS,
                                &w->facets, w->ids));
   assert_in_range(w->facets, 1, CANTILEVER_FACETS);
@@ -64,28 +62,23 @@ static inline void cantilever_rest(cantilever *w, double dt, double rho_inf) {
   w->load.ids = w->ids, w->load.id_count = w->facets, w->load.values = w->p;
   OK(mps_elastic_add_load(w->elastic, &w->load, &w->pressed));
   OK(mps_elastic_solve(w->elastic));
-  motion.dt = dt, motion.rho_inf = rho_inf;
-  OK(mps_elastic_start(w->elastic, &motion));
+  USING(elastic_motion, mps_elastic_start(w->elastic, &given), .dt = dt, .rho_inf = rho_inf);
   OK(mps_elastic_get_facets(w->elastic, w->ids, w->facets, &w->face));
   for (int64_t k = 0; k < w->facets; k++) w->rest[k] = w->displacement[3 * k];
 }
 
 static inline void cantilever_make(mps_context *c, cantilever *w, double dt, double rho_inf) {
-  mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
   wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
-  mps_coupling_def agree = mps_coupling_defaults();
   mps_elastic_load_def behind = mps_elastic_load_defaults();
   int64_t back[CANTILEVER_FACETS], count;
   const double low[2] = {CANTILEVER_LENGTH, -0.5 * CANTILEVER_SPACING};
   const double high[2] = {CANTILEVER_LENGTH + CANTILEVER_THICK, CANTILEVER_HEIGHT - 1e-9};
-  set.spacing = CANTILEVER_SPACING, set.origin[0] = low[0], set.origin[1] = low[1];
+  DEF(particles, set, .spacing = CANTILEVER_SPACING, .origin[0] = low[0], .origin[1] = low[1]);
   OK(mps_particles_create(c, &set, &w->wall));
   OK(mps_particles_fill_box(w->wall, low, high, NULL));
-  OK(mps_particles_set(w->wall, "young", 0, 1.6e9));
-  OK(mps_particles_set(w->wall, "poisson", 0, 0.25));
-  OK(mps_particles_set(w->wall, "density", 0, 2000.0));
+  SET_FIELDS(w->wall, {"young", 1.6e9}, {"poisson", 0.25}, {"density", 2000.0});
   cantilever_hold(c, w);
   cantilever_rest(w, dt, rho_inf);
   OK(mps_elastic_select_facets(w->elastic, MPS_SIDE_X_UPPER, NULL, NULL, CANTILEVER_FACETS, &count,
@@ -103,7 +96,7 @@ static inline void cantilever_make(mps_context *c, cantilever *w, double dt, dou
   wall.point[0] = CANTILEVER_LENGTH, wall.normal[0] = -1.0;
   wall.nodes = w->centre, wall.node_count = w->facets;
   OK(mps_fluid_add_boundary(w->water.fluid, &wall, &w->boundary));
-  agree.size = w->facets, agree.floor = 1e-4 * TANK_G;
+  DEF(coupling, agree, .size = w->facets, .floor = 1e-4 * TANK_G);
   OK(mps_coupling_create(c, &agree, &w->coupling));
   w->top = mps_particles_nearest(w->wall, (double[2]){CANTILEVER_LENGTH, CANTILEVER_HEIGHT});
 }
@@ -157,12 +150,11 @@ static inline double cantilever_growth(mps_context *c, double dt, double rho_inf
   double n[2] = {0.0, 0.0}, sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0}, rms[2];
   cantilever_make(c, w, dt, rho_inf);
   while (mps_fluid_time(w->water.fluid) < t_end) {
-    mps_view u;
     cantilever_step(w, dt, alpha);
     const double part = mps_fluid_time(w->water.fluid) / t_end;
     if (part < 0.25 || (part > 0.5 && part < 0.75)) continue;
     const int at = part > 0.5;
-    OK(mps_particles_view(w->wall, "displacement", &u));
+    mps_view u = view_field(w->wall, "displacement");
     const double x = *mps_view_f64(&u, mps_particles_index(w->wall, w->top), 0);
     n[at] += 1.0, sum[at] += x, square[at] += x * x;
   }

@@ -173,7 +173,6 @@ static inline blocks blocks_run(mps_context *c, int n, double gap, double t_end)
   mps_fluid_def def = mps_fluid_defaults();
   mps_particles *water;
   mps_fluid *fluid;
-  mps_edit u;
   mps_totals sum;
   blocks got = {0.0, INFINITY, 0.0, 0.0};
   const int64_t each = (int64_t)n * n;
@@ -187,9 +186,8 @@ static inline blocks blocks_run(mps_context *c, int n, double gap, double t_end)
   OK(mps_particles_create(c, &set, &water));
   OK(mps_particles_append(water, 2 * each, x));
   OK(mps_particles_add_field(water, "velocity", 0));
-  OK(mps_particles_edit(water, "velocity", &u));
-  for (int64_t k = 0; k < 2 * each; k++) *mps_edit_f64(&u, k, 0) = k < each ? -1.0 : 1.0;
-  OK(mps_particles_commit(water, &u));
+  EDIT(u, water, "velocity")
+    for (int64_t k = 0; k < 2 * each; k++) *mps_edit_f64(&u, k, 0) = k < each ? -1.0 : 1.0;
   OK(mps_fluid_create(c, water, &def, &fluid));
   OK(mps_fluid_get_totals(fluid, &sum));
   const double before = sum.kinetic, struck = 0.5 * (1.0 + gap) * l0;

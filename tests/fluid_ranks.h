@@ -49,13 +49,12 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   DEF(body, body, .motion = MPS_BODY_MOTION_FREE, .position[0] = 1.6, .position[1] = 0.9,
       .mass = 40.0, .inertia[2] = 1.0, .gravity[1] = -9.81);
   const double xy[] = {-0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1};
-  mps_fluid_contact_def afloat = mps_fluid_contact_defaults();
   TRY(mps_body_create_polygon(own, &body, 4, xy, &s->body));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, s->piston));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 4.0, 0.0, -1.0, 0.0, NULL));
-  afloat.kind = MPS_BOUNDARY_ROLLER;
+  DEF(fluid_contact, afloat, .kind = MPS_BOUNDARY_ROLLER);
   TRY(mps_fluid_add_contact(s->fluid, s->body, &afloat, &s->contact));
   DEF(fluid_load, load, .kind = MPS_FLUID_LOAD_PRESSURE, .pressure = 200.0, .lower[0] = 3.0);
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
@@ -64,8 +63,7 @@ static inline mps_status add_float(mps_context *own, scene *s) {
 
 /* Water in rock of porosity 4/9, whose particles lie .03 m apart. */
 static inline mps_status fill_breakwater(mps_particles *set) {
-  const double lower[2] = {0.0, 0.0}, upper[2] = {0.9, 1.0};
-  mps_status status = mps_particles_fill_box(set, lower, upper, NULL);
+  mps_status status = mps_particles_fill_box(set, AT(0.0, 0.0), AT(0.9, 1.0), NULL);
   for (int n = 0; status == MPS_OK && n < 528; n++) {
     const double at[2] = {0.9 + 0.03 * (n / 33 + 0.5), 0.03 * (n % 33 + 0.5)};
     status = mps_particles_append(set, 1, at);
@@ -78,12 +76,11 @@ static inline mps_status add_breakwater(scene *s) {
   const double stones[4][3] = {
       {0.9, -0.1, 0.0}, {1.5, -0.1, 0.0}, {1.4, 1.2, 0.0}, {0.9, 1.2, 0.0}};
   DEF(fluid_boundary, line, .corners = bed[0], .corner_count = 4);
-  mps_fluid_rock_def rock = mps_fluid_rock_defaults();
   mps_status status = mps_fluid_add_boundary(s->fluid, &line, NULL);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 3.5, 0.0, -1.0, 0.0, NULL));
-  rock.corners = stones[0], rock.corner_count = 4;
-  rock.porosity = 4.0 / 9.0, rock.diameter = 0.02;
+  DEF(fluid_rock, rock, .corners = stones[0], .corner_count = 4, .porosity = 4.0 / 9.0,
+      .diameter = 0.02);
   TRY(mps_fluid_add_rock(s->fluid, &rock, NULL));
   return status;
 }

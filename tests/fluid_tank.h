@@ -51,11 +51,9 @@ static inline void tank_fill(mps_particles *water, double length, double depth, 
 static inline tank tank_of(mps_context *c, double length, double depth, double l0, double dt,
                            mps_signal *piston, tank_shape_fn shape, void *user) {
   tank t = {NULL, NULL};
-  DEF(particles, set, .spacing = l0);
-  DEF(fluid, def, .dt = dt, .level = depth);
-  OK(mps_particles_create(c, &set, &t.water));
+  USING(particles, mps_particles_create(c, &given, &t.water), .spacing = l0);
   tank_fill(t.water, length, depth, shape, user);
-  OK(mps_fluid_create(c, t.water, &def, &t.fluid));
+  USING(fluid, mps_fluid_create(c, t.water, &given, &t.fluid), .dt = dt, .level = depth);
   assert_int_equal(tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL), TANK_BED);
   assert_int_equal(tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston), TANK_LEFT);
   assert_int_equal(tank_wall(t.fluid, length, 0.0, -1.0, 0.0, NULL), TANK_RIGHT);

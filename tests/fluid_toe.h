@@ -28,10 +28,9 @@ static inline double toe_fill(const toe *s, double foot, tank *t, mps_body **bod
                back = fmax(ends[0], ends[1]);
   const double xy[] = {foot, 0.0,     back + 0.3, 0.0,  back + 0.3,
                        top,  ends[1], top,        foot, s->vertical};
-  DEF(particles, set, .spacing = l0);
   const mps_body_def at = mps_body_defaults();
   uint64_t seed = 5;
-  OK(mps_particles_create(context, &set, &t->water));
+  USING(particles, mps_particles_create(context, &given, &t->water), .spacing = l0);
   OK(mps_body_create_polygon(context, &at, s->vertical > 0.0 ? 5 : 4, xy, body));
   for (int j = 0; j < s->rows; j++)
     for (int i = 0; (i + 0.5) * l0 < back; i++) {
@@ -66,14 +65,12 @@ static inline double toe_depth(const toe *s, double foot, double volume) {
 static inline void toe_check(const toe *s, double duration, double bar, double scatter) {
   scoped_tank t = {NULL, NULL};
   scoped_body *body = NULL;
-  mps_fluid_def def = mps_fluid_defaults();
   mps_reaction r;
   mps_fluid_report report;
   const double slope = 1.0 / tan(s->angle * TANK_PI / 180.0);
   const double foot = 2.0 * TOE_DEPTH + fmax(slope, 0.0) * TOE_DEPTH;
   const double volume = toe_fill(s, foot, &t, &body), depth = toe_depth(s, foot, volume);
-  def.level = TOE_DEPTH;
-  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
+  USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = TOE_DEPTH);
   const int32_t bed = tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_OTHER);

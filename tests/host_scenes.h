@@ -73,14 +73,13 @@ typedef struct host_mpm {
 } host_mpm;
 
 static mps_status host_add_body(mps_context *c, mps_mpm *mpm, const host_mpm *how) {
-  mps_body_def place = mps_body_defaults();
   DEF(contact, contact, .method = how->method, .friction = 0.3);
   scoped_body *body = NULL;
   if (how->method == MPS_CONTACT_METHOD_IMPULSE) contact.adhesion = 10.0, contact.strength = 100.0;
   contact.thin = contact.inside = how->thin;
-  place.position[0] = how->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 0.5;
-  place.position[1] = 0.5;
-  place.position[how->geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1] = how->thin ? 0.9 : 1.01;
+  DEF(body, place, .position[0] = how->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 0.5,
+      .position[1] = 0.5,
+      .position[how->geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1] = how->thin ? 0.9 : 1.01);
   if (how->geometry == MPS_MPM_GEOMETRY_SPACE)
     HOST_TRY(mps_body_create_sphere(c, &place, 0.2, &body));
   else if (how->geometry == MPS_MPM_GEOMETRY_PLANE_STRAIN)
@@ -115,23 +114,18 @@ static mps_status host_fields(mps_mpm *mpm) {
 static mps_status host_mpm_make(mps_context *c, const host_mpm *how, mps_mpm **out) {
   const int dim = how->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2, up = dim - 1;
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 0.8, 0.8};
-  mps_particles *set = NULL;
-  mps_material *law = NULL;
-  mps_mpm_def def = mps_mpm_defaults();
+  scoped_particles *set = NULL;
+  scoped_material *law = NULL;
   HOST_TRY(host_box(c, dim, 0.1, lo, hi, 2000.0, &set));
   HOST_TRY(host_law(c, how->law, &law));
   if (how->law == HOST_CLAY)
     for (int k = 0; k < 3; k++) HOST_TRY(mps_particles_set(set, "stress", k, -2e4));
-  def.cell = 0.2;
-  def.geometry = how->geometry;
-  def.budget = how->budget;
-  def.volumetric = how->filtered ? MPS_MPM_VOLUMETRIC_NODES : MPS_MPM_VOLUMETRIC_BY_LAW;
-  def.gravity[up] = -9.81;
+  DEF(mpm, def, .cell = 0.2, .geometry = how->geometry, .budget = how->budget,
+      .volumetric = how->filtered ? MPS_MPM_VOLUMETRIC_NODES : MPS_MPM_VOLUMETRIC_BY_LAW,
+      .gravity[up] = -9.81);
   for (int k = 0; k < dim; k++)
     def.lower[k] = 0.0, def.upper[k] = k == up ? 2.0 : k == 1 ? 0.8 : 1.0;
   HOST_TRY(mps_mpm_create(c, set, law, &def, out));
-  mps_material_destroy(&law);
-  mps_particles_destroy(&set);
   DEF(mpm_boundary, side, .kind = MPS_BOUNDARY_FRICTIONAL, .friction = 0.3);
   const int which = how->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0; /* not the axis */
   if (how->frictional) HOST_TRY(mps_mpm_set_boundary(*out, which, &side));
@@ -142,10 +136,9 @@ static mps_status host_mpm_make(mps_context *c, const host_mpm *how, mps_mpm **o
 static mps_status host_mpm_run(mps_context *c, host_mpm how) {
   scoped_mpm *mpm = NULL;
   scoped_snapshot *snapshot = NULL;
-  mps_mpm_settle_def settle = mps_mpm_settle_defaults();
   mps_mpm_settled settled;
   HOST_TRY(host_mpm_make(c, &how, &mpm));
-  settle.max_steps = 5, settle.tolerance = 0.5;
+  DEF(mpm_settle, settle, .max_steps = 5, .tolerance = 0.5);
   if (how.settles) {
     const mps_status status = mps_mpm_settle(mpm, &settle, &settled);
     if (status != MPS_OK && status != MPS_ERROR_NUMERIC) return status;
@@ -187,14 +180,14 @@ static mps_status host_dynamics(mps_context *c) {
   scoped_snapshot *snapshot = NULL;
   mps_totals totals;
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   int32_t number;
   HOST_TRY(host_box(c, 2, 0.25, lo, hi, 2000.0, &set));
   HOST_TRY(mps_particles_set(set, "shear_velocity", 0, 100.0));
   HOST_TRY(mps_particles_set(set, "pressure_velocity", 0, 200.0));
   HOST_TRY(mps_particles_set(set, "damping", 0, 0.02));
   HOST_TRY(mps_dynamics_create(c, set, &def, &dynamics));
-  base.lower[1] = 0.0, base.upper[1] = 0.25, base.kind = MPS_BOUNDARY_DRIVEN, base.dofs = MPS_DOF_Y;
+  DEF(dynamics_boundary, base, .lower[1] = 0.0, .upper[1] = 0.25, .kind = MPS_BOUNDARY_DRIVEN,
+      .dofs = MPS_DOF_Y);
   HOST_TRY(mps_signal_create_ricker(c, 10.0, 0.05, 1.0, &base.signal[0]));
   base.lower[0] = 0.0, base.upper[0] = 3.0;
   HOST_TRY(mps_dynamics_add_boundary(dynamics, &base, &number));
@@ -251,13 +244,12 @@ static mps_status host_elastic_make(mps_context *c, int32_t solver, mps_elastic 
   const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 2.0};
   scoped_particles *set = NULL;
   DEF(elastic, def, .solver = solver);
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   int32_t number;
   HOST_TRY(host_box(c, 2, 0.1, lo, hi, 2000.0, &set));
   HOST_TRY(mps_particles_set(set, "young", 0, 3e7));
   HOST_TRY(mps_particles_set(set, "poisson", 0, 0.25));
   HOST_TRY(mps_elastic_create(c, set, &def, out));
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
   HOST_TRY(mps_elastic_add_boundary(*out, &foot, &number));
   DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_VOLUME, .all = 1, .force[0] = 1e3);
   HOST_TRY(mps_elastic_add_load(*out, &load, &number));
@@ -267,13 +259,12 @@ static mps_status host_elastic_make(mps_context *c, int32_t solver, mps_elastic 
 /* By one of the solvers of its equations: CHOLMOD and ARPACK, or conjugate gradients. */
 static mps_status host_elastic(mps_context *c, int32_t solver, bool modes) {
   scoped_elastic *elastic = NULL;
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   mps_totals totals;
   double omega[2];
   HOST_TRY(host_elastic_make(c, solver, &elastic));
   HOST_TRY(mps_elastic_solve(elastic));
   if (modes) HOST_TRY(mps_elastic_modes(elastic, 2, omega, NULL));
-  motion.dt = 1e-3;
+  DEF(elastic_motion, motion, .dt = 1e-3);
   HOST_TRY(mps_elastic_start(elastic, &motion));
   HOST_TRY(mps_elastic_step(elastic, 3));
   HOST_TRY(mps_elastic_run(elastic, 5e-3, 1, NULL, NULL));
@@ -287,13 +278,12 @@ static mps_status host_files(mps_context *c) {
   const host_mpm how = {.law = HOST_MOHR, .wet = true};
   scoped_mpm *mpm = NULL;
   mps_recorder *recorder = NULL;
-  mps_recorder_def def = mps_recorder_defaults();
   HOST_TRY(host_mpm_make(c, &how, &mpm));
   HOST_TRY(mps_mpm_step(mpm, 2));
   HOST_TRY(mps_mpm_save(mpm, HOST_FILE, NULL));
   HOST_TRY(mps_mpm_step(mpm, 2));
   HOST_TRY(mps_mpm_restore(mpm, HOST_FILE, NULL));
-  def.path = TEST_TMP "/host_scenes.vtkhdf";
+  DEF(recorder, def, .path = TEST_TMP "/host_scenes.vtkhdf");
   HOST_TRY(mps_recorder_create(c, mps_mpm_particles(mpm), &def, &recorder));
   HOST_TRY(mps_recorder_write(recorder, 0.0));
   HOST_TRY(mps_recorder_close(&recorder));

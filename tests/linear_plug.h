@@ -163,9 +163,8 @@ static inline mps_status linear_forget(void *user) {
 static inline void linear_release(void *user) { ((linear_plug *)user)->released++; }
 
 static inline mps_linear_solver_def linear_plug_def(linear_plug *p) {
-  mps_linear_solver_def def = mps_linear_solver_defaults();
-  def.user = p, def.release = linear_release;
-  def.matrix = linear_matrix, def.solve = linear_solve, def.forget = linear_forget;
+  DEF(linear_solver, def, .user = p, .release = linear_release, .matrix = linear_matrix,
+      .solve = linear_solve, .forget = linear_forget);
   return def;
 }
 

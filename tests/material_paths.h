@@ -4,16 +4,10 @@
 #ifndef MPS_TEST_MATERIAL_PATHS_H
 #define MPS_TEST_MATERIAL_PATHS_H
 
+#include "kit/random.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define ROOT3 1.7320508075688772
-
-/* A pseudo-random number in [-1, 1), the same on every machine. */
-static inline double random_number(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) / 4503599627370496.0 - 1.0;
-}
 
 static inline double mean_stress(const double *s) { return (s[0] + s[1] + s[2]) / 3.0; }
 

@@ -30,7 +30,7 @@ static inline double field_young(double vs) { return 2.0 * (1.0 + FIELD_NU) * FI
 
 /* Gives the particles below a height the elasticity of rock. */
 static inline void field_add_rock(mpm_scene *s, const field_ground *of) {
-  mps_material *rock = NULL;
+  scoped_material *rock = NULL;
   const double lo[2] = {-1e9, -1e9}, hi[2] = {1e9, of->below};
   int64_t count = mps_particles_count(s->particles);
   int64_t *ids = malloc((size_t)count * sizeof *ids);
@@ -38,16 +38,14 @@ static inline void field_add_rock(mpm_scene *s, const field_ground *of) {
   OK(mps_particles_select_box(s->particles, lo, hi, count, &count, ids));
   OK(mps_material_create_linear_elastic(s->context, field_young(of->rock), FIELD_NU, &rock));
   OK(mps_mpm_set_material(s->mpm, rock, ids, count));
-  mps_material_destroy(&rock);
   free(ids);
 }
 
 static inline void field_set_sides(mpm_scene *s, const field_ground *of) {
-  mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
-  base.kind =
-      of->base == MPS_BOUNDARY_HELD && (of->motion || of->heave) ? MPS_BOUNDARY_DRIVEN : of->base;
-  base.signal[0] = of->motion, base.signal[1] = of->heave;
-  OK(mps_mpm_set_boundary(s->mpm, MPS_SIDE_Y_LOWER, &base));
+  USING(mpm_boundary, mps_mpm_set_boundary(s->mpm, MPS_SIDE_Y_LOWER, &given),
+        .kind = of->base == MPS_BOUNDARY_HELD && (of->motion || of->heave) ? MPS_BOUNDARY_DRIVEN
+                                                                           : of->base,
+        .signal[0] = of->motion, .signal[1] = of->heave);
   mpm_scene_side(s, MPS_SIDE_X_LOWER, of->sides, 0.0);
   mpm_scene_side(s, MPS_SIDE_X_UPPER, of->sides, 0.0);
 }
@@ -58,10 +56,8 @@ static inline mpm_scene field_scene(mps_context *context, const field_ground *of
   OK(mps_particles_set(s.particles, "density", 0, FIELD_RHO));
   if (of->heated) OK(mps_particles_add_field(s.particles, "temperature", 0));
   if (of->gravity > 0.0) mpm_scene_weigh(&s, FIELD_RHO * of->gravity, FIELD_K0, of->height);
-  DEF(mpm, def, .cell = 2.0 * of->spacing, .spline = of->spline);
-  def.origin[0] = def.lower[0] = of->shift;
-  def.upper[0] = of->shift + of->width;
-  def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 2.0 * of->spacing, .spline = of->spline,
+      .origin[0] = def.lower[0] = of->shift, .upper[0] = of->shift + of->width, .lower[1] = 0.0);
   if (of->lid) def.upper[1] = of->height;
   def.gravity[1] = -of->gravity;
   def.budget = of->budget;
@@ -106,8 +102,6 @@ static inline double field_spread(mpm_scene *s, int c, double height, double *la
 
 /* ---- layer on a half space ------------------------------------------------------------------- */
 
-#define PI 3.14159265358979323846
-
 /* A velocity v sin(2 pi f t) that grows over the first two periods. */
 static inline mps_signal *field_shaking(mps_context *context, double frequency, double velocity,
                                         double end) {
@@ -119,8 +113,7 @@ static inline mps_signal *field_shaking(mps_context *context, double frequency, 
     const double share = fmin(1.0, 0.5 * t[k] * frequency);
     v[k] = velocity * share * share * (3.0 - 2.0 * share) * sin(2.0 * PI * frequency * t[k]);
   }
-  mps_signal *out = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, count, t, v, &out));
+  MAKE_KEPT(signal, out, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, count, t, v);
   return out;
 }
 

@@ -50,10 +50,9 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   OK(mps_particles_add_field(s.particles, "body_acceleration", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit a = mpm_scene_edit(&s, "body_acceleration");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_edit_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
-  mpm_scene_commit(&s, &a);
+  EDIT(a, s.particles, "body_acceleration")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      for (int c = 0; c < dim; c++) *mps_edit_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
   mps_mpm_def def = *from;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) {
@@ -61,8 +60,7 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   }
   def.gravity[0] = 1.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 0.0005, 0.3, &signal));
+  MAKE(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 0.0005, 0.3);
   for (int c = 0; c < dim; c += 2) {
     mpm_scene_side(&s, 2 * c, MPS_BOUNDARY_FRICTIONAL, 0.3);
     mpm_scene_side(&s, 2 * c + 1, MPS_BOUNDARY_ABSORBING, 0.0);
@@ -72,8 +70,7 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   const double low[] = {0.3, 0.1, 0.02}, high[] = {0.36, 0.16, 0.05};
   const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, low, high, 1, signal, 2.0);
   OK(mps_mpm_add_boundary(s.mpm, &nodes, box));
-  scoped_signal *factor = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 20.0, 0.0005, 0.3, &factor));
+  MAKE(signal, factor, create_sine, context, MPS_SIGNAL_QUANTITY_VALUE, 20.0, 0.0005, 0.3);
   held_load(&s, factor, loads);
   return s;
 }

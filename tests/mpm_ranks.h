@@ -30,8 +30,13 @@ static inline mps_status make_set(mps_context *own, mps_domain *domain, int what
   DEF(particles, def, .dim = dim_of(what), .spacing = space ? 0.04 : what == WIDE ? 0.01 : 0.02);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, touched ? 0.4 : space ? 0.6 : 0.8, 0.8};
-  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
+  TRY(mps_particles_fill_box(*out, AT(0.0, 0.0, 0.0),
+                             AT(1.2,
+                                touched ? 0.4
+                                : space ? 0.6
+                                        : 0.8,
+                                0.8),
+                             NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
   TRY(mps_particles_set(*out, "velocity", 0, 0.0));
   mps_view x;
@@ -169,7 +174,7 @@ static inline mps_status make_rise(mps_context *own, mps_signal **out) {
 
 static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int what, scene *s) {
   mps_body_motion motion = mps_body_motion_defaults();
-  mps_signal *rise = NULL;
+  scoped_signal *rise = NULL;
   mps_status status = make_rise(own, &rise);
   for (int k = 0; k < (what == CONE ? 2 : BODIES); k++) {
     DEF(contact, def, .friction = 0.2 + 0.2 * k);
@@ -185,7 +190,6 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
     if (domain) status = mps_domain_agree(domain, status);
     TRY(mps_mpm_add_contact(s->mpm, s->body[k], &def, &s->contact[k]));
   }
-  mps_signal_destroy(&rise);
   return status;
 }
 
@@ -366,11 +370,10 @@ static inline mps_status put_in(mps_context *own, mps_domain *domain, int what, 
                              0.4 + 0.39 * cos(3.0 * k)};
     memcpy(drop + dim * k, place, (size_t)dim * sizeof *place);
   }
-  const double lo[3] = {0.3, 1.5, 0.0}, hi[3] = {0.62, 1.7, 0.8};
   const double here[3] = {0.0, 0.2, 0.3}, there[3] = {0.3, 0.36, 0.5};
   const int64_t first = mps_particles_count(s->set);
   mps_status status = mps_particles_append(s->set, DROPS, drop);
-  TRY(mps_particles_fill_box(s->set, lo, hi, &added));
+  TRY(mps_particles_fill_box(s->set, AT(0.3, 1.5, 0.0), AT(0.62, 1.7, 0.8), &added));
   r->other[RESULT_OTHERS - 20] = (double)added;
   TRY(mps_particles_fill_box(s->set, here, there, &added)); /* the soil has been there */
   if (status == MPS_OK && added != 0) status = MPS_ERROR_INTERNAL;

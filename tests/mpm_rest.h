@@ -127,16 +127,14 @@ static inline void rest_fill(rest_scene *r) {
 }
 
 static inline void rest_touch(rest_scene *r, mps_body *body, double offset) {
-  DEF(contact, contact, .offset = offset);
-  OK(mps_mpm_add_contact(r->s.mpm, body, &contact, NULL));
+  USING(contact, mps_mpm_add_contact(r->s.mpm, body, &given, NULL), .offset = offset);
 }
 
 static inline mps_body *rest_half(rest_scene *r, double x, double y, double nx, double ny) {
-  mps_body_def def = mps_body_defaults();
   double at[3] = {0.0}, normal[3] = {0.0};
   mps_body *body = NULL;
   rest_place(r, x, y, at), rest_place(r, nx, ny, normal);
-  def.position[0] = at[0], def.position[1] = at[1];
+  DEF(body, def, .position[0] = at[0], .position[1] = at[1]);
   OK(mps_body_create_half_plane(r->s.context, &def, normal, &body));
   return body;
 }
@@ -145,10 +143,9 @@ static inline mps_body *rest_half(rest_scene *r, double x, double y, double nx, 
 static inline mps_body *rest_box(rest_scene *r, double x0, double x1, double y0, double y1) {
   mps_body_def def = mps_body_defaults();
   double corner[8];
-  mps_body *body = NULL;
   rest_place(r, x0, y0, corner), rest_place(r, x1, y0, corner + 2);
   rest_place(r, x1, y1, corner + 4), rest_place(r, x0, y1, corner + 6);
-  OK(mps_body_create_polygon(r->s.context, &def, 4, corner, &body));
+  MAKE_KEPT(body, body, create_polygon, r->s.context, &def, 4, corner);
   return body;
 }
 

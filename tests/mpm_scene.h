@@ -40,9 +40,10 @@ static inline void mpm_scene_ball(mpm_scene *s, double x, double y, double radiu
 }
 
 /* The solver, of density 1000. */
-static inline void mpm_scene_solve(mpm_scene *s, const mps_mpm_def *def) {
+static inline mps_status mpm_scene_solve(mpm_scene *s, const mps_mpm_def *def) {
   OK(mps_particles_set(s->particles, "density", 0, 1000.0));
   OK(mps_mpm_create(s->context, s->particles, s->material, def, &s->mpm));
+  return MPS_OK;
 }
 
 /* Contact with a body, with friction, default stiffness. */
@@ -104,9 +105,7 @@ static inline void mpm_scene_end(mpm_scene *s) {
 }
 
 static inline mps_view mpm_scene_view(mpm_scene *s, const char *name) {
-  mps_view view;
-  OK(mps_particles_view(s->particles, name, &view));
-  return view;
+  return view_field(s->particles, name);
 }
 
 /* The largest difference of stresses over the largest stress of `a`, in the plane. */
@@ -136,13 +135,12 @@ static inline void mpm_scene_commit(mpm_scene *s, mps_edit *edit) {
 static inline void mpm_scene_weigh(mpm_scene *s, double unit, double K0, double height) {
   OK(mps_particles_add_field(s->particles, "stress", 0));
   const mps_view x = mpm_scene_view(s, "position");
-  mps_edit stress = mpm_scene_edit(s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double yy = -unit * (height - *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
-    *mps_edit_f64(&stress, k, 1) = yy;
-  }
-  mpm_scene_commit(s, &stress);
+  EDIT(stress, s->particles, "stress")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double yy = -unit * (height - *mps_view_f64(&x, k, 1));
+      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
+      *mps_edit_f64(&stress, k, 1) = yy;
+    }
 }
 
 /* Largest relative error of the vertical stress against that weight, away from the surface, which

@@ -28,12 +28,6 @@ typedef struct result {
 typedef mps_status result_fn(mps_context *own, mps_domain *domain, int what, int64_t length,
                              result *r);
 
-/* In functions that must continue to what all ranks do together. */
-#define TRY(call)                                                                                  \
-  do {                                                                                             \
-    if (status == MPS_OK) status = (call);                                                         \
-  } while (0)
-
 /* Keeps the ids and all fields of a set; every field has 8 bytes a value. */
 static inline mps_status keep(mps_particles *set, result *r) {
   mps_status status = MPS_OK;

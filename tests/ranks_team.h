@@ -113,6 +113,10 @@ typedef struct trouble_case {
   const char *text; /* in the message of every rank */
 } trouble_case;
 
+/* From one table of rows (name, status, text): the names, and the cases. */
+#define CASE_NAME(name, ...) name,
+#define CASE_ROW(name, ...) [name] = {__VA_ARGS__},
+
 typedef struct troubled {
   trouble_fn *run;
   int what;

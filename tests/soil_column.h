@@ -14,27 +14,21 @@ static const soil_layer soil_plain = {1e9, 1500.0, 100.0, 200.0, 0.05};
 
 static inline mps_dynamics *soil_solver(mps_context *context, mps_particles *particles) {
   DEF(dynamics, def, .dt = 1e-3);
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, particles, &def);
   return dynamics;
 }
 
 /* A set of width x height (m) filled with layers from the top down; the lowest goes to the end. */
 static inline mps_particles *soil_particles(mps_context *context, double spacing, double width,
                                             double height, int layers, const soil_layer *layer) {
-  DEF(particles, def, .spacing = spacing);
-  mps_particles *particles = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
-  OK(mps_particles_create(context, &def, &particles));
-  OK(mps_particles_fill_box(particles, lo, hi, NULL));
+  mps_particles *particles = box_of(context, spacing, AT(0.0, 0.0), AT(width, height));
   const char *const names[4] = {"density", "shear_velocity", "pressure_velocity", "damping"};
-  mps_view x;
   mps_edit field[4];
   for (int f = 0; f < 4; f++) {
     OK(mps_particles_set(particles, names[f], 0, 0.0));
     OK(mps_particles_edit(particles, names[f], &field[f]));
   }
-  OK(mps_particles_view(particles, "position", &x));
+  mps_view x = view_field(particles, "position");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     double depth = height - *mps_view_f64(&x, k, 1);
     int m = 0;
@@ -109,18 +103,15 @@ static inline mps_dynamics *paper_column(mps_context *context, double radius, do
   const double width = round(10.0 / D) * D, height = round(100.0 / D) * D;
   const soil_layer soil = {height, 14.7 / 9.8 * 1000.0, vs, vp, damping};
   *particles = soil_particles(context, D, width, height, 1, &soil);
-  mps_dynamics *dynamics = NULL;
-  mps_signal *ricker = NULL;
-  OK(mps_dynamics_create(context, *particles, def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *particles, def);
   const uint32_t held = wave == 'S' ? MPS_DOF_Y : MPS_DOF_X;
   soil_hold(*particles, dynamics, held, -1.0, -1.0, D, height);
   soil_hold(*particles, dynamics, held, width - D, -1.0, width, height);
   soil_hold(*particles, dynamics, held, -1.0, -1.0, width, D);
   int64_t count;
   int64_t *base = soil_select(*particles, -1.0, -1.0, width, D, &count);
-  OK(mps_signal_create_ricker(context, 4.0, 0.25, 1.0, &ricker));
+  MAKE(signal, ricker, create_ricker, context, 4.0, 0.25, 1.0);
   OK(soil_add_driven(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
-  mps_signal_destroy(&ricker);
   free(base);
   return dynamics;
 }
@@ -128,8 +119,7 @@ static inline mps_dynamics *paper_column(mps_context *context, double radius, do
 /* Present value of a field of the particle `id`. */
 static inline double soil_value(mps_particles *particles, const char *field, int64_t id,
                                 int component) {
-  mps_view view;
-  OK(mps_particles_view(particles, field, &view));
+  mps_view view = view_field(particles, field);
   return *mps_view_f64(&view, mps_particles_index(particles, id), component);
 }
 

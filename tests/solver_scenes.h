@@ -15,20 +15,16 @@ typedef struct scene {
 } scene;
 
 static void move(mps_particles *set, double speed) {
-  mps_edit edit;
   OK(mps_particles_add_field(set, "velocity", 0));
-  OK(mps_particles_edit(set, "velocity", &edit));
-  for (int64_t i = 0; i < mps_particles_count(set); i++)
-    for (int32_t k = 0; k < 2; k++)
-      *mps_edit_f64(&edit, i, k) = speed * sin(1.0 + (double)(3 * i + k));
-  OK(mps_particles_commit(set, &edit));
+  EDIT(edit, set, "velocity")
+    for (int64_t i = 0; i < mps_particles_count(set); i++)
+      for (int32_t k = 0; k < 2; k++)
+        *mps_edit_f64(&edit, i, k) = speed * sin(1.0 + (double)(3 * i + k));
 }
 
 static scene make_mpm(mps_context *c) {
   mpm_scene s = mpm_scene_begin(c, 0.01, 0.0, 0.0, 1e6);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
-  def.lower[0] = def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.06);
   OK(mps_particles_set(s.particles, "density", 0, 1000.0));
   move(s.particles, 0.1);
@@ -41,10 +37,8 @@ static scene make_dynamics(mps_context *c) {
   mps_dynamics *dynamics = NULL;
   mpm_scene_box(&s, 0.0, 0.0, 8.0, 5.0);
   OK(mps_particles_set(s.particles, "density", 0, 1800.0));
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.material = s.material;
   move(s.particles, 0.01);
-  OK(mps_dynamics_create(c, s.particles, &def, &dynamics));
+  USING(dynamics, mps_dynamics_create(c, s.particles, &given, &dynamics), .material = s.material);
   return (scene){s.particles, s.material, mps_dynamics_solver(dynamics)};
 }
 
@@ -58,16 +52,11 @@ static scene make_elastic(mps_context *c) {
   int64_t *foot = test_select(&b, 0, 0.0, 0.1, &count);
   for (int k = 0; k < 2; k++) OK(test_prescribe(b.elastic, k, count, foot, NULL));
   free(foot);
-  mps_elastic_motion_def def = mps_elastic_motion_defaults();
-  def.dt = 1e-3;
-  OK(mps_elastic_start(b.elastic, &def));
+  USING(elastic_motion, mps_elastic_start(b.elastic, &given), .dt = 1e-3);
   return (scene){b.particles, NULL, mps_elastic_solver(b.elastic)};
 }
 
-static void tilt(void *user, double *x, double *u) {
-  (void)user, (void)u;
-  x[1] *= 1.0 + 0.1 * cos(TANK_PI * x[0]);
-}
+static void tilt(void *user, double *x, double *u) { x[1] *= 1.0 + 0.1 * cos(TANK_PI * x[0]); }
 
 static scene make_fluid(mps_context *c) {
   tank t = tank_of(c, 1.0, 0.5, 0.1, NAN, NULL, tilt, NULL);

@@ -4,6 +4,9 @@
 #ifndef MPS_TEST_COMMON_H
 #define MPS_TEST_COMMON_H
 
+/* Callbacks need not read all that they get. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
 #ifndef MPS_EXPERIMENTAL
 #define MPS_EXPERIMENTAL
 #endif
@@ -23,6 +26,8 @@
 #include <cmocka.h>
 
 #include "kit/register.h"
+
+#define PI 3.14159265358979323846
 
 /* cmocka's float assertion casts to float; this one compares doubles and prints them. */
 #define NEAR(actual, expected, tolerance)                                                          \
@@ -55,50 +60,7 @@
 #define FAILS(call, status, text) FAILS_ON(context, call, status, text)
 #define REFUSES(call, text) FAILS(call, MPS_ERROR_ARGUMENT, text)
 
-/* Objects that are destroyed where their block ends; they must have a value where they are
- * declared: scoped_body *body = NULL; */
-#define SCOPED(destroy) __attribute__((cleanup(destroy), unused))
-#define scoped_body SCOPED(mps_body_destroy) mps_body
-#define scoped_contact SCOPED(mps_contact_destroy) mps_contact
-#define scoped_context SCOPED(mps_context_destroy) mps_context
-#define scoped_domain SCOPED(mps_domain_destroy) mps_domain
-#define scoped_dynamics SCOPED(mps_dynamics_destroy) mps_dynamics
-#define scoped_elastic SCOPED(mps_elastic_destroy) mps_elastic
-#define scoped_fluid SCOPED(mps_fluid_destroy) mps_fluid
-#define scoped_kernel SCOPED(mps_kernel_destroy) mps_kernel
-#define scoped_material SCOPED(mps_material_destroy) mps_material
-#define scoped_mpm SCOPED(mps_mpm_destroy) mps_mpm
-#define scoped_particles SCOPED(mps_particles_destroy) mps_particles
-#define scoped_recorder SCOPED(mps_recorder_destroy) mps_recorder
-#define scoped_signal SCOPED(mps_signal_destroy) mps_signal
-#define scoped_snapshot SCOPED(mps_snapshot_destroy) mps_snapshot
-
-/* A definition with the defaults but for these members, at most 12:
- *   DEF(mpm, def, .cell = 0.02, .gravity[1] = -9.81);
- * WITH_DEFAULTS has the whole name of the type. */
-#define DEF(noun, name, ...)                                                                       \
-  mps_##noun##_def name = mps_##noun##_defaults();                                                 \
-  SET_MEMBERS(name, __VA_ARGS__)
-#define WITH_DEFAULTS(type, name, ...)                                                             \
-  type name = type##_defaults();                                                                   \
-  SET_MEMBERS(name, __VA_ARGS__)
-#define SET_MEMBERS(v, ...)                                                                        \
-  SET_COUNT(__VA_ARGS__, SET_12, SET_11, SET_10, SET_9, SET_8, SET_7, SET_6, SET_5, SET_4, SET_3,  \
-            SET_2, SET_1, )                                                                        \
-  (v, __VA_ARGS__)
-#define SET_COUNT(a, b, c, d, e, f, g, h, i, j, k, l, which, ...) which
-#define SET_1(v, a) v a
-#define SET_2(v, a, ...) v a, SET_1(v, __VA_ARGS__)
-#define SET_3(v, a, ...) v a, SET_2(v, __VA_ARGS__)
-#define SET_4(v, a, ...) v a, SET_3(v, __VA_ARGS__)
-#define SET_5(v, a, ...) v a, SET_4(v, __VA_ARGS__)
-#define SET_6(v, a, ...) v a, SET_5(v, __VA_ARGS__)
-#define SET_7(v, a, ...) v a, SET_6(v, __VA_ARGS__)
-#define SET_8(v, a, ...) v a, SET_7(v, __VA_ARGS__)
-#define SET_9(v, a, ...) v a, SET_8(v, __VA_ARGS__)
-#define SET_10(v, a, ...) v a, SET_9(v, __VA_ARGS__)
-#define SET_11(v, a, ...) v a, SET_10(v, __VA_ARGS__)
-#define SET_12(v, a, ...) v a, SET_11(v, __VA_ARGS__)
+#include "kit/objects.h"
 
 /* The defaults, with the instruction level that ctest wants the loops of this run to have
  * (tests/CMakeLists.txt); a machine without it skips the program. */
@@ -151,5 +113,14 @@ static inline mps_context *test_context(int32_t executor, int32_t threads) {
   if (mps_context_create(&def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
   return context;
 }
+
+/* A test with a serial context of its own, named context. */
+#define TEST_SERIAL(name)                                                                          \
+  static void in_context_##name(mps_context *context);                                             \
+  TEST(name) {                                                                                     \
+    scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);                            \
+    in_context_##name(own);                                                                        \
+  }                                                                                                \
+  static void in_context_##name(mps_context *context)
 
 #endif

@@ -34,9 +34,8 @@ static inline uint64_t seen_values(mps_particles *set) {
   uint64_t hash = digest_add(DIGEST_START, &count);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
-    mps_view view;
     OK(mps_particles_get_field_info(set, f, &info));
-    OK(mps_particles_view(set, info.name, &view));
+    mps_view view = view_field(set, info.name);
     hash = seen_bytes(hash, info.name, strlen(info.name));
     for (int64_t id = 0, found = 0; found < count; id++) {
       const int64_t k = mps_particles_index(set, id);

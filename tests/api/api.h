@@ -257,6 +257,9 @@ typedef struct api_call {
   void (*call)(api *a);
 } api_call;
 
+/* Begins a call of the table and makes it. What a function calls besides it begins by api_begin. */
+void api_make(api *a, const api_call *call);
+
 typedef struct api_table {
   const api_call *calls;
   int count;
@@ -274,14 +277,12 @@ void api_print_counts(void);
 /* A query of a number of one object. */
 #define API_QUERY(function, kind)                                                                  \
   static void query_##function(api *a) {                                                           \
-    api_begin(a, "mps_" #function);                                                                \
     (void)mps_##function(api_any(a, kind)->handle);                                                \
     api_end_query(a);                                                                              \
   }
 /* Releases the caller's reference. */
 #define API_DESTROY(function, kind)                                                                \
   static void destroy_##function(api *a) {                                                         \
-    api_begin(a, "mps_" #function);                                                                \
     api_object *o = api_any(a, kind);                                                              \
     api_destroy(kind, &o->handle);                                                                 \
     if (o->handle) api_broken(a, "has not nulled");                                                \
@@ -303,7 +304,6 @@ void api_print_counts(void);
 /* static void name(api *a): the result `type` of a handle, by get(handle, out, size). */
 #define API_GETTER(name, get, kind, object, type)                                                  \
   static void name(api *a) {                                                                       \
-    api_begin(a, #get);                                                                            \
     object *handle = api_any(a, kind)->handle;                                                     \
     API_SIZED(a, type, size, out);                                                                 \
     const mps_status status = get(handle, api_null(a, "out") ? NULL : out, size);                  \

@@ -41,7 +41,6 @@ static bool made_body(api *a, mps_status status, mps_body **made) {
 /* Shapes of one or two lengths. */
 #define SIMPLE(name, dim, lengths, call)                                                           \
   static void body_create_##name(api *a) {                                                         \
-    api_begin(a, "mps_body_create_" #name);                                                        \
     mps_body *made = NULL;                                                                         \
     mps_body_def def;                                                                              \
     mps_context *context = api_context(a);                                                         \
@@ -58,8 +57,7 @@ SIMPLE(disc, 2, 1, mps_body_create_disc(context, given, x[0], out))
 SIMPLE(sphere, 3, 1, mps_body_create_sphere(context, given, x[0], out))
 SIMPLE(cylinder, 3, 2, mps_body_create_cylinder(context, given, x[0], x[1], out))
 
-static void half(api *a, const char *name, int dim) {
-  api_begin(a, name);
+static void half(api *a, int dim) {
   mps_body *made = NULL;
   mps_body_def def;
   double normal[3];
@@ -74,11 +72,10 @@ static void half(api *a, const char *name, int dim) {
   (void)made_body(a, status, &made);
 }
 
-static void body_create_half_plane(api *a) { half(a, "mps_body_create_half_plane", 2); }
-static void body_create_half_space(api *a) { half(a, "mps_body_create_half_space", 3); }
+static void body_create_half_plane(api *a) { half(a, 2); }
+static void body_create_half_space(api *a) { half(a, 3); }
 
-static void ring(api *a, const char *name, int dim) {
-  api_begin(a, name);
+static void ring(api *a, int dim) {
   mps_body *made = NULL;
   mps_body_def def;
   double x[8];
@@ -97,8 +94,8 @@ static void ring(api *a, const char *name, int dim) {
   (void)made_body(a, status, &made);
 }
 
-static void body_create_polygon(api *a) { ring(a, "mps_body_create_polygon", 2); }
-static void body_create_revolution(api *a) { ring(a, "mps_body_create_revolution", 3); }
+static void body_create_polygon(api *a) { ring(a, 2); }
+static void body_create_revolution(api *a) { ring(a, 3); }
 
 /* ---- meshes ---------------------------------------------------------------------------------- */
 
@@ -107,7 +104,6 @@ static const double tetrahedron[] = {-0.2, -0.2, -0.2, 0.3,  -0.2, -0.2,
 static const int32_t faces[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
 
 static void body_create_mesh(api *a) {
-  api_begin(a, "mps_body_create_mesh");
   mps_body *made = NULL;
   mps_body_def def;
   double xyz[12];
@@ -141,7 +137,6 @@ static size_t write_text(char *text, size_t room) {
 }
 
 static void body_create_stl(api *a) {
-  api_begin(a, "mps_body_create_stl");
   char text[1200], path[300];
   mps_body *made = NULL;
   mps_body_def def;
@@ -172,7 +167,6 @@ API_DESTROY(body_destroy, API_BODY)
 API_QUERY(body_dim, API_BODY)
 
 static void body_drive(api *a) {
-  api_begin(a, "mps_body_drive");
   mps_body *body = api_any(a, API_BODY)->handle;
   const int32_t component = api_choice(a, "component", 6);
   mps_signal *signal = api_signal(a, false);
@@ -182,7 +176,6 @@ static void body_drive(api *a) {
 }
 
 static void body_set_motion(api *a) {
-  api_begin(a, "mps_body_set_motion");
   mps_body *body = api_any(a, API_BODY)->handle;
   const int dim = mps_body_dim(body) == 3 ? 3 : 2;
   mps_body_motion motion = mps_body_motion_defaults();
@@ -203,7 +196,6 @@ static void body_set_motion(api *a) {
 }
 
 static void body_load(api *a) {
-  api_begin(a, "mps_body_set_load");
   double force[3] = {0}, moment[3] = {0};
   mps_body *body = api_any(a, API_BODY)->handle;
   const int dim = mps_body_dim(body) == 3 ? 3 : 2;
@@ -216,7 +208,6 @@ static void body_load(api *a) {
 }
 
 static void body_advance(api *a) {
-  api_begin(a, "mps_body_advance");
   mps_body *body = api_any(a, API_BODY)->handle;
   const double dt = api_real(a, "dt", 5e-324, DBL_MAX, 1e-3);
   api_arm(a);
@@ -227,7 +218,6 @@ static void body_advance(api *a) {
 
 #define GETTER(name, type)                                                                         \
   static void body_##name##_sized(api *a) {                                                        \
-    api_begin(a, "mps_body_" #name "_sized");                                                      \
     mps_body *body = api_any(a, API_BODY)->handle;                                                 \
     API_SIZED(a, type, size, out);                                                                 \
     const mps_status status =                                                                      \
@@ -239,7 +229,6 @@ GETTER(get_totals, mps_body_totals)
 GETTER(get_def, mps_body_def)
 
 static void body_get_reaction_sized(api *a) {
-  api_begin(a, "mps_body_get_reaction_sized");
   mps_body *body = api_any(a, API_BODY)->handle;
   const int32_t parts = body ? body->parts : 0;
   const int32_t part = (int32_t)api_whole(a, "part", -1, parts > 0 ? parts - 1 : -1);
@@ -249,7 +238,6 @@ static void body_get_reaction_sized(api *a) {
 }
 
 static void body_distance(api *a) {
-  api_begin(a, "mps_body_distance");
   double x[6], distance[2] = {NAN, NAN}, normal[6], foot[6];
   int64_t face[2];
   mps_body *body = api_any(a, API_BODY)->handle;
@@ -268,7 +256,6 @@ static void body_distance(api *a) {
 }
 
 static void body_name_part(api *a) {
-  api_begin(a, "mps_body_name_part");
   static const char *const good[] = {"tip", "side", "rest_2"};
   mps_body *body = api_any(a, API_BODY)->handle;
   const char *name = good[api_below(a, 3)];
@@ -282,7 +269,6 @@ static void body_name_part(api *a) {
 }
 
 static void body_part(api *a) {
-  api_begin(a, "mps_body_find_part");
   const mps_body *body = api_any(a, API_BODY)->handle;
   const int32_t part = mps_body_find_part(body, api_null(a, "name") ? NULL : "tip");
   if (part < -1 || part >= 16) api_broken(a, "part %d", part);

@@ -19,7 +19,6 @@ static void def_init(api *a) {
     uint32_t size;
     char room[4096];
   } u;
-  api_begin(a, "mps_def_init");
   const int32_t kind = (int32_t)api_below(a, a->mood == API_ABSURD ? 100 : 55);
   const mpsi_definition *definition = mpsi_definition_of(kind);
   if (!definition) api_wrong(a, "kind");
@@ -30,7 +29,6 @@ static void def_init(api *a) {
 }
 
 static void context_create(api *a) {
-  api_begin(a, "mps_context_create");
   mps_context *made = NULL;
   char text[64];
   mps_context_def def = mps_context_defaults();
@@ -61,7 +59,6 @@ API_QUERY(context_threads, API_CONTEXT)
 
 /* Allowed without a context too: the record of the thread. */
 static void context_get_error(api *a) {
-  api_begin(a, "mps_context_get_error_sized");
   mps_error record;
   if (mps_context_get_error_sized(api_context(a), &record, sizeof record) != MPS_OK ||
       !memchr(record.message, '\0', sizeof record.message))
@@ -70,7 +67,6 @@ static void context_get_error(api *a) {
 }
 
 static void context_get_warning_sized(api *a) {
-  api_begin(a, "mps_context_get_warning_sized");
   mps_context *context = api_context(a);
   const int64_t count = mps_context_warning_count(context);
   const int64_t index = api_whole(a, "index", 0, count - 1);
@@ -80,7 +76,6 @@ static void context_get_warning_sized(api *a) {
 }
 
 static void context_clear_warnings(api *a) {
-  api_begin(a, "mps_context_clear_warnings");
   mps_context *context = api_context(a);
   mps_context_clear_warnings(context);
   if (mps_context_warning_count(context) != 0) api_broken(a, "leaves warnings");
@@ -90,7 +85,6 @@ static void context_clear_warnings(api *a) {
 API_QUERY(context_warning_count, API_CONTEXT)
 
 static void context_clear_error(api *a) {
-  api_begin(a, "mps_context_clear_error");
   mps_context *context = api_context(a);
   mps_context_clear_error(context);
   if (context && mps_context_error(context)->status != MPS_OK) api_broken(a, "leaves a record");
@@ -98,7 +92,6 @@ static void context_clear_error(api *a) {
 }
 
 static void context_set_error(api *a) {
-  api_begin(a, "mps_context_set_error");
   mps_context *context = api_context(a);
   const bool good = api_chance(a, 70);
   const mps_status status =
@@ -111,8 +104,7 @@ static void context_set_error(api *a) {
 }
 
 /* Hooks are put in as they were, or taken out. */
-static void context_set_hook(api *a, const char *name, int which) {
-  api_begin(a, name);
+static void context_set_hook(api *a, int which) {
   mps_context *context = api_context(a);
   mps_context_def def = mps_context_defaults();
   if (!api_chance(a, 30)) api_hooks(a, &def);
@@ -127,12 +119,11 @@ static void context_set_hook(api *a, const char *name, int which) {
   mps_context_set_cancel(context, hooks.cancel, &a->plan, NULL);
 }
 
-static void context_set_log(api *a) { context_set_hook(a, "mps_context_set_log", 0); }
-static void context_set_progress(api *a) { context_set_hook(a, "mps_context_set_progress", 1); }
-static void context_set_cancel(api *a) { context_set_hook(a, "mps_context_set_cancel", 2); }
+static void context_set_log(api *a) { context_set_hook(a, 0); }
+static void context_set_progress(api *a) { context_set_hook(a, 1); }
+static void context_set_cancel(api *a) { context_set_hook(a, 2); }
 
 static void context_parallel_for(api *a) {
-  api_begin(a, "mps_context_parallel_for");
   atomic_llong sum = 0;
   mps_context *context = api_context(a);
   int64_t count = api_chance(a, 10) ? 0 : (int64_t)api_below(a, 50);
@@ -152,7 +143,6 @@ static void context_parallel_for(api *a) {
 static void library(api *a) {
   static const int32_t numbers[] = {-1, 0, 1, 2, 3, 4, 6, 7, 1000, INT32_MIN, INT32_MAX};
   const int32_t number = numbers[api_below(a, API_COUNT(numbers))];
-  api_begin(a, "mps_library_has");
   const int32_t has = mps_library_has(number);
   if (has != 0 && has != 1) api_broken(a, "%d of feature %d", has, number);
   api_end_query(a);
@@ -174,7 +164,6 @@ static void library(api *a) {
 /* ---- kernels --------------------------------------------------------------------------------- */
 
 static void kernel_create(api *a) {
-  api_begin(a, "mps_kernel_create");
   mps_kernel *made = NULL;
   mps_context *context = api_context(a);
   const int32_t kind = api_choice(a, "kind", 4);
@@ -190,7 +179,6 @@ API_QUERY(kernel_get_kind, API_KERNEL)
 API_QUERY(kernel_radius, API_KERNEL)
 
 static void kernel_weight(api *a) {
-  api_begin(a, "mps_kernel_weight");
   const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
   const double r = api_real(a, "r", 0.0, INFINITY, 0.1);
   const double weight = mps_kernel_weight(kernel, r);
@@ -205,7 +193,6 @@ static void kernel_weight(api *a) {
 /* ---- neighbours ------------------------------------------------------------------------------ */
 
 static void neighbours_create(api *a) {
-  api_begin(a, "mps_neighbours_create");
   mps_neighbours *made = NULL;
   mps_context *context = api_context(a);
   mps_neighbours_def def = mps_neighbours_defaults();
@@ -222,7 +209,6 @@ static void neighbours_create(api *a) {
 API_DESTROY(neighbours_destroy, API_NEIGHBOURS)
 
 static void neighbours_build(api *a) {
-  api_begin(a, "mps_neighbours_build");
   mps_neighbours *neighbours = api_any(a, API_NEIGHBOURS)->handle;
   mps_particles *set = api_any(a, API_SET)->handle;
   mps_view view;
@@ -235,7 +221,6 @@ static void neighbours_build(api *a) {
 }
 
 static void neighbours_lists(api *a) {
-  api_begin(a, "mps_neighbours_lists");
   int64_t count = -1;
   const int64_t *offsets, *indices;
   const mps_neighbours *neighbours = api_any(a, API_NEIGHBOURS)->handle;

@@ -31,7 +31,6 @@ static bool has_step(const mps_dynamics *dynamics) {
 API_SOLVER(dynamics, API_DYNAMICS)
 
 static void dynamics_create(api *a) {
-  api_begin(a, "mps_dynamics_create");
   mps_dynamics *made = NULL;
   mps_context *context = api_context(a);
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -63,7 +62,6 @@ static void dynamics_create(api *a) {
 }
 
 static void dynamics_set_material(api *a) {
-  api_begin(a, "mps_dynamics_set_material");
   int64_t ids[8] = {0};
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
@@ -103,7 +101,6 @@ static void draw_boundary(api *a, mps_dynamics *dynamics, mps_dynamics_boundary_
 }
 
 static void dynamics_add_boundary(api *a) {
-  api_begin(a, "mps_dynamics_add_boundary");
   mps_dynamics_boundary_def def;
   int64_t ids[8] = {0};
   int32_t number = -1;
@@ -115,7 +112,6 @@ static void dynamics_add_boundary(api *a) {
 }
 
 static void dynamics_set_boundary(api *a) {
-  api_begin(a, "mps_dynamics_set_boundary");
   mps_dynamics_boundary_def def;
   int64_t ids[8] = {0};
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
@@ -145,7 +141,6 @@ static void draw_load(api *a, mps_dynamics *dynamics, mps_dynamics_load_def *def
 }
 
 static void dynamics_add_load(api *a) {
-  api_begin(a, "mps_dynamics_add_load");
   mps_dynamics_load_def def;
   int64_t ids[8] = {0};
   int32_t number = -1;
@@ -155,7 +150,6 @@ static void dynamics_add_load(api *a) {
 }
 
 static void dynamics_set_load(api *a) {
-  api_begin(a, "mps_dynamics_set_load");
   mps_dynamics_load_def def;
   int64_t ids[8] = {0};
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
@@ -165,27 +159,23 @@ static void dynamics_set_load(api *a) {
 }
 
 static void dynamics_add_free_field(api *a) {
-  api_begin(a, "mps_dynamics_add_free_field");
   mps_particles *set = api_any(a, API_SET)->handle;
   const int32_t side = (int32_t)api_whole(a, "side", MPS_SIDE_X_LOWER, MPS_SIDE_X_UPPER);
   (void)api_end(a, mps_dynamics_add_free_field(set, side, (int32_t)api_least(a, "gap", 2, 5)));
 }
 
 static void dynamics_restart(api *a) {
-  api_begin(a, "mps_dynamics_restart");
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
   (void)api_end(a, mps_dynamics_restart(dynamics, api_near(a, "time", 0.0, 1.0)));
 }
 
 static void dynamics_refresh(api *a) {
-  api_begin(a, "mps_dynamics_refresh");
   api_object *o = api_any(a, API_DYNAMICS);
   api_run_solver(a, API_DYNAMICS, o);
   (void)api_end(a, mps_dynamics_refresh(o->handle));
 }
 
 static void dynamics_find_limit_sized(api *a) {
-  api_begin(a, "mps_dynamics_find_limit_sized");
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
   const double duration = api_real(a, "duration", 0.0, DBL_MAX, 0.0);
   API_SIZED(a, mps_dynamics_linear_limit, size, out);
@@ -194,7 +184,6 @@ static void dynamics_find_limit_sized(api *a) {
 }
 
 static void dynamics_predict_sized(api *a) {
-  api_begin(a, "mps_dynamics_predict_sized");
   mps_context *context = api_context(a);
   mps_dynamics_predict_def def = mps_dynamics_predict_defaults();
   api_define(a, MPS_DEF_DYNAMICS_PREDICT, &def, 0,
@@ -207,7 +196,6 @@ static void dynamics_predict_sized(api *a) {
 }
 
 static void experimental_printed_torque(api *a) {
-  api_begin(a, "mps_experimental_dynamics_printed_torque");
   mps_dynamics *dynamics = api_any(a, API_DYNAMICS)->handle;
   (void)api_end(a, mps_experimental_dynamics_printed_torque(dynamics));
 }

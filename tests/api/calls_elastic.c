@@ -65,18 +65,11 @@ static void create(api *a, bool published) {
   made_elastic(a, status, &def, made);
 }
 
-static void elastic_create(api *a) {
-  api_begin(a, "mps_elastic_create");
-  create(a, false);
-}
+static void elastic_create(api *a) { create(a, false); }
 
-static void experimental_published(api *a) {
-  api_begin(a, "mps_experimental_elastic_published");
-  create(a, true);
-}
+static void experimental_published(api *a) { create(a, true); }
 
 static void elastic_set_material(api *a) {
-  api_begin(a, "mps_elastic_set_material");
   int64_t ids[8] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic *e = o->handle;
@@ -97,7 +90,6 @@ static int64_t base(mps_particles *set, int64_t *ids) {
 }
 
 static void elastic_cut(api *a) {
-  api_begin(a, "mps_elastic_cut");
   int64_t ids[MOST];
   mps_elastic *e = api_any(a, API_ELASTIC)->handle;
   mps_particles *set = mps_elastic_particles(e);
@@ -139,7 +131,6 @@ static void draw_boundary(api *a, mps_elastic *e, mps_elastic_boundary_def *def,
 }
 
 static void elastic_add_boundary(api *a) {
-  api_begin(a, "mps_elastic_add_boundary");
   mps_elastic_boundary_def def;
   int64_t ids[MOST];
   double values[3 * MOST];
@@ -154,7 +145,6 @@ static void elastic_add_boundary(api *a) {
 }
 
 static void elastic_set_boundary(api *a) {
-  api_begin(a, "mps_elastic_set_boundary");
   mps_elastic_boundary_def def;
   int64_t ids[MOST];
   double values[3 * MOST];
@@ -188,7 +178,6 @@ static void draw_load(api *a, mps_elastic *e, mps_elastic_load_def *def, int64_t
 }
 
 static void elastic_add_load(api *a) {
-  api_begin(a, "mps_elastic_add_load");
   mps_elastic_load_def def;
   int64_t ids[8] = {0};
   int32_t number = -1;
@@ -199,7 +188,6 @@ static void elastic_add_load(api *a) {
 }
 
 static void elastic_set_load(api *a) {
-  api_begin(a, "mps_elastic_set_load");
   mps_elastic_load_def def;
   int64_t ids[8] = {0};
   mps_elastic *e = api_any(a, API_ELASTIC)->handle;
@@ -210,7 +198,6 @@ static void elastic_set_load(api *a) {
 }
 
 static void elastic_load_resultant(api *a) {
-  api_begin(a, "mps_elastic_get_load_resultant");
   double about[3] = {0}, force[3] = {0}, moment[3] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   api_vector(a, "about", 3, 0.0, 1.0, about);
@@ -228,7 +215,6 @@ static void elastic_load_resultant(api *a) {
 API_QUERY(elastic_facet_count, API_ELASTIC)
 
 static void elastic_select_facets(api *a) {
-  api_begin(a, "mps_elastic_select_facets");
   int64_t facets[MOST + 1], count = -1;
   const mps_elastic *e = api_any(a, API_ELASTIC)->handle;
   const int32_t side = (int32_t)api_whole(a, "side", MPS_SIDE_ANY, 2 * a->dim - 1);
@@ -244,7 +230,6 @@ static void elastic_select_facets(api *a) {
 }
 
 static void elastic_get_facets_sized(api *a) {
-  api_begin(a, "mps_elastic_get_facets_sized");
   int64_t particle[4];
   double centre[12], normal[12], extent[12], area[4], displacement[12], velocity[12];
   mps_elastic *e = api_any(a, API_ELASTIC)->handle;
@@ -265,7 +250,6 @@ static void elastic_get_facets_sized(api *a) {
 /* ---- solutions ------------------------------------------------------------------------------- */
 
 static void elastic_analyse_sized(api *a) {
-  api_begin(a, "mps_elastic_analyse_sized");
   mps_elastic *e = api_any(a, API_ELASTIC)->handle;
   API_SIZED(a, mps_elastic_estimate, size, out);
   const mps_status status = mps_elastic_analyse_sized(e, out, size);
@@ -273,7 +257,6 @@ static void elastic_analyse_sized(api *a) {
 }
 
 static void elastic_solve(api *a) {
-  api_begin(a, "mps_elastic_solve");
   api_object *o = api_any(a, API_ELASTIC);
   api_run_solver(a, API_ELASTIC, o);
   a->change = API_CHANGES_ORDER; /* edited moduli are read before the solution */
@@ -281,7 +264,6 @@ static void elastic_solve(api *a) {
 }
 
 static void elastic_solve_cases(api *a) {
-  api_begin(a, "mps_elastic_solve_cases");
   static double loads[2 * 3 * MOST], displacements[2 * 3 * MOST];
   api_object *o = api_any(a, API_ELASTIC);
   const int64_t n = mps_particles_count(mps_elastic_particles(o->handle));
@@ -302,12 +284,10 @@ API_GETTER(elastic_get_report_sized, mps_elastic_get_report_sized, API_ELASTIC, 
            mps_elastic_report)
 
 static void elastic_stress(api *a) {
-  api_begin(a, "mps_elastic_update_stress");
   (void)api_end(a, mps_elastic_update_stress(api_any(a, API_ELASTIC)->handle));
 }
 
 static void elastic_section(api *a) {
-  api_begin(a, "mps_elastic_get_section");
   double force[3] = {0}, moment[3] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   const int32_t axis = (int32_t)api_whole(a, "axis", 0, a->dim - 1);
@@ -321,7 +301,6 @@ static void elastic_section(api *a) {
 }
 
 static void elastic_modes(api *a) {
-  api_begin(a, "mps_elastic_modes");
   static double omega[4], shapes[4 * 3 * MOST];
   api_object *o = api_any(a, API_ELASTIC);
   const bool room = mps_particles_count(mps_elastic_particles(o->handle)) <= MOST;
@@ -337,7 +316,6 @@ static void elastic_modes(api *a) {
 }
 
 static void elastic_start(api *a) {
-  api_begin(a, "mps_elastic_start");
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic_motion_def def = mps_elastic_motion_defaults();
   api_define(a, MPS_DEF_ELASTIC_MOTION, &def, 0,
@@ -350,7 +328,6 @@ static void elastic_start(api *a) {
 }
 
 static void elastic_set_linear_solver(api *a) {
-  api_begin(a, "mps_solver_set_linear_solver");
   api_object *o = api_any(a, API_ELASTIC);
   o->exact = false;
   api_set_linear_solver(a, mps_elastic_solver(o->handle), MPS_LINEAR_EQUATION_STIFFNESS);

@@ -19,7 +19,6 @@
 API_SOLVER(fluid, API_FLUID)
 
 static void fluid_create(api *a) {
-  api_begin(a, "mps_fluid_create");
   mps_fluid *made = NULL;
   mps_context *context = api_context(a);
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -88,7 +87,6 @@ static void draw_corners(api *a, mps_fluid_boundary_def *def, double corners[12]
 }
 
 static void fluid_add_boundary(api *a) {
-  api_begin(a, "mps_fluid_add_boundary");
   mps_fluid_boundary_def def;
   double nodes[6], corners[12];
   int32_t number = -1;
@@ -107,7 +105,6 @@ static void fluid_add_boundary(api *a) {
 }
 
 static void fluid_set_boundary(api *a) {
-  api_begin(a, "mps_fluid_set_boundary");
   mps_fluid_boundary_def def;
   double nodes[6];
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
@@ -118,7 +115,6 @@ static void fluid_set_boundary(api *a) {
 }
 
 static void fluid_set_boundary_motion(api *a) {
-  api_begin(a, "mps_fluid_set_boundary_motion");
   double s[2], v[2];
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
@@ -135,7 +131,6 @@ static void fluid_set_boundary_motion(api *a) {
 }
 
 static void fluid_get_wall(api *a) {
-  api_begin(a, "mps_fluid_get_boundary_points");
   double x[3 * 33], pressure[33];
   int64_t count = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
@@ -151,7 +146,6 @@ static void fluid_get_wall(api *a) {
 }
 
 static void fluid_get_pressure(api *a) {
-  api_begin(a, "mps_fluid_get_pressure");
   double x[3] = {0}, pressure[1] = {0};
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
@@ -164,7 +158,6 @@ static void fluid_get_pressure(api *a) {
 }
 
 static void fluid_get_body_pressure(api *a) {
-  api_begin(a, "mps_fluid_get_body_pressure");
   double x[3] = {0}, pressure[1] = {0};
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   mps_contact *contact = api_any(a, API_CONTACT)->handle;
@@ -178,7 +171,6 @@ static void fluid_get_body_pressure(api *a) {
 }
 
 static void fluid_get_segments(api *a) {
-  api_begin(a, "mps_fluid_get_segments");
   double force[9], moment[3];
   int64_t count = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
@@ -192,7 +184,6 @@ static void fluid_get_segments(api *a) {
 }
 
 static void fluid_get_levels(api *a) {
-  api_begin(a, "mps_fluid_get_levels");
   double station[2], level[2] = {0};
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   api_vector(a, "station", 2, 0.3, 0.5, station);
@@ -206,7 +197,6 @@ static void fluid_get_levels(api *a) {
 /* ---- bodies and loads ------------------------------------------------------------------------ */
 
 static void fluid_add_contact(api *a) {
-  api_begin(a, "mps_fluid_add_contact");
   mps_contact *made = NULL;
   api_object *o = api_any(a, API_FLUID);
   mps_body *body = api_any(a, API_BODY)->handle;
@@ -245,7 +235,6 @@ static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t
 }
 
 static void fluid_add_load(api *a) {
-  api_begin(a, "mps_fluid_add_load");
   mps_fluid_load_def def;
   int64_t ids[8] = {0};
   int32_t number = -1;
@@ -255,7 +244,6 @@ static void fluid_add_load(api *a) {
 }
 
 static void fluid_set_load(api *a) {
-  api_begin(a, "mps_fluid_set_load");
   mps_fluid_load_def def;
   int64_t ids[8] = {0};
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
@@ -267,7 +255,6 @@ static void fluid_set_load(api *a) {
 /* ---- rock ------------------------------------------------------------------------------------ */
 
 static void fluid_add_rock(api *a) {
-  api_begin(a, "mps_fluid_add_rock");
   double corners[12];
   int32_t number = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
@@ -285,7 +272,6 @@ static void fluid_add_rock(api *a) {
 }
 
 static void fluid_remove_rock(api *a) {
-  api_begin(a, "mps_fluid_remove_rock");
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   (void)api_end(a, mps_fluid_remove_rock(fluid, (int32_t)api_least(a, "number", 0, 2)));
 }
@@ -293,7 +279,6 @@ static void fluid_remove_rock(api *a) {
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 static void fluid_begin_step(api *a) {
-  api_begin(a, "mps_fluid_begin_step");
   api_object *o = api_any(a, API_FLUID);
   double dt = api_chance(a, 50) ? NAN : mps_fluid_dt(o->handle);
   if (a->mood == API_ABSURD && api_chance(a, 30)) dt = -1.0, api_wrong(a, "dt");
@@ -304,7 +289,6 @@ static void fluid_begin_step(api *a) {
 }
 
 static void fluid_solve_pressure(api *a) {
-  api_begin(a, "mps_fluid_solve_pressure");
   api_object *o = api_any(a, API_FLUID);
   api_run_solver(a, API_FLUID, o);
   const mps_status status = mps_fluid_solve_pressure(o->handle);
@@ -313,7 +297,6 @@ static void fluid_solve_pressure(api *a) {
 }
 
 static void fluid_end_step(api *a) {
-  api_begin(a, "mps_fluid_end_step");
   api_object *o = api_any(a, API_FLUID);
   api_run_solver(a, API_FLUID, o);
   const mps_status status = mps_fluid_end_step(o->handle);
@@ -323,7 +306,6 @@ static void fluid_end_step(api *a) {
 }
 
 static void fluid_abandon_step(api *a) {
-  api_begin(a, "mps_fluid_abandon_step");
   (void)api_end(a, mps_fluid_abandon_step(api_any(a, API_FLUID)->handle));
 }
 
@@ -331,13 +313,11 @@ API_GETTER(fluid_get_report_sized, mps_fluid_get_report_sized, API_FLUID, mps_fl
            mps_fluid_report)
 
 static void fluid_set_linear_solver(api *a) {
-  api_begin(a, "mps_solver_set_linear_solver");
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   api_set_linear_solver(a, mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE);
 }
 
 static void experimental_classical(api *a) {
-  api_begin(a, "mps_experimental_fluid_classical");
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   (void)api_end(a, mps_experimental_fluid_classical(fluid, api_real(a, "gamma", 5e-324, 1.0, 0.2)));
 }

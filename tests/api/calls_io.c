@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 static void recorder_create(api *a) {
-  api_begin(a, "mps_recorder_create");
   char path[300];
   mps_recorder *made = NULL;
   mps_context *context = api_context(a);
@@ -33,7 +32,6 @@ static void recorder_create(api *a) {
 }
 
 static void recorder_write(api *a) {
-  api_begin(a, "mps_recorder_write");
   mps_recorder *recorder = api_any(a, API_RECORDER)->handle;
   const mps_status status = mps_recorder_write(recorder, api_near(a, "time", (double)a->call, 0.4));
   if (status == MPS_ERROR_IO) a->change = API_CHANGES_ALL;
@@ -43,7 +41,6 @@ static void recorder_write(api *a) {
 API_DESTROY(recorder_destroy, API_RECORDER)
 
 static void recorder_close(api *a) {
-  api_begin(a, "mps_recorder_close");
   api_object *o = api_any(a, API_RECORDER);
   mps_recorder *recorder = o->handle;
   a->wrong = 0; /* NULL is nothing to close */
@@ -58,7 +55,6 @@ static void recorder_close(api *a) {
 static const char *const solvers[] = {"mpm", "dynamics", "elastic", "fluid"}; /* that write files */
 
 static void checkpoint_info(api *a) {
-  api_begin(a, "mps_checkpoint_info");
   char path[300];
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_context *context = api_context(a);
@@ -69,7 +65,6 @@ static void checkpoint_info(api *a) {
 }
 
 static void checkpoint_read(api *a) {
-  api_begin(a, "mps_checkpoint_read");
   char path[300], data[8];
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -82,7 +77,6 @@ static void checkpoint_read(api *a) {
 /* ---- domains of one rank --------------------------------------------------------------------- */
 
 static void domain_create(api *a) {
-  api_begin(a, "mps_domain_create");
   mps_domain *made = NULL;
   mps_context *context = api_context(a);
   mps_domain_def def = mps_domain_defaults();
@@ -104,7 +98,6 @@ API_QUERY(domain_rank, API_DOMAIN)
 API_QUERY(domain_size, API_DOMAIN)
 
 static void domain_agree(api *a) {
-  api_begin(a, "mps_domain_agree");
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;
   const mps_status given = (mps_status)api_below(a, 3);
   api_say(a, "%d, ", (int)given);
@@ -116,7 +109,6 @@ static void domain_agree(api *a) {
 }
 
 static void domain_max(api *a) {
-  api_begin(a, "mps_domain_max");
   double values[2] = {1.0, 2.0};
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;
   const int32_t count = (int32_t)api_least(a, "count", 0, 2);
@@ -125,7 +117,6 @@ static void domain_max(api *a) {
 }
 
 static void domain_create_particles(api *a) {
-  api_begin(a, "mps_domain_create_particles");
   mps_particles *made = NULL;
   mps_particles_def def = mps_particles_defaults();
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;
@@ -139,7 +130,6 @@ static void domain_create_particles(api *a) {
 }
 
 static void domain_gather_fields(api *a) {
-  api_begin(a, "mps_domain_gather_fields");
   mps_particles *whole = NULL;
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -153,7 +143,6 @@ static void domain_gather_fields(api *a) {
 }
 
 static void domain_get_field(api *a) {
-  api_begin(a, "mps_domain_get_field");
   int64_t ids[4] = {0};
   double values[4 * 16];
   mps_domain *domain = api_any(a, API_DOMAIN)->handle;

@@ -16,7 +16,6 @@ static bool made_material(api *a, mps_status status, mps_material **made) {
 }
 
 static void material_linear_elastic(api *a) {
-  api_begin(a, "mps_material_create_linear_elastic");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   const double young = api_real(a, "young", YOUNG), poisson = api_real(a, "poisson", POISSON);
@@ -27,7 +26,6 @@ static void material_linear_elastic(api *a) {
 }
 
 static void material_neo_hookean(api *a) {
-  api_begin(a, "mps_material_create_neo_hookean");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   const double young = api_real(a, "young", YOUNG), poisson = api_real(a, "poisson", POISSON);
@@ -40,7 +38,6 @@ static void material_neo_hookean(api *a) {
 /* A law of a definition: the members that are drawn. */
 #define LAW(name, KIND, members)                                                                   \
   static void material_##name(api *a) {                                                            \
-    api_begin(a, "mps_material_create_" #name);                                                    \
     mps_material *made = NULL;                                                                     \
     mps_context *context = api_context(a);                                                         \
     mps_material_##name##_def def = mps_material_##name##_defaults();                              \
@@ -73,7 +70,6 @@ LOOSE_LAW(cyclic_sand, CYCLIC_SAND, "young 1e6, poisson 0.3, friction 0.6, relat
                                     "threshold 1e-4, strain_limit 0.02" VOIDS)
 
 static void material_by_field(api *a) {
-  api_begin(a, "mps_material_create_by_field");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   const mps_material *law = api_any(a, API_MATERIAL)->handle;
@@ -83,7 +79,6 @@ static void material_by_field(api *a) {
 }
 
 static void normal_k0(api *a) {
-  api_begin(a, "mps_material_normal_k0");
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   a->wrong = 0; /* NaN of what is no Cam-Clay */
   const double k0 = mps_material_normal_k0(material);
@@ -95,7 +90,6 @@ static void normal_k0(api *a) {
 /* ---- the caller's own ------------------------------------------------------------------------ */
 
 static void material_user(api *a) {
-  api_begin(a, "mps_material_create_user");
   static const char *const columns[] = {"age", "b_2"}, *const bad[] = {"age", "no good"};
   mps_material *made = NULL;
   mps_context *context = api_context(a);
@@ -117,7 +111,6 @@ static void material_user(api *a) {
 }
 
 static void material_umat(api *a) {
-  api_begin(a, "mps_material_create_umat");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   mps_material_umat_def def = mps_material_umat_defaults();
@@ -140,7 +133,6 @@ API_QUERY(material_wave_modulus, API_MATERIAL)
 API_QUERY(material_history_count, API_MATERIAL)
 
 static void material_history(api *a) {
-  api_begin(a, "mps_material_history_name");
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int32_t count = mps_material_history_count(material);
   const int32_t index = (int32_t)api_whole(a, "index", 0, count > 0 ? count - 1 : 0);
@@ -162,7 +154,6 @@ static void check_moduli(api *a, mps_status status, const mps_moduli *out, size_
 }
 
 static void moduli_from_elastic(api *a) {
-  api_begin(a, "mps_moduli_from_elastic_sized");
   mps_context *context = api_context(a);
   const double young = api_real(a, "young", YOUNG), poisson = api_real(a, "poisson", POISSON);
   const double density = api_real(a, "density", 1e-9, 1e9, 1000.0);
@@ -174,7 +165,6 @@ static void moduli_from_elastic(api *a) {
 }
 
 static void moduli_from_velocities(api *a) {
-  api_begin(a, "mps_moduli_from_velocities_sized");
   mps_context *context = api_context(a);
   const double vs = api_real(a, "shear_velocity", 1e-6, 1e9, 100.0);
   const double vp = api_real(a, "pressure_velocity", 1e-6, 1e12, 200.0);
@@ -186,7 +176,6 @@ static void moduli_from_velocities(api *a) {
 }
 
 static void material_get_moduli(api *a) {
-  api_begin(a, "mps_material_get_moduli_sized");
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   const double density = api_real(a, "density", 1e-9, 1e9, 1000.0);
   API_SIZED(a, mps_moduli, size, out);
@@ -200,7 +189,6 @@ static void material_get_moduli(api *a) {
 enum { BLOCK = 3, HISTORY = 24 };
 
 static void material_update(api *a) {
-  api_begin(a, "mps_material_update");
   static double columns[9 + 9 + 1 + 6 + HISTORY][BLOCK];
   double *history[HISTORY];
   int64_t flags[BLOCK] = {0}, refused = -1;
@@ -238,7 +226,6 @@ static void material_update(api *a) {
 static void material_point(api *a) {
   mps_material_point point;
   memset(&point, 0, sizeof point);
-  api_begin(a, "mps_material_point_init");
   mps_context *context = api_context(a);
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   const mps_status begun =

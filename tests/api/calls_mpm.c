@@ -57,7 +57,6 @@ static void draw_choices(api *a, mps_mpm_def *def) {
 }
 
 static void mpm_create(api *a) {
-  api_begin(a, "mps_mpm_create");
   mps_mpm *made = NULL;
   mps_context *context = api_context(a);
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -93,7 +92,6 @@ static void mpm_create(api *a) {
 }
 
 static void mpm_set_material(api *a) {
-  api_begin(a, "mps_mpm_set_material");
   int64_t ids[8] = {0};
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
@@ -133,7 +131,6 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
 }
 
 static void mpm_add_boundary(api *a) {
-  api_begin(a, "mps_mpm_add_boundary");
   mps_mpm_boundary_def def;
   int64_t ids[8];
   int32_t number = -1;
@@ -147,7 +144,6 @@ static void mpm_add_boundary(api *a) {
 }
 
 static void mpm_set_boundary(api *a) {
-  api_begin(a, "mps_mpm_set_boundary");
   mps_mpm_boundary_def def;
   int64_t ids[8];
   api_object *o = api_any(a, API_MPM);
@@ -178,7 +174,6 @@ static void draw_load(api *a, mps_mpm *mpm, mps_mpm_load_def *def, int64_t *ids,
 }
 
 static void mpm_add_load(api *a) {
-  api_begin(a, "mps_mpm_add_load");
   mps_mpm_load_def def;
   int64_t ids[8] = {0};
   double area[8];
@@ -189,7 +184,6 @@ static void mpm_add_load(api *a) {
 }
 
 static void mpm_set_load(api *a) {
-  api_begin(a, "mps_mpm_set_load");
   mps_mpm_load_def def;
   int64_t ids[8] = {0};
   double area[8];
@@ -206,7 +200,6 @@ API_GETTER(mpm_get_energy_report_sized, mps_mpm_get_energy_report_sized, API_MPM
            mps_mpm_energy_report)
 
 static void mpm_settle_sized(api *a) {
-  api_begin(a, "mps_mpm_settle_sized");
   api_object *o = api_any(a, API_MPM);
   mps_mpm_settle_def def = mps_mpm_settle_defaults();
   api_define(a, MPS_DEF_MPM_SETTLE, &def, 0, "max_steps 30, tolerance? 1e-2");
@@ -231,7 +224,6 @@ API_GETTER(mpm_get_pore_report_sized, mps_mpm_get_pore_report_sized, API_MPM, mp
            mps_pore_report)
 
 static void mpm_add_pore_water(api *a) {
-  api_begin(a, "mps_mpm_add_pore_water");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   mps_pore_water_def def = mps_pore_water_defaults();
   api_define(a, MPS_DEF_PORE_WATER, &def, 0,
@@ -242,7 +234,6 @@ static void mpm_add_pore_water(api *a) {
 }
 
 static void mpm_set_pore_level(api *a) {
-  api_begin(a, "mps_mpm_set_pore_level");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   double point[3];
   api_vector(a, "point", mps_particles_dim(mps_mpm_particles(mpm)), 0.0, 1.0, point);
@@ -256,7 +247,6 @@ static mps_pore_face_def draw_face(api *a) {
 }
 
 static void mpm_add_pore_face(api *a) {
-  api_begin(a, "mps_mpm_add_pore_face");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   const mps_pore_face_def def = draw_face(a);
   int32_t number = -1;
@@ -264,7 +254,6 @@ static void mpm_add_pore_face(api *a) {
 }
 
 static void mpm_set_pore_face(api *a) {
-  api_begin(a, "mps_mpm_set_pore_face");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   const mps_pore_face_def def = draw_face(a);
@@ -272,13 +261,11 @@ static void mpm_set_pore_face(api *a) {
 }
 
 static void mpm_set_linear_solver(api *a) {
-  api_begin(a, "mps_solver_set_linear_solver");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   api_set_linear_solver(a, mps_mpm_solver(mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE);
 }
 
 static void mpm_get_pore_flow(api *a) {
-  api_begin(a, "mps_mpm_get_pore_flow");
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
   const int32_t number = (int32_t)api_least(a, "number", -1, 2);
   double rate, mass;
@@ -288,7 +275,6 @@ static void mpm_get_pore_flow(api *a) {
 /* ---- contacts -------------------------------------------------------------------------------- */
 
 static void mpm_add_contact(api *a) {
-  api_begin(a, "mps_mpm_add_contact");
   mps_contact *made = NULL;
   api_object *o = api_any(a, API_MPM);
   mps_body *body = api_any(a, API_BODY)->handle;
@@ -312,7 +298,6 @@ static void mpm_add_contact(api *a) {
 API_DESTROY(contact_destroy, API_CONTACT)
 
 static void contact_get_reaction_sized(api *a) {
-  api_begin(a, "mps_contact_get_reaction_sized");
   mps_contact *contact = api_any(a, API_CONTACT)->handle;
   const int32_t parts = contact ? contact->body->parts : 0;
   const int32_t part = (int32_t)api_whole(a, "part", -1, parts > 0 ? parts - 1 : -1);
@@ -338,7 +323,6 @@ static void contact_get_def(api *a) {
 }
 
 static void contact_get_particles(api *a) {
-  api_begin(a, "mps_contact_get_particles");
   int64_t count = -1, ids[65];
   double gap[65], normal[195], force[195], foot[195];
   mps_contact *contact = api_any(a, API_CONTACT)->handle;
@@ -360,7 +344,6 @@ static void contact_get_particles(api *a) {
 static mps_grid *grid(api *a) { return mps_mpm_grid(api_any(a, API_MPM)->handle); }
 
 static void grid_get_info_sized(api *a) {
-  api_begin(a, "mps_grid_get_info_sized");
   mps_grid *g = grid(a);
   API_SIZED(a, mps_grid_info, size, out);
   const mps_status status = mps_grid_get_info_sized(g, api_null(a, "out") ? NULL : out, size);
@@ -368,7 +351,6 @@ static void grid_get_info_sized(api *a) {
 }
 
 static void grid_get_nodes(api *a) {
-  api_begin(a, "mps_grid_get_nodes");
   enum { MOST = 300 };
   static double position[3 * MOST], mass[MOST], velocity[3 * MOST], force[3 * MOST];
   int64_t count = -1;
@@ -397,7 +379,6 @@ static int32_t last_component(mps_particles *set, const char *name) {
 }
 
 static void grid_evaluate(api *a) {
-  api_begin(a, "mps_grid_evaluate");
   double points[6], values[2 * 16];
   int32_t states[2];
   api_object *o = api_any(a, API_MPM);
@@ -420,7 +401,6 @@ static void grid_evaluate(api *a) {
 /* ---- experimental ---------------------------------------------------------------------------- */
 
 static void experimental_transfer(api *a) {
-  api_begin(a, "mps_experimental_mpm_transfer");
   api_object *o = api_any(a, API_MPM);
   mps_mpm *mpm = o->handle;
   o->loose = true;
@@ -428,7 +408,6 @@ static void experimental_transfer(api *a) {
 }
 
 static void experimental_strain(api *a) {
-  api_begin(a, "mps_experimental_mpm_strain");
   api_object *o = api_any(a, API_MPM);
   mps_mpm *mpm = o->handle;
   o->loose = true;
@@ -436,7 +415,6 @@ static void experimental_strain(api *a) {
 }
 
 static void experimental_standard(api *a) {
-  api_begin(a, "mps_experimental_mpm_standard");
   api_object *o = api_any(a, API_MPM);
   mps_mpm *mpm = o->handle;
   o->loose = true;

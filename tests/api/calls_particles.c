@@ -11,7 +11,6 @@
 #include <stdlib.h>
 
 static void particles_create(api *a) {
-  api_begin(a, "mps_particles_create");
   mps_particles *made = NULL;
   mps_context *context = api_context(a);
   mps_particles_def def = mps_particles_defaults();
@@ -49,7 +48,6 @@ static double room(const mps_particles *set) {
 }
 
 static void particles_fill_box(api *a) {
-  api_begin(a, "mps_particles_fill_box");
   double lo[3], hi[3];
   int64_t added = -1;
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -63,7 +61,6 @@ static void particles_fill_box(api *a) {
 }
 
 static void particles_fill_ball(api *a) {
-  api_begin(a, "mps_particles_fill_ball");
   double centre[3];
   mps_particles *set = api_any(a, API_SET)->handle;
   api_vector(a, "centre", 3, 0.5, 0.3, centre);
@@ -79,7 +76,6 @@ static void particles_fill_ball(api *a) {
 }
 
 static void particles_fill_polygon(api *a) {
-  api_begin(a, "mps_particles_fill_polygon");
   double xy[12];
   mps_particles *set = api_any(a, API_SET)->handle;
   const double size = room(set);
@@ -92,7 +88,6 @@ static void particles_fill_polygon(api *a) {
 }
 
 static void particles_fill_where(api *a) {
-  api_begin(a, "mps_particles_fill_where");
   double lo[3], hi[3];
   mps_particles *set = api_any(a, API_SET)->handle;
   const api_mood mood = a->mood;
@@ -107,7 +102,6 @@ static void particles_fill_where(api *a) {
 }
 
 static void particles_append(api *a) {
-  api_begin(a, "mps_particles_append");
   double x[12];
   mps_particles *set = api_any(a, API_SET)->handle;
   const int32_t dim = mps_particles_dim(set);
@@ -125,7 +119,6 @@ static void particles_append(api *a) {
 }
 
 static void particles_remove(api *a) {
-  api_begin(a, "mps_particles_remove");
   int64_t ids[4] = {0};
   mps_particles *set = api_any(a, API_SET)->handle;
   const int64_t count = api_ids(a, set, 1 + api_below(a, 3), ids);
@@ -136,7 +129,6 @@ static void particles_remove(api *a) {
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static void particles_add_field(api *a) {
-  api_begin(a, "mps_particles_add_field");
   mps_particles *set = api_any(a, API_SET)->handle;
   const char *name = api_field(a, set);
   int32_t components = 0;
@@ -168,7 +160,6 @@ static void particles_remove_field(api *a) {
 }
 
 static void particles_view(api *a) {
-  api_begin(a, "mps_particles_view");
   mps_view view;
   mps_particles *set = api_any(a, API_SET)->handle;
   const char *name = api_field(a, set);
@@ -201,7 +192,6 @@ static double typical(api *a, const char *name) {
 }
 
 static void particles_set(api *a) {
-  api_begin(a, "mps_particles_set");
   mps_particles *set = api_any(a, API_SET)->handle;
   const char *name = api_field(a, set);
   const int32_t component = (int32_t)(api_chance(a, 80) ? 0 : api_whole(a, "component", 0, 15));
@@ -250,7 +240,6 @@ static void particles_copy(api *a) {
 }
 
 static void particles_field_sized(api *a) {
-  api_begin(a, "mps_particles_get_field_info_sized");
   const mps_particles *set = api_any(a, API_SET)->handle;
   const int32_t most = mps_particles_field_count(set);
   const int32_t index = (int32_t)api_whole(a, "index", 0, most > 0 ? most - 1 : 0);
@@ -290,7 +279,6 @@ static void write_field(api *a, const mps_edit *edit, const char *name) {
 }
 
 static void particles_edit(api *a) {
-  api_begin(a, "mps_particles_edit");
   mps_edit edit;
   api_object *o = api_any(a, API_SET);
   const char *name = api_field(a, o->handle);
@@ -325,8 +313,7 @@ static api_object *editing(api *a) {
   return api_any(a, API_SET);
 }
 
-static void end_edit(api *a, const char *name, bool commit) {
-  api_begin(a, name);
+static void end_edit(api *a, bool commit) {
   api_loosen(a);
   api_object *o = editing(a);
   const int k = open_edit(a, o);
@@ -343,13 +330,12 @@ static void end_edit(api *a, const char *name, bool commit) {
   (void)api_end(a, status);
 }
 
-static void particles_commit(api *a) { end_edit(a, "mps_particles_commit", true); }
-static void particles_abandon(api *a) { end_edit(a, "mps_particles_abandon", false); }
+static void particles_commit(api *a) { end_edit(a, true); }
+static void particles_abandon(api *a) { end_edit(a, false); }
 
 /* ---- selection ------------------------------------------------------------------------------- */
 
 static void particles_select_box(api *a) {
-  api_begin(a, "mps_particles_select_box");
   double lo[3], hi[3];
   int64_t ids[66], count = -1;
   mps_particles *set = api_any(a, API_SET)->handle;
@@ -371,7 +357,6 @@ static void particles_select_box(api *a) {
 }
 
 static void particles_index(api *a) {
-  api_begin(a, "mps_particles_index");
   int64_t id[1] = {-1};
   const mps_particles *set = api_any(a, API_SET)->handle;
   if (api_ids(a, (mps_particles *)set, 1, id) == 0) id[0] = 0;
@@ -382,7 +367,6 @@ static void particles_index(api *a) {
 }
 
 static void particles_nearest(api *a) {
-  api_begin(a, "mps_particles_nearest");
   double x[3];
   const mps_particles *set = api_any(a, API_SET)->handle;
   api_vector(a, "x", 3, 0.5, 1.0, x);
@@ -394,7 +378,6 @@ static void particles_nearest(api *a) {
 /* ---- stress ---------------------------------------------------------------------------------- */
 
 static void particles_set_geostatic(api *a) {
-  api_begin(a, "mps_particles_set_geostatic");
   mps_particles *set = api_any(a, API_SET)->handle;
   mps_geostatic_layer layers[3];
   const double line[] = {0.0, 1.0, 0.5, 1.1, 1.0, 1.2};
@@ -423,7 +406,6 @@ static void particles_set_geostatic(api *a) {
 }
 
 static void particles_set_consolidation(api *a) {
-  api_begin(a, "mps_particles_set_consolidation");
   mps_particles *set = api_any(a, API_SET)->handle;
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
   mps_consolidation_def def = mps_consolidation_defaults();
@@ -435,7 +417,6 @@ static void particles_set_consolidation(api *a) {
 }
 
 static void particles_set_profile(api *a) {
-  api_begin(a, "mps_particles_set_profile");
   mps_particles *set = api_any(a, API_SET)->handle;
   double depth[2] = {api_near(a, "depth", 0.5, 0.5), 2.0}, value[2] = {0.5, 1.5};
   value[0] = api_near(a, "value", 0.5, 0.4);
@@ -444,7 +425,6 @@ static void particles_set_profile(api *a) {
 }
 
 static void particles_set_stress(api *a) {
-  api_begin(a, "mps_particles_set_stress");
   mps_particles *set = api_any(a, API_SET)->handle;
   api_arm(a);
   api_loosen(a);
@@ -453,7 +433,6 @@ static void particles_set_stress(api *a) {
 }
 
 static void particles_set_table(api *a) {
-  api_begin(a, "mps_particles_set_table");
   mps_particles *set = api_any(a, API_SET)->handle;
   double positions[12], values[4];
   for (int k = 0; k < 12; k++) positions[k] = 0.4 * (k % 3) + 0.3 * (k % 2) + 0.01 * k;
@@ -472,7 +451,6 @@ static void particles_set_table(api *a) {
 }
 
 static void particles_set_material(api *a) {
-  api_begin(a, "mps_particles_set_material");
   int64_t ids[8] = {0};
   mps_particles *set = api_any(a, API_SET)->handle;
   const mps_material *material = api_any(a, API_MATERIAL)->handle;

@@ -25,7 +25,6 @@ static int32_t draw_quantity(api *a) {
 /* A signal of three numbers, each drawn by `draw_...`. */
 #define SIGNAL_OF_THREE(name, x, draw_x, y, draw_y, z, draw_z)                                     \
   static void signal_##name(api *a) {                                                              \
-    api_begin(a, "mps_signal_create_" #name);                                                      \
     mps_signal *made = NULL;                                                                       \
     mps_context *context = api_context(a);                                                         \
     DRAW_##name;                                                                                   \
@@ -44,7 +43,6 @@ SIGNAL_OF_THREE(ramp, start, api_near(a, "start", 0.0, 0.1), duration,
                 api_near(a, "amplitude", 0.0, 0.01))
 
 static void signal_table(api *a) {
-  api_begin(a, "mps_signal_create_table");
   double times[6], values[6];
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
@@ -63,7 +61,6 @@ static void signal_table(api *a) {
 }
 
 static void signal_user(api *a) {
-  api_begin(a, "mps_signal_create_user");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   const int32_t quantity = draw_quantity(a);
@@ -99,7 +96,6 @@ static void write_record(api *a, const char *path) {
 }
 
 static void signal_record(api *a) {
-  api_begin(a, "mps_signal_create_record");
   char path[300];
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
@@ -128,7 +124,6 @@ static void signal_record(api *a) {
 
 /* Of a signal that is not of a file MPS_ERROR_STATE. */
 static void signal_get_record_sized(api *a) {
-  api_begin(a, "mps_signal_get_record_sized");
   const mps_signal *signal = api_any(a, API_SIGNAL)->handle;
   API_SIZED(a, mps_signal_record_report, size, out);
   const mps_status status =
@@ -139,7 +134,6 @@ static void signal_get_record_sized(api *a) {
 API_DESTROY(signal_destroy, API_SIGNAL)
 
 static void signal_values(api *a) {
-  api_begin(a, "mps_signal_displacement");
   const mps_signal *signal = api_any(a, API_SIGNAL)->handle;
   const double t = api_near(a, "t", 0.1, 0.5);
   const double u = mps_signal_displacement(signal, t);
@@ -157,18 +151,15 @@ static void signal_values(api *a) {
 }
 
 static void signal_span(api *a) {
-  api_begin(a, "mps_signal_span");
   double start = 0.0, end = 0.0;
   mps_signal_span(api_any(a, API_SIGNAL)->handle, api_chance(a, 80) ? &start : NULL, &end);
   if (isnan(start) || isnan(end)) api_broken(a, "%g to %g", start, end);
   api_end_query(a);
 }
 
-
 /* ---- couplings ------------------------------------------------------------------------------- */
 
 static void coupling_create(api *a) {
-  api_begin(a, "mps_coupling_create");
   mps_coupling *made = NULL;
   mps_context *context = api_context(a);
   mps_coupling_def def = mps_coupling_defaults();
@@ -192,7 +183,6 @@ static void coupling_create(api *a) {
 API_DESTROY(coupling_destroy, API_COUPLING)
 
 static void coupling_begin(api *a) {
-  api_begin(a, "mps_coupling_begin");
   double start[3] = {0}, guess[3] = {0};
   mps_coupling *coupling = api_any(a, API_COUPLING)->handle;
   const bool given = api_chance(a, 40);
@@ -205,7 +195,6 @@ static void coupling_begin(api *a) {
 }
 
 static void coupling_next(api *a) {
-  api_begin(a, "mps_coupling_next");
   double answer[3], guess[3] = {0};
   int32_t done = -1;
   mps_coupling *coupling = api_any(a, API_COUPLING)->handle;
@@ -219,7 +208,6 @@ static void coupling_next(api *a) {
 }
 
 static void coupling_accept(api *a) {
-  api_begin(a, "mps_coupling_accept");
   (void)api_end(a, mps_coupling_accept(api_any(a, API_COUPLING)->handle));
 }
 
@@ -230,7 +218,6 @@ API_GETTER(coupling_get_report_sized, mps_coupling_get_report_sized, API_COUPLIN
 static void coupling_memory(api *a) {
   double values[513];
   int64_t count = 0;
-  api_begin(a, "mps_coupling_get_memory");
   int64_t capacity = (int64_t)api_below(a, 2) * 512;
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   const mps_coupling *coupling = api_any(a, API_COUPLING)->handle;

@@ -64,12 +64,10 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
   API_QUERY(S##_steps, KIND)                                                                       \
   API_QUERY(S##_limit, KIND)                                                                       \
   static void S##_dt(api *a) {                                                                     \
-    api_begin(a, "mps_" #S "_dt");                                                                 \
     if (isnan(mps_##S##_dt(api_any(a, KIND)->handle))) api_broken(a, "is NaN");                    \
     api_end_changed(a);                                                                            \
   }                                                                                                \
   static void S##_get_totals_sized(api *a) {                                                       \
-    api_begin(a, "mps_" #S "_get_totals_sized");                                                   \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     API_SIZED(a, mps_totals, size, out);                                                           \
     const mps_status status =                                                                      \
@@ -77,7 +75,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_def_sized(api *a) {                                                          \
-    api_begin(a, "mps_" #S "_get_def_sized");                                                      \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     API_SIZED(a, mps_##S##_def, size, out);                                                        \
     const mps_status status = mps_solver_get_def(mps_##S##_solver(s), SOLVER_DEF,                  \
@@ -85,7 +82,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_reaction_sized(api *a) {                                                     \
-    api_begin(a, "mps_" #S "_get_reaction_sized");                                                 \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     const int32_t number = (int32_t)api_least(a, "number", 0, 9);                                  \
     API_SIZED(a, mps_reaction, size, out);                                                         \
@@ -94,7 +90,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_boundary(api *a) {                                                           \
-    api_begin(a, "mps_" #S "_get_boundary");                                                       \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     const int32_t number = (int32_t)api_least(a, "number", 0, 8);                                  \
     API_SIZED(a, mps_##S##_boundary_def, size, out);                                               \
@@ -103,7 +98,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     API_SIZED_END(a, status, size, out, true);                                                     \
   }                                                                                                \
   static void S##_get_load(api *a) {                                                               \
-    api_begin(a, "mps_" #S "_get_load");                                                           \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     const int32_t number = (int32_t)api_least(a, "number", 0, 3);                                  \
     API_SIZED(a, mps_##S##_load_def, size, out);                                                   \
@@ -114,7 +108,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
   static void S##_get_numbers(api *a) {                                                            \
     int32_t numbers[4];                                                                            \
     int64_t count = -1, capacity = api_below(a, 5);                                                \
-    api_begin(a, "mps_solver_get_numbers");                                                        \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");       \
     const mps_status status = mps_solver_get_numbers(                                              \
@@ -125,14 +118,12 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_remove_boundary(api *a) {                                                        \
-    api_begin(a, "mps_" #S "_remove_boundary");                                                    \
     api_object *o = api_any(a, KIND);                                                              \
     mps_##S *s = o->handle;                                                                        \
     o->drags = o->drags || KIND == API_ELASTIC;                                                    \
     (void)api_end(a, mps_##S##_remove_boundary(s, (int32_t)api_least(a, "number", 0, 8)));         \
   }                                                                                                \
   static void S##_remove_load(api *a) {                                                            \
-    api_begin(a, "mps_" #S "_remove_load");                                                        \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     (void)api_end(a, mps_##S##_remove_load(s, (int32_t)api_least(a, "number", 0, 3)));             \
   }                                                                                                \
@@ -165,13 +156,11 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     return api_end(a, status);                                                                     \
   }                                                                                                \
   static void S##_step(api *a) {                                                                   \
-    api_begin(a, "mps_" #S "_step");                                                               \
     api_object *o = api_any(a, KIND);                                                              \
     const int64_t count = api_least(a, "count", 0, 4);                                             \
     (void)step_by(a, o, count);                                                                    \
   }                                                                                                \
   static void S##_run(api *a) {                                                                    \
-    api_begin(a, "mps_" #S "_run");                                                                \
     api_object *o = api_any(a, KIND);                                                              \
     mps_##S *s = o->handle;                                                                        \
     const double t_end = api_t_end(a, mps_##S##_time(s), SOLVER_DT(s));                            \
@@ -186,7 +175,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_set_dt(api *a) {                                                                 \
-    api_begin(a, "mps_" #S "_set_dt");                                                             \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \
     double dt = mps_##S##_limit(s);                                                                \
     if (!(dt > 0.0 && dt < 1.0)) dt = 1e-3;                                                        \
@@ -201,7 +189,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
   }                                                                                                \
   /* Into a new snapshot, or one that may be of another solver. */                                 \
   static void S##_snapshot(api *a) {                                                               \
-    api_begin(a, "mps_" #S "_snapshot");                                                           \
     api_object *o = api_any(a, KIND);                                                              \
     api_object *old =                                                                              \
         api_chance(a, 50) && api_alive(a, API_SNAPSHOT) ? api_any(a, API_SNAPSHOT) : NULL;         \
@@ -216,7 +203,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_rollback(api *a) {                                                               \
-    api_begin(a, "mps_" #S "_rollback");                                                           \
     api_object *o = api_any(a, KIND);                                                              \
     api_object *old = api_any(a, API_SNAPSHOT);                                                    \
     if (old->handle && o->handle && old->owner != o->serial) api_wrong(a, "snapshot");             \
@@ -225,7 +211,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
   /* A rollback restores the state, and the same steps lead to the same state again. */            \
   static void S##_return(api *a) {                                                                 \
     static api_state begin, back, first, second;                                                   \
-    api_begin(a, "mps_" #S "_snapshot");                                                           \
     api_object *o = api_any(a, KIND);                                                              \
     mps_##S *s = o->handle;                                                                        \
     mps_snapshot *snapshot = NULL;                                                                 \
@@ -265,7 +250,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     api_settle(a);                                                                                 \
   }                                                                                                \
   static void S##_save(api *a) {                                                                   \
-    api_begin(a, "mps_" #S "_save");                                                               \
     char path[300];                                                                                \
     mps_checkpoint info = mps_checkpoint_defaults();                                               \
     api_object *o = api_any(a, KIND);                                                              \
@@ -280,7 +264,6 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *but, c
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_restore(api *a) {                                                                \
-    api_begin(a, "mps_" #S "_restore");                                                            \
     char path[300];                                                                                \
     mps_checkpoint info = mps_checkpoint_defaults();                                               \
     mps_##S *s = api_any(a, KIND)->handle;                                                         \

@@ -13,7 +13,6 @@
 /* ---- seas ------------------------------------------------------------------------------------ */
 
 static void waves_create(api *a) {
-  api_begin(a, "mps_waves_create");
   static const double f[3] = {0.4, 0.6, 1.1}, S[3] = {0.0, 1e-3, 0.0};
   double t[24], eta[24];
   mps_waves *made = NULL;
@@ -37,7 +36,6 @@ API_DESTROY(waves_destroy, API_WAVES)
 API_GETTER(waves_report, mps_waves_get_report_sized, API_WAVES, const mps_waves, mps_waves_report)
 
 static void waves_components(api *a) {
-  api_begin(a, "mps_waves_get_components");
   double f[8] = {0.0}, amplitude[8] = {0.0};
   int64_t count = 0;
   const mps_waves *waves = api_any(a, API_WAVES)->handle;
@@ -49,7 +47,6 @@ static void waves_components(api *a) {
 }
 
 static void waves_levels(api *a) {
-  api_begin(a, "mps_waves_get_levels");
   double linear[2] = {0.0}, level[2] = {0.0};
   const mps_waves *waves = api_any(a, API_WAVES)->handle;
   const double station = api_real(a, "station", 0.0, 1e12, 2.0);
@@ -62,7 +59,6 @@ static void waves_levels(api *a) {
 }
 
 static void waves_piston(api *a) {
-  api_begin(a, "mps_waves_get_piston");
   double s = 0.0, u = 0.0;
   const mps_waves *waves = api_any(a, API_WAVES)->handle;
   const double t = api_near(a, "t", 2.0, 2.0);
@@ -74,7 +70,6 @@ static void waves_piston(api *a) {
 }
 
 static void signal_waves(api *a) {
-  api_begin(a, "mps_signal_create_waves");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   mps_waves *waves = api_any(a, API_WAVES)->handle;
@@ -86,7 +81,6 @@ static void signal_waves(api *a) {
 /* ---- absorbing pistons ----------------------------------------------------------------------- */
 
 static void absorber_create(api *a) {
-  api_begin(a, "mps_absorber_create");
   mps_absorber *made = NULL;
   mps_context *context = api_context(a);
   mps_absorber_def def = mps_absorber_defaults();
@@ -104,7 +98,6 @@ API_GETTER(absorber_report, mps_absorber_get_report_sized, API_ABSORBER, const m
            mps_absorber_report)
 
 static void absorber_advance(api *a) {
-  api_begin(a, "mps_absorber_advance");
   double s = 0.0, u = 0.0;
   mps_absorber *absorber = api_any(a, API_ABSORBER)->handle;
   const double t = api_near(a, "t", 2.0, 2.0), dt = api_real(a, "dt", 1e-12, 1e12, 0.01);
@@ -116,7 +109,6 @@ static void absorber_advance(api *a) {
 }
 
 static void absorber_reflection(api *a) {
-  api_begin(a, "mps_absorber_get_reflection");
   double r = 0.0;
   const mps_absorber *absorber = api_any(a, API_ABSORBER)->handle;
   const double period = api_real(a, "period", 1e-12, 1e12, 1.5);
@@ -130,7 +122,6 @@ static void absorber_reflection(api *a) {
 /* The memory of one in another, perhaps damaged. */
 static void absorber_memory(api *a) {
   double values[MPS_ABSORBER_MEMORY] = {0.0};
-  api_begin(a, "mps_absorber_get_memory");
   const mps_absorber *absorber = api_any(a, API_ABSORBER)->handle;
   const mps_status status =
       mps_absorber_get_memory(absorber, api_null(a, "values") ? NULL : values);
@@ -146,7 +137,6 @@ static void absorber_memory(api *a) {
 /* ---- closed formulas ------------------------------------------------------------------------- */
 
 static void separation_find(api *a) {
-  api_begin(a, "mps_separation_find_sized");
   enum { N = 64 };
   double t[N], levels[3 * N], f[4] = {0.0}, in[4] = {0.0};
   static const double x[3] = {1.0, 1.3, 1.9};
@@ -170,7 +160,6 @@ static void separation_find(api *a) {
 }
 
 static void sainflou_evaluate(api *a) {
-  api_begin(a, "mps_sainflou_evaluate_sized");
   mps_context *context = api_context(a);
   mps_sainflou_def def = mps_sainflou_defaults();
   api_define(a, MPS_DEF_SAINFLOU, &def, 0, "height 0.1, period 2, depth 0.6, density 1000");
@@ -182,7 +171,6 @@ static void sainflou_evaluate(api *a) {
 }
 
 static void goda_evaluate(api *a) {
-  api_begin(a, "mps_goda_evaluate_sized");
   mps_context *context = api_context(a);
   mps_goda_def def = mps_goda_defaults();
   api_define(a, MPS_DEF_GODA, &def, 0,
@@ -196,7 +184,6 @@ static void goda_evaluate(api *a) {
 }
 
 static void eurotop_evaluate(api *a) {
-  api_begin(a, "mps_eurotop_evaluate_sized");
   mps_context *context = api_context(a);
   mps_eurotop_def def = mps_eurotop_defaults();
   api_define(a, MPS_DEF_EUROTOP, &def, 0,
@@ -209,7 +196,6 @@ static void eurotop_evaluate(api *a) {
 }
 
 static void run_up_find(api *a) {
-  api_begin(a, "mps_eurotop_find_run_up_sized");
   mps_context *context = api_context(a);
   mps_eurotop_def def = mps_eurotop_defaults();
   def.wall = MPS_EUROTOP_WALL_SLOPE;
@@ -223,7 +209,6 @@ static void run_up_find(api *a) {
 }
 
 static void overtopping_find(api *a) {
-  api_begin(a, "mps_overtopping_find_sized");
   enum { N = 24 };
   double t[N], heads[N], volumes[N], thin[N];
   mps_context *context = api_context(a);

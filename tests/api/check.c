@@ -89,6 +89,11 @@ void api_begin(api *a, const char *name) {
   refuse_memory(a);
 }
 
+void api_make(api *a, const api_call *call) {
+  api_begin(a, call->name);
+  call->call(a);
+}
+
 /* ---- after ----------------------------------------------------------------------------------- */
 
 static bool is_status(mps_status status) {

@@ -122,7 +122,7 @@ static bool run_sequence(api *a, uint64_t seed, int calls, int threads) {
       if (skipped[a->call]) continue;
       a->random = api_mix(api_mix(seed) ^ (uint64_t)a->call);
       choose_mood(a);
-      choose_call(a)->call(a);
+      api_make(a, choose_call(a));
     }
     finish(a);
   }

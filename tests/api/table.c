@@ -120,7 +120,7 @@ void api_do(api *a, const char *name) {
   for (int t = 0; t < api_table_count; t++)
     for (int k = 0; k < api_tables[t]->count; k++)
       if (strcmp(api_tables[t]->calls[k].name, name) == 0) {
-        api_tables[t]->calls[k].call(a);
+        api_make(a, &api_tables[t]->calls[k]);
         return;
       }
   api_broken(a, "no call %s for the scene", name);

@@ -12,8 +12,7 @@ static mps_status make_ground(mps_context *own, mps_domain *domain, mps_particle
   DEF(particles, def, .spacing = 0.02);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {1.2, SURFACE};
-  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
+  TRY(mps_particles_fill_box(*out, AT(0.0, 0.0), AT(1.2, SURFACE), NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
   TRY(mps_particles_add_field(*out, "velocity", 0));
   mps_view x;
@@ -51,8 +50,8 @@ static mps_status compute_clay(mps_context *own, mps_domain *domain, int what, i
   SCOPED(end_scene) scene s = {.set = NULL};
   int64_t ids[300];
   for (int64_t k = 0; k < 300; k++) ids[k] = 500 + k;
-  DEF(mpm, def, .domain = domain, .cell = 0.04, .gravity[1] = -9.81, .budget = 1);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.2;
+  DEF(mpm, def, .domain = domain, .cell = 0.04, .gravity[1] = -9.81, .budget = 1,
+      .lower[0] = def.lower[1] = 0.0, .upper[0] = 1.2);
   mps_status status = make_laws(own, &s);
   if (domain) status = mps_domain_agree(domain, status);
   TRY(make_ground(own, what == IN_PARTS ? domain : NULL, &s.set));

@@ -90,53 +90,30 @@ TEST(test_cut_scattered) { compare_cut(SCATTERED); }
 
 TEST(test_refused_memory) { refuse_memory(compute, STRIP, SHORT_RUN, 1); }
 
-/* One after the other, what ranks do not agree upon, or what fails on one of them. */
-enum {
-  OTHER_SET,
-  OTHER_DT,
-  OTHER_COUNT,
-  DIVERGES,
-  CANCELLED,
-  SIGNAL_FAILS,
-  SIGNAL_DIFFERS, /* of a load, from some time on */
-  DRIVEN_DIFFERS, /* of a boundary */
-  CALLBACK_FAILS,
-  UNKNOWN_ID,
-  REMOVAL,
-  EDIT_SNAPSHOT, /* an edit is open on rank 1 */
-  EDIT_SAVE,
-  OTHER_LOAD,
-  OTHER_SIGNAL,
-  NO_LOAD,
-  OTHER_IDS,
-  OTHER_REMOVED,
-  NO_SUCH_BOUNDARY,
-  TROUBLES
-};
-static const struct {
-  mps_status status;
-  const char *text;
-} trouble[TROUBLES] = {
-    [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
-    [OTHER_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
-    [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
-    [DIVERGES] = {MPS_ERROR_DIVERGED, "diverged at step"},
-    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook"},
-    [SIGNAL_FAILS] = {MPS_ERROR_NUMERIC, "rank 2: "},
-    [SIGNAL_DIFFERS] = {MPS_ERROR_ARGUMENT, "the present factor on a load is "},
-    [DRIVEN_DIFFERS] = {MPS_ERROR_ARGUMENT, "the displacement of a boundary is "},
-    [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
-    [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
-    [REMOVAL] = {MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks"},
-    [EDIT_SNAPSHOT] = {MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited"},
-    [EDIT_SAVE] = {MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited"},
-    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [NO_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: def is NULL"},
-    [OTHER_IDS] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
-    [NO_SUCH_BOUNDARY] = {MPS_ERROR_ARGUMENT, "number is 7: there is no boundary"},
-};
+/* One after the other, what ranks do not agree upon, or what fails on one of them: signals
+ * of a load and a boundary that differ from some time on, an edit that is open on rank 1. */
+#define DYNAMICS_TROUBLES(ROW)                                                                     \
+  ROW(OTHER_SET, MPS_ERROR_ARGUMENT, "a hash of the set's particles")                              \
+  ROW(OTHER_DT, MPS_ERROR_ARGUMENT, "dt is ")                                                      \
+  ROW(OTHER_COUNT, MPS_ERROR_ARGUMENT, "count is ")                                                \
+  ROW(DIVERGES, MPS_ERROR_DIVERGED, "diverged at step")                                            \
+  ROW(CANCELLED, MPS_ERROR_CANCELLED, "stopped by the cancel hook")                                \
+  ROW(SIGNAL_FAILS, MPS_ERROR_NUMERIC, "rank 2: ")                                                 \
+  ROW(SIGNAL_DIFFERS, MPS_ERROR_ARGUMENT, "the present factor on a load is ")                      \
+  ROW(DRIVEN_DIFFERS, MPS_ERROR_ARGUMENT, "the displacement of a boundary is ")                    \
+  ROW(CALLBACK_FAILS, MPS_ERROR_IO, "rank 2: ")                                                    \
+  ROW(UNKNOWN_ID, MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank")        \
+  ROW(REMOVAL, MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks")                              \
+  ROW(EDIT_SNAPSHOT, MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited")                  \
+  ROW(EDIT_SAVE, MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited")                      \
+  ROW(OTHER_LOAD, MPS_ERROR_ARGUMENT, "another value on others")                                   \
+  ROW(OTHER_SIGNAL, MPS_ERROR_ARGUMENT, "another value on others")                                 \
+  ROW(NO_LOAD, MPS_ERROR_ARGUMENT, "rank 1: def is NULL")                                          \
+  ROW(OTHER_IDS, MPS_ERROR_ARGUMENT, "another value on others")                                    \
+  ROW(OTHER_REMOVED, MPS_ERROR_ARGUMENT, "number is ")                                             \
+  ROW(NO_SUCH_BOUNDARY, MPS_ERROR_ARGUMENT, "number is 7: there is no boundary")
+enum { DYNAMICS_TROUBLES(CASE_NAME) TROUBLES };
+static const trouble_case trouble[TROUBLES] = {DYNAMICS_TROUBLES(CASE_ROW)};
 
 typedef struct upset {
   int32_t rank;
@@ -168,7 +145,6 @@ static int32_t cancel(void *user) { return ((upset *)user)->rank == 1; }
 static mps_status define_otherwise(mps_context *own, mps_dynamics *dynamics, int what,
                                    int32_t rank) {
   DEF(dynamics_load, load, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1);
-  mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
   const double times[3] = {0.0, 0.1, 0.2}, values[3] = {0.0, 1.0, rank == 1 ? 0.51 : 0.5};
   const int64_t ids[2] = {17, rank == 1 ? 19 : 18};
   scoped_signal *signal = NULL;
@@ -176,7 +152,8 @@ static mps_status define_otherwise(mps_context *own, mps_dynamics *dynamics, int
       mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_VALUE, 3, times, values, &signal);
   load.acceleration[0] = what == OTHER_LOAD ? 1.0 + rank : 1.0;
   if (what == OTHER_SIGNAL) load.signal[0] = signal;
-  boundary.ids = ids, boundary.id_count = what == OTHER_IDS ? 2 : 1, boundary.dofs = MPS_DOF_X;
+  DEF(dynamics_boundary, boundary, .ids = ids, .id_count = what == OTHER_IDS ? 2 : 1,
+      .dofs = MPS_DOF_X);
   TRY(mps_dynamics_add_boundary(dynamics, &boundary, NULL));
   if (what == NO_SUCH_BOUNDARY) TRY(mps_dynamics_remove_boundary(dynamics, rank == 2 ? 7 : 0));
   TRY(mps_dynamics_add_load(dynamics, what == NO_LOAD && rank == 1 ? NULL : &load, NULL));
@@ -240,10 +217,9 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
   if (status == MPS_OK && what == CALLBACK_FAILS)
     status = mps_dynamics_run(dynamics, 1.0, 5, refuse_callback, &u);
   if (status == MPS_OK && what == UNKNOWN_ID) {
-    mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
     const int64_t ids[2] = {17, 123456};
     int32_t number;
-    boundary.ids = ids, boundary.id_count = 2, boundary.dofs = MPS_DOF_X;
+    DEF(dynamics_boundary, boundary, .ids = ids, .id_count = 2, .dofs = MPS_DOF_X);
     status = mps_dynamics_add_boundary(dynamics, &boundary, &number);
   }
   if (status == MPS_OK && what == REMOVAL) {

@@ -66,24 +66,26 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
  * sums over rows have the same bits with ranks and without. --------------------------------------
  */
 
+/* What goes wrong on one of the ranks, and the time of the last whole step. */
+#define ELASTIC_TROUBLES(ROW)                                                                      \
+  ROW(OTHER_BODY, MPS_ERROR_ARGUMENT, "a hash of the set's particles", 0.0)                        \
+  ROW(OTHER_TOLERANCE, MPS_ERROR_ARGUMENT, "tolerance is ", 0.0)                                   \
+  ROW(OTHER_SUPPORT, MPS_ERROR_ARGUMENT, "another value on others", 0.0)                           \
+  ROW(OTHER_LOAD, MPS_ERROR_ARGUMENT, "another value on others", 0.0)                              \
+  ROW(OTHER_REMOVED, MPS_ERROR_ARGUMENT, "number is 1: there is no load", 0.0)                     \
+  ROW(CANCELLED, MPS_ERROR_CANCELLED, "rank 1: cancelled", 0.0)                                    \
+  ROW(SIGNAL_FAILS, MPS_ERROR_NUMERIC, "rank 1: ", 0.1)                                            \
+  ROW(SIGNAL_DIFFERS, MPS_ERROR_ARGUMENT, "the motion of a boundary is ", 0.1)                     \
+  ROW(FACTOR_DIFFERS, MPS_ERROR_ARGUMENT, "the present factor on a load is ", 0.1)                 \
+  ROW(SOLVER_FAILS, MPS_ERROR_IO, "rank 1: the callback matrix", 0.0)                              \
+  ROW(OTHER_KERNEL, MPS_ERROR_ARGUMENT, "the kind of the kernel is ", 0.0)                         \
+  ROW(OTHER_SNAPSHOT, MPS_ERROR_ARGUMENT, "steps is ", 0.2)
 enum {
   PLANE,
   SOLID,
   TINY, /* six particles: most ranks have none */
   LONG,
-  OTHER_BODY,
-  OTHER_TOLERANCE,
-  OTHER_SUPPORT,
-  OTHER_LOAD,
-  OTHER_REMOVED,
-  CANCELLED,
-  SIGNAL_FAILS,
-  SIGNAL_DIFFERS, /* of a boundary, from some time on */
-  FACTOR_DIFFERS, /* of a load */
-  SOLVER_FAILS,
-  OTHER_KERNEL,
-  OTHER_SNAPSHOT,
-  TROUBLES
+  ELASTIC_TROUBLES(CASE_NAME) TROUBLES
 };
 
 typedef struct upset {
@@ -116,7 +118,6 @@ static mps_status differing(void *user, double t, double motion[3]) {
 }
 
 static mps_status make_set(mps_context *own, int what, mps_particles **set) {
-  mps_particles_def def = mps_particles_defaults();
   const int up = what == SOLID || what == LONG ? 2 : 1;
   double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.75, 0.5, 0.5}, stiff[3] = {0.5, 0.5, 0.5};
   int64_t ids[512], count = 0;
@@ -124,8 +125,7 @@ static mps_status make_set(mps_context *own, int what, mps_particles **set) {
   stiff[up] = 1.75;
   if (what == TINY) hi[0] = 0.5;
   if (what == LONG) hi[0] = hi[1] = 1.0;
-  def.dim = up + 1;
-  def.spacing = 0.25;
+  DEF(particles, def, .dim = up + 1, .spacing = 0.25);
   mps_status status = mps_particles_create(own, &def, set);
   TRY(mps_particles_fill_box(*set, lo, hi, NULL));
   TRY(mps_particles_set(*set, "poisson", 0, 0.3));
@@ -216,16 +216,12 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   upset u = {.domain = domain};
   scoped_particles *set = NULL;
   scoped_elastic *elastic = NULL;
-  mps_elastic_def def = mps_elastic_defaults();
-  mps_linear_solver_def solver = mps_linear_solver_defaults();
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   const int32_t rank = domain ? mps_domain_rank(domain) : 0;
-  def.domain = domain;
-  def.tolerance = what == OTHER_TOLERANCE && rank == 1 ? 1e-8 : 1e-11;
-  solver.user = &s;
-  solver.matrix = what == SOLVER_FAILS ? unable : take;
-  solver.solve = solve;
-  solver.rank = rank, solver.ranks = domain ? mps_domain_size(domain) : 1;
+  DEF(elastic, def, .domain = domain,
+      .tolerance = what == OTHER_TOLERANCE && rank == 1 ? 1e-8 : 1e-11);
+  DEF(linear_solver, solver, .user = &s, .matrix = what == SOLVER_FAILS ? unable : take,
+      .solve = solve, .rank = rank, .ranks = domain ? mps_domain_size(domain) : 1);
   motion.dt = 0.1;
   mps_status status = make_set(own, what, &set);
   if (what == OTHER_KERNEL)
@@ -265,21 +261,8 @@ TEST(test_troubles) {
   static const struct {
     mps_status status;
     const char *text;
-    double time; /* of the last whole step */
-  } expected[TROUBLES] = {
-      [OTHER_BODY] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles", 0.0},
-      [OTHER_TOLERANCE] = {MPS_ERROR_ARGUMENT, "tolerance is ", 0.0},
-      [OTHER_SUPPORT] = {MPS_ERROR_ARGUMENT, "another value on others", 0.0},
-      [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others", 0.0},
-      [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is 1: there is no load", 0.0},
-      [CANCELLED] = {MPS_ERROR_CANCELLED, "rank 1: cancelled", 0.0},
-      [SIGNAL_FAILS] = {MPS_ERROR_NUMERIC, "rank 1: ", 0.1},
-      [SIGNAL_DIFFERS] = {MPS_ERROR_ARGUMENT, "the motion of a boundary is ", 0.1},
-      [FACTOR_DIFFERS] = {MPS_ERROR_ARGUMENT, "the present factor on a load is ", 0.1},
-      [SOLVER_FAILS] = {MPS_ERROR_IO, "rank 1: the callback matrix", 0.0},
-      [OTHER_KERNEL] = {MPS_ERROR_ARGUMENT, "the kind of the kernel is ", 0.0},
-      [OTHER_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is ", 0.2},
-  };
+    double time;
+  } expected[TROUBLES] = {ELASTIC_TROUBLES(CASE_ROW)};
   for (int what = OTHER_BODY; what < TROUBLES; what++) {
     ranks s = {.compute = compute, .what = what, .threads = 1, .length = 5};
     run_team(&s, 3);
@@ -338,8 +321,6 @@ static mps_status give_up(void *user, const double *b, double tolerance, double 
 static void load_scales(void *user, team *t, int32_t rank) {
   scales *s = (scales *)user + rank;
   mps_context_def def = test_context_defaults();
-  mps_elastic_def body = mps_elastic_defaults();
-  mps_linear_solver_def solver = mps_linear_solver_defaults();
   const mps_domain_def domain_def = team_domain_def(t, rank);
   scoped_context *own = NULL;
   mps_particles *set = NULL;
@@ -350,10 +331,10 @@ static void load_scales(void *user, team *t, int32_t rank) {
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &u.domain));
   TRY(make_set(own, LONG, &set));
-  body.domain = u.domain;
+  DEF(elastic, body, .domain = u.domain);
   TRY(mps_elastic_create(own, set, &body, &elastic));
-  solver.matrix = look_away, solver.solve = give_up;
-  solver.rank = rank, solver.ranks = mps_domain_size(u.domain);
+  DEF(linear_solver, solver, .matrix = look_away, .solve = give_up, .rank = rank,
+      .ranks = mps_domain_size(u.domain));
   TRY(mps_solver_set_linear_solver(mps_elastic_solver(elastic), MPS_LINEAR_EQUATION_STIFFNESS,
                                    &solver));
   TRY(support_and_load(own, elastic, &u, LONG));

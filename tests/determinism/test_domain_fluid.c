@@ -52,41 +52,24 @@ TEST(test_checkpoint) {
 TEST(test_refused_memory) { refuse_memory(compute, POND, 2, 9); }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
-enum {
-  OTHER_SET,
-  OTHER_DENSITY,
-  OTHER_WALL,
-  OTHER_COUNT,
-  NO_COUNT,
-  OTHER_END,
-  OTHER_ADDED,
-  CANCELLED,
-  CALLBACK_FAILS,
-  SOLVER,
-  OTHER_LOAD,
-  OTHER_SIGNAL,
-  OTHER_BODY,
-  OTHER_REMOVED,
-  NO_SUCH_LOAD,
-  TROUBLES
-};
-static const trouble_case trouble[TROUBLES] = {
-    [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
-    [OTHER_DENSITY] = {MPS_ERROR_ARGUMENT, "density is "},
-    [OTHER_WALL] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
-    [NO_COUNT] = {MPS_ERROR_ARGUMENT, "count is -1"},
-    [OTHER_END] = {MPS_ERROR_ARGUMENT, "every is 0"},
-    [OTHER_ADDED] = {MPS_ERROR_ARGUMENT, "the number of particles is "},
-    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
-    [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
-    [SOLVER] = {MPS_ERROR_ARGUMENT, "the linear solver is rank 0 of 1 processes"},
-    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_BODY] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
-    [NO_SUCH_LOAD] = {MPS_ERROR_ARGUMENT, "number is 5: there is no load"},
-};
+#define FLUID_TROUBLES(ROW)                                                                        \
+  ROW(OTHER_SET, MPS_ERROR_ARGUMENT, "a hash of the set's particles")                              \
+  ROW(OTHER_DENSITY, MPS_ERROR_ARGUMENT, "density is ")                                            \
+  ROW(OTHER_WALL, MPS_ERROR_ARGUMENT, "another value on others")                                   \
+  ROW(OTHER_COUNT, MPS_ERROR_ARGUMENT, "count is ")                                                \
+  ROW(NO_COUNT, MPS_ERROR_ARGUMENT, "count is -1")                                                 \
+  ROW(OTHER_END, MPS_ERROR_ARGUMENT, "every is 0")                                                 \
+  ROW(OTHER_ADDED, MPS_ERROR_ARGUMENT, "the number of particles is ")                              \
+  ROW(CANCELLED, MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0")                      \
+  ROW(CALLBACK_FAILS, MPS_ERROR_IO, "rank 2: ")                                                    \
+  ROW(SOLVER, MPS_ERROR_ARGUMENT, "the linear solver is rank 0 of 1 processes")                    \
+  ROW(OTHER_LOAD, MPS_ERROR_ARGUMENT, "another value on others")                                   \
+  ROW(OTHER_SIGNAL, MPS_ERROR_ARGUMENT, "another value on others")                                 \
+  ROW(OTHER_BODY, MPS_ERROR_ARGUMENT, "another value on others")                                   \
+  ROW(OTHER_REMOVED, MPS_ERROR_ARGUMENT, "number is ")                                             \
+  ROW(NO_SUCH_LOAD, MPS_ERROR_ARGUMENT, "number is 5: there is no load")
+enum { FLUID_TROUBLES(CASE_NAME) TROUBLES };
+static const trouble_case trouble[TROUBLES] = {FLUID_TROUBLES(CASE_ROW)};
 
 static mps_status refuse_callback(void *user, mps_fluid *fluid) {
   return *(const int32_t *)user == 2 && mps_fluid_steps(fluid) > 0 ? MPS_ERROR_IO : MPS_OK;
@@ -94,21 +77,16 @@ static mps_status refuse_callback(void *user, mps_fluid *fluid) {
 
 static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
 
-static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) {
-  (void)user, (void)matrix;
-  return MPS_OK;
-}
+static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) { return MPS_OK; }
 
 static mps_status no_solve(void *user, const double *b, double tolerance, double *x,
                            mps_linear_result *out) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)out;
   return MPS_OK;
 }
 
 /* Loads, walls and bodies that are not the same on all ranks. */
 static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t rank) {
-  mps_fluid_load_def load = mps_fluid_load_defaults();
-  mps_signal *signal = NULL;
+  scoped_signal *signal = NULL;
   scoped_body *body = NULL;
   const double right = what == OTHER_BODY && rank == 2 ? 0.41 : 0.4;
   const double corner[8] = {0.2, 0.6, right, 0.6, right, 0.7, 0.2, 0.7};
@@ -117,10 +95,9 @@ static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t
       mps_signal_create_sine(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0,
                              what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.6, 0.0, -1.0, 0.0, signal));
-  mps_signal_destroy(&signal);
   TRY(mps_body_create_polygon(own, &def, 4, corner, &body));
   TRY(mps_fluid_add_contact(s->fluid, body, NULL, NULL));
-  load.all = 1, load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
+  DEF(fluid_load, load, .all = 1, .acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1);
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   if (what == NO_SUCH_LOAD) TRY(mps_fluid_set_load(s->fluid, rank == 1 ? 5 : 0, &load));

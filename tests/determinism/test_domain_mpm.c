@@ -32,10 +32,8 @@ static mps_status compute_leaving(mps_context *own, mps_domain *domain, int what
   int64_t ids[LOADED];
   double area[LOADED];
   SCOPED(end_scene) scene s = {.set = NULL};
-  mps_mpm_load_def load = mps_mpm_load_defaults();
   for (int64_t k = 0; k < LOADED; k++) ids[k] = 60 * k + 59, area[k] = 1e-4 * (double)(k + 1);
-  load.ids = ids, load.id_count = LOADED, load.area = area;
-  load.traction[0] = 4e6;
+  DEF(mpm_load, load, .ids = ids, .id_count = LOADED, .area = area, .traction[0] = 4e6);
   mps_status status = make_scene(own, domain, what, &s);
   TRY(mps_mpm_add_load(s.mpm, &load, NULL));
   TRY(mps_mpm_step(s.mpm, steps));
@@ -189,45 +187,26 @@ TEST(test_broken) {
 }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
-enum {
-  OTHER_SET,
-  OTHER_DT,
-  OTHER_COUNT,
-  CANCELLED,
-  CALLBACK_FAILS,
-  UNKNOWN_ID,
-  OTHER_CONTACT,
-  DEPTH,
-  OTHER_BOUNDARY,
-  BAD_BOUNDARY,
-  OTHER_REMOVED,
-  OTHER_TRACTION,
-  OTHER_AREA,
-  OTHER_FACTOR,
-  BAD_LOAD,
-  OTHER_LOAD_REMOVED,
-  MANY_IDS,
-  TROUBLES
-};
-static const trouble_case trouble[TROUBLES] = {
-    [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
-    [OTHER_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
-    [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
-    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
-    [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
-    [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
-    [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_BOUNDARY] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [BAD_BOUNDARY] = {MPS_ERROR_ARGUMENT, "rank 1: number is -1"},
-    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is 1 on rank 0"},
-    [OTHER_TRACTION] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_AREA] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [OTHER_FACTOR] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [BAD_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: number is 5"},
-    [MANY_IDS] = {MPS_ERROR_ARGUMENT, "id_count is 4000, allowed are 1 to "},
-    [OTHER_LOAD_REMOVED] = {MPS_ERROR_ARGUMENT, "number is 0 on rank 0"},
-    [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
-};
+#define MPM_TROUBLES(ROW)                                                                          \
+  ROW(OTHER_SET, MPS_ERROR_ARGUMENT, "a hash of the set's particles")                              \
+  ROW(OTHER_DT, MPS_ERROR_ARGUMENT, "dt is ")                                                      \
+  ROW(OTHER_COUNT, MPS_ERROR_ARGUMENT, "count is ")                                                \
+  ROW(CANCELLED, MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0")                      \
+  ROW(CALLBACK_FAILS, MPS_ERROR_IO, "rank 2: ")                                                    \
+  ROW(UNKNOWN_ID, MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank")        \
+  ROW(OTHER_CONTACT, MPS_ERROR_ARGUMENT, "another value on others")                                \
+  ROW(DEPTH, MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m")                 \
+  ROW(OTHER_BOUNDARY, MPS_ERROR_ARGUMENT, "another value on others")                               \
+  ROW(BAD_BOUNDARY, MPS_ERROR_ARGUMENT, "rank 1: number is -1")                                    \
+  ROW(OTHER_REMOVED, MPS_ERROR_ARGUMENT, "number is 1 on rank 0")                                  \
+  ROW(OTHER_TRACTION, MPS_ERROR_ARGUMENT, "another value on others")                               \
+  ROW(OTHER_AREA, MPS_ERROR_ARGUMENT, "another value on others")                                   \
+  ROW(OTHER_FACTOR, MPS_ERROR_ARGUMENT, "another value on others")                                 \
+  ROW(BAD_LOAD, MPS_ERROR_ARGUMENT, "rank 1: number is 5")                                         \
+  ROW(OTHER_LOAD_REMOVED, MPS_ERROR_ARGUMENT, "number is 0 on rank 0")                             \
+  ROW(MANY_IDS, MPS_ERROR_ARGUMENT, "id_count is 4000, allowed are 1 to ")
+enum { MPM_TROUBLES(CASE_NAME) TROUBLES };
+static const trouble_case trouble[TROUBLES] = {MPM_TROUBLES(CASE_ROW)};
 
 static mps_status refuse_callback(void *user, mps_mpm *mpm) {
   return *(const int32_t *)user == 2 && mps_mpm_steps(mpm) > 0 ? MPS_ERROR_IO : MPS_OK;
@@ -289,10 +268,9 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   else if (what >= OTHER_TRACTION)
     TRY(load_badly(s.mpm, what, rank));
   if (what == UNKNOWN_ID) {
-    mps_mpm_boundary_def boundary = mps_mpm_boundary_defaults();
     const int64_t ids[2] = {17, 123456};
     int32_t number;
-    boundary.ids = ids, boundary.id_count = 2;
+    DEF(mpm_boundary, boundary, .ids = ids, .id_count = 2);
     TRY(mps_mpm_add_boundary(s.mpm, &boundary, &number));
   }
   if (what == OTHER_CONTACT) contact.friction = 0.1 * rank;
@@ -306,29 +284,18 @@ TEST(test_troubles) { meet_troubles(run_trouble, trouble, TROUBLES); }
 
 /* ---- what goes wrong while the caller puts particles in or takes them out -------------------- */
 
-enum {
-  OTHER_ADDED,
-  OUTSIDE,
-  FEWER_THAN_NONE,
-  PREDICATE_FAILS,
-  EDITING,
-  NO_DENSITY,
-  NOT_THERE,
-  OTHER_LISTS,
-  TWICE,
-  CHANGES
-};
-static const trouble_case change[CHANGES] = {
-    [OTHER_ADDED] = {MPS_ERROR_ARGUMENT, "a hash of the particles to add"},
-    [OUTSIDE] = {MPS_ERROR_ARGUMENT, "outside the domain"},
-    [FEWER_THAN_NONE] = {MPS_ERROR_ARGUMENT, "rank 1: count is -3"},
-    [PREDICATE_FAILS] = {MPS_ERROR_IO, "rank 2: "},
-    [EDITING] = {MPS_ERROR_STATE, "rank 1: "},
-    [NO_DENSITY] = {MPS_ERROR_STATE, "has come since the last step and has density 0"},
-    [NOT_THERE] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
-    [OTHER_LISTS] = {MPS_ERROR_ARGUMENT, "give all ranks the same list"},
-    [TWICE] = {MPS_ERROR_ARGUMENT, "which stands in the list before"},
-};
+#define CHANGES_OF_RANKS(ROW)                                                                      \
+  ROW(OTHER_ADDED, MPS_ERROR_ARGUMENT, "a hash of the particles to add")                           \
+  ROW(OUTSIDE, MPS_ERROR_ARGUMENT, "outside the domain")                                           \
+  ROW(FEWER_THAN_NONE, MPS_ERROR_ARGUMENT, "rank 1: count is -3")                                  \
+  ROW(PREDICATE_FAILS, MPS_ERROR_IO, "rank 2: ")                                                   \
+  ROW(EDITING, MPS_ERROR_STATE, "rank 1: ")                                                        \
+  ROW(NO_DENSITY, MPS_ERROR_STATE, "has come since the last step and has density 0")               \
+  ROW(NOT_THERE, MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank")         \
+  ROW(OTHER_LISTS, MPS_ERROR_ARGUMENT, "give all ranks the same list")                             \
+  ROW(TWICE, MPS_ERROR_ARGUMENT, "which stands in the list before")
+enum { CHANGES_OF_RANKS(CASE_NAME) CHANGES };
+static const trouble_case change[CHANGES] = {CHANGES_OF_RANKS(CASE_ROW)};
 
 static mps_status refuse_place(void *user, const double *x, int32_t *inside) {
   *inside = x[1] > 1.02;

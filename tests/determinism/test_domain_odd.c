@@ -5,85 +5,52 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 
-#define TRY(call)                                                                                  \
-  do {                                                                                             \
-    if (status == MPS_OK) status = (call);                                                         \
-  } while (0)
-
 static mps_status make_set(mps_context *own, double spacing, double width, double height,
                            mps_particles **set) {
   DEF(particles, def, .spacing = spacing);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
   mps_status status = mps_particles_create(own, &def, set);
-  TRY(mps_particles_fill_box(*set, lo, hi, NULL));
+  TRY(mps_particles_fill_box(*set, AT(0.0, 0.0), AT(width, height), NULL));
   TRY(mps_particles_set(*set, "density", 0, 1000.0));
   return status;
 }
 
 /* ---- WLS-MPM --------------------------------------------------------------------------------- */
 
-enum {
-  MPM_DEGREE,
-  MPM_LAW,
-  MPM_STATEV,
-  MPM_SWEEPS,
-  MPM_ADHESION,
-  MPM_STRENGTH,
-  MPM_CORNER,
-  MPM_TOLERANCE,
-  MPM_OFFSET,
-  MPM_INSIDE,
-  MPM_BODY_LOAD,
-  MPM_BODY_FACTOR,
-  MPM_BODY_MOTION,
-  MPM_SETTLE,
-  MPM_FLIP,
-  MPM_POINTS,
-  MPM_COMPONENT,
-  MPM_END,
-  MPM_SNAPSHOT,
-  MPM_NO_SNAPSHOT,
-  MPM_FILE,
-  MPM_SETTLING_SIDE,
-  MPM_CASES
-};
+#define ODD_MPM(ROW)                                                                               \
+  ROW(MPM_DEGREE, MPS_ERROR_ARGUMENT, "spline is ")                                                \
+  ROW(MPM_LAW, MPS_ERROR_ARGUMENT, "another value on others")                                      \
+  ROW(MPM_STATEV, MPS_ERROR_ARGUMENT, "histories is ")                                             \
+  ROW(MPM_SWEEPS, MPS_ERROR_ARGUMENT, "sweeps is ")                                                \
+  ROW(MPM_ADHESION, MPS_ERROR_ARGUMENT, "adhesion is ")                                            \
+  ROW(MPM_STRENGTH, MPS_ERROR_ARGUMENT, "strength is ")                                            \
+  ROW(MPM_CORNER, MPS_ERROR_ARGUMENT, "corner is ")                                                \
+  ROW(MPM_TOLERANCE, MPS_ERROR_ARGUMENT, "tolerance is ")                                          \
+  ROW(MPM_OFFSET, MPS_ERROR_ARGUMENT, "offset is ")                                                \
+  ROW(MPM_INSIDE, MPS_ERROR_ARGUMENT, "inside is ")                                                \
+  ROW(MPM_BODY_LOAD, MPS_ERROR_ARGUMENT, "the load on the body is ")                               \
+  ROW(MPM_BODY_FACTOR, MPS_ERROR_ARGUMENT, "the body's ")                                          \
+  ROW(MPM_BODY_MOTION, MPS_ERROR_ARGUMENT, "the body's ")                                          \
+  ROW(MPM_SETTLE, MPS_ERROR_ARGUMENT, "max_steps is ")                                             \
+  ROW(MPM_FLIP, MPS_ERROR_ARGUMENT, "flip is ")                                                    \
+  ROW(MPM_POINTS, MPS_ERROR_ARGUMENT, "points")                                                    \
+  ROW(MPM_COMPONENT, MPS_ERROR_ARGUMENT, "component")                                              \
+  ROW(MPM_END, MPS_ERROR_ARGUMENT, "t_end")                                                        \
+  ROW(MPM_SNAPSHOT, MPS_ERROR_ARGUMENT, "steps is ")                                               \
+  ROW(MPM_NO_SNAPSHOT, MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL")                             \
+  ROW(MPM_FILE, MPS_ERROR_ARGUMENT, "time is ")                                                    \
+  ROW(MPM_SETTLING_SIDE, MPS_ERROR_ARGUMENT, "settle is ")
+enum { ODD_MPM(CASE_NAME) MPM_CASES };
 
-static const trouble_case of_mpm[MPM_CASES] = {
-    [MPM_DEGREE] = {MPS_ERROR_ARGUMENT, "spline is "},
-    [MPM_LAW] = {MPS_ERROR_ARGUMENT, "another value on others"},
-    [MPM_STATEV] = {MPS_ERROR_ARGUMENT, "histories is "},
-    [MPM_SWEEPS] = {MPS_ERROR_ARGUMENT, "sweeps is "},
-    [MPM_ADHESION] = {MPS_ERROR_ARGUMENT, "adhesion is "},
-    [MPM_STRENGTH] = {MPS_ERROR_ARGUMENT, "strength is "},
-    [MPM_CORNER] = {MPS_ERROR_ARGUMENT, "corner is "},
-    [MPM_TOLERANCE] = {MPS_ERROR_ARGUMENT, "tolerance is "},
-    [MPM_OFFSET] = {MPS_ERROR_ARGUMENT, "offset is "},
-    [MPM_INSIDE] = {MPS_ERROR_ARGUMENT, "inside is "},
-    [MPM_BODY_LOAD] = {MPS_ERROR_ARGUMENT, "the load on the body is "},
-    [MPM_BODY_FACTOR] = {MPS_ERROR_ARGUMENT, "the body's "},
-    [MPM_BODY_MOTION] = {MPS_ERROR_ARGUMENT, "the body's "},
-    [MPM_SETTLE] = {MPS_ERROR_ARGUMENT, "max_steps is "},
-    [MPM_FLIP] = {MPS_ERROR_ARGUMENT, "flip is "},
-    [MPM_POINTS] = {MPS_ERROR_ARGUMENT, "points"},
-    [MPM_COMPONENT] = {MPS_ERROR_ARGUMENT, "component"},
-    [MPM_END] = {MPS_ERROR_ARGUMENT, "t_end"},
-    [MPM_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
-    [MPM_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
-    [MPM_FILE] = {MPS_ERROR_ARGUMENT, "time is "},
-    [MPM_SETTLING_SIDE] = {MPS_ERROR_ARGUMENT, "settle is "},
-};
+static const trouble_case of_mpm[MPM_CASES] = {ODD_MPM(CASE_ROW)};
 
 static MPS_MATERIAL_UMAT(umat_that_does_nothing) { MPS_MATERIAL_UMAT_UNUSED; }
 
 static mps_status make_law(mps_context *own, int what, bool odd, mps_material **law) {
-  mps_material_umat_def def = mps_material_umat_defaults();
   const double initial[1] = {odd && what == MPM_STATEV ? 2.0 : 1.0};
   if (what != MPM_LAW && what != MPM_STATEV)
     return mps_material_create_linear_elastic(own, 1e5, 0.3, law);
-  def.umat = umat_that_does_nothing;
-  def.wave_modulus = 1e5;
-  def.statev_count = 1;
-  def.statev_initial = initial;
+  DEF(material_umat, def, .umat = umat_that_does_nothing, .wave_modulus = 1e5, .statev_count = 1,
+      .statev_initial = initial);
   if (odd && what == MPM_LAW) def.temperature = 300.0;
   return mps_material_create_umat(own, &def, law);
 }
@@ -150,8 +117,8 @@ static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_
   mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
   mps_mpm_settle_def settle = mps_mpm_settle_defaults();
   scoped_particles *set = NULL;
-  mps_material *law = NULL;
-  mps_mpm *mpm = NULL;
+  scoped_material *law = NULL;
+  scoped_mpm *mpm = NULL;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c ? 2.0 : 1.2;
   mps_status status = make_set(own, 0.1, 1.2, 0.6, &set);
   if (what == MPM_DEGREE)
@@ -172,8 +139,6 @@ static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_
   if (what == MPM_POINTS || what == MPM_COMPONENT) TRY(ask_grid(mpm, what, odd));
   if (what == MPM_END) TRY(mps_mpm_run(mpm, odd ? 0.01 : 0.02, 1, NULL, NULL));
   if (what >= MPM_SNAPSHOT && what <= MPM_FILE) TRY(back(mpm, what, odd));
-  mps_mpm_destroy(&mpm);
-  mps_material_destroy(&law);
   mps_kernel_destroy(&def.kernel);
   return status;
 }
@@ -182,30 +147,19 @@ TEST(test_mpm) { meet_troubles(run_mpm, of_mpm, MPM_CASES); }
 
 /* ---- the fluid ------------------------------------------------------------------------------- */
 
-enum {
-  FLUID_ITERATIONS,
-  FLUID_LEVEL,
-  FLUID_RADIUS,
-  FLUID_GAMMA,
-  FLUID_KIND,
-  FLUID_MOTION,
-  FLUID_DT,
-  FLUID_SNAPSHOT,
-  FLUID_NO_SNAPSHOT,
-  FLUID_CASES
-};
+#define ODD_FLUID(ROW)                                                                             \
+  ROW(FLUID_ITERATIONS, MPS_ERROR_ARGUMENT, "iterations is ")                                      \
+  ROW(FLUID_LEVEL, MPS_ERROR_ARGUMENT, "level is ")                                                \
+  ROW(FLUID_RADIUS, MPS_ERROR_ARGUMENT, "radius_ratio is ")                                        \
+  ROW(FLUID_GAMMA, MPS_ERROR_ARGUMENT, "gamma is ")                                                \
+  ROW(FLUID_KIND, MPS_ERROR_ARGUMENT, "kind is ")                                                  \
+  ROW(FLUID_MOTION, MPS_ERROR_ARGUMENT, "wall's motion")                                           \
+  ROW(FLUID_DT, MPS_ERROR_ARGUMENT, "dt is ")                                                      \
+  ROW(FLUID_SNAPSHOT, MPS_ERROR_ARGUMENT, "steps is ")                                             \
+  ROW(FLUID_NO_SNAPSHOT, MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL")
+enum { ODD_FLUID(CASE_NAME) FLUID_CASES };
 
-static const trouble_case of_fluid[FLUID_CASES] = {
-    [FLUID_ITERATIONS] = {MPS_ERROR_ARGUMENT, "iterations is "},
-    [FLUID_LEVEL] = {MPS_ERROR_ARGUMENT, "level is "},
-    [FLUID_RADIUS] = {MPS_ERROR_ARGUMENT, "radius_ratio is "},
-    [FLUID_GAMMA] = {MPS_ERROR_ARGUMENT, "gamma is "},
-    [FLUID_KIND] = {MPS_ERROR_ARGUMENT, "kind is "},
-    [FLUID_MOTION] = {MPS_ERROR_ARGUMENT, "wall's motion"},
-    [FLUID_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
-    [FLUID_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
-    [FLUID_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
-};
+static const trouble_case of_fluid[FLUID_CASES] = {ODD_FLUID(CASE_ROW)};
 
 static mps_status wall(mps_fluid *fluid, int32_t kind, double x, double nx, double ny) {
   DEF(fluid_boundary, def, .kind = kind, .point[0] = x, .normal[0] = nx, .normal[1] = ny);
@@ -238,7 +192,7 @@ static mps_status run_fluid(mps_context *own, mps_domain *domain, int what, int3
   const bool odd = rank == 1;
   DEF(fluid, def, .domain = domain);
   scoped_particles *set = NULL;
-  mps_fluid *fluid = NULL;
+  scoped_fluid *fluid = NULL;
   if (odd && what == FLUID_ITERATIONS) def.iterations = 1999;
   if (odd && what == FLUID_LEVEL) def.level = 0.5;
   mps_status status = make_set(own, 0.02, 0.6, 0.4, &set);
@@ -251,7 +205,6 @@ static mps_status run_fluid(mps_context *own, mps_domain *domain, int what, int3
            0.0));
   TRY(wall(fluid, MPS_BOUNDARY_ROLLER, 0.6, -1.0, 0.0));
   TRY(step_fluid(fluid, what, odd));
-  mps_fluid_destroy(&fluid);
   mps_kernel_destroy(&def.kernel);
   return status;
 }
@@ -260,32 +213,20 @@ TEST(test_fluid) { meet_troubles(run_fluid, of_fluid, FLUID_CASES); }
 
 /* ---- explicit dynamics ----------------------------------------------------------------------- */
 
-enum {
-  DYNAMICS_KERNEL,
-  DYNAMICS_WATCH,
-  DYNAMICS_PERIOD,
-  DYNAMICS_HALF_SPACE,
-  DYNAMICS_AREA,
-  DYNAMICS_START,
-  DYNAMICS_END,
-  DYNAMICS_SNAPSHOT,
-  DYNAMICS_NO_SNAPSHOT,
-  DYNAMICS_FILE,
-  DYNAMICS_CASES
-};
+#define ODD_DYNAMICS(ROW)                                                                          \
+  ROW(DYNAMICS_KERNEL, MPS_ERROR_ARGUMENT, "the kind of the kernel is ")                           \
+  ROW(DYNAMICS_WATCH, MPS_ERROR_ARGUMENT, "watch_damping is ")                                     \
+  ROW(DYNAMICS_PERIOD, MPS_ERROR_ARGUMENT, "period_x is ")                                         \
+  ROW(DYNAMICS_HALF_SPACE, MPS_ERROR_ARGUMENT, "shear_velocity is ")                               \
+  ROW(DYNAMICS_AREA, MPS_ERROR_ARGUMENT, "area is ")                                               \
+  ROW(DYNAMICS_START, MPS_ERROR_ARGUMENT, "time is ")                                              \
+  ROW(DYNAMICS_END, MPS_ERROR_ARGUMENT, "t_end")                                                   \
+  ROW(DYNAMICS_SNAPSHOT, MPS_ERROR_ARGUMENT, "steps is ")                                          \
+  ROW(DYNAMICS_NO_SNAPSHOT, MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL")                        \
+  ROW(DYNAMICS_FILE, MPS_ERROR_ARGUMENT, "steps is ")
+enum { ODD_DYNAMICS(CASE_NAME) DYNAMICS_CASES };
 
-static const trouble_case of_dynamics[DYNAMICS_CASES] = {
-    [DYNAMICS_KERNEL] = {MPS_ERROR_ARGUMENT, "the kind of the kernel is "},
-    [DYNAMICS_WATCH] = {MPS_ERROR_ARGUMENT, "watch_damping is "},
-    [DYNAMICS_PERIOD] = {MPS_ERROR_ARGUMENT, "period_x is "},
-    [DYNAMICS_HALF_SPACE] = {MPS_ERROR_ARGUMENT, "shear_velocity is "},
-    [DYNAMICS_AREA] = {MPS_ERROR_ARGUMENT, "area is "},
-    [DYNAMICS_START] = {MPS_ERROR_ARGUMENT, "time is "},
-    [DYNAMICS_END] = {MPS_ERROR_ARGUMENT, "t_end"},
-    [DYNAMICS_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
-    [DYNAMICS_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
-    [DYNAMICS_FILE] = {MPS_ERROR_ARGUMENT, "steps is "},
-};
+static const trouble_case of_dynamics[DYNAMICS_CASES] = {ODD_DYNAMICS(CASE_ROW)};
 
 static mps_status step_dynamics(mps_dynamics *dynamics, int what, bool odd) {
   static const char *const file[2] = {TEST_TMP "/odd-3.h5", TEST_TMP "/odd-4.h5"};
@@ -309,18 +250,15 @@ static mps_status step_dynamics(mps_dynamics *dynamics, int what, bool odd) {
 static mps_status run_dynamics(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   const bool odd = rank == 1;
   DEF(dynamics, def, .domain = domain);
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
   scoped_particles *set = NULL;
-  mps_dynamics *dynamics = NULL;
+  scoped_dynamics *dynamics = NULL;
   if (odd && what == DYNAMICS_WATCH) def.watch_damping = 1;
   if (what == DYNAMICS_PERIOD) def.period_x = odd ? 44.0 : 40.0;
-  base.kind = MPS_BOUNDARY_ABSORBING;
-  base.lower[0] = 0.0, base.upper[0] = 40.0, base.lower[1] = 0.0, base.upper[1] = 1.0;
-  base.shear_velocity = odd && what == DYNAMICS_HALF_SPACE ? 300.0 : 200.0;
-  load.lower[0] = 0.0, load.upper[0] = 40.0, load.lower[1] = 29.0, load.upper[1] = 30.0;
-  load.traction[0] = 1.0;
-  load.area = odd && what == DYNAMICS_AREA ? 2.0 : 1.0;
+  DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_ABSORBING, .lower[0] = 0.0, .upper[0] = 40.0,
+      .lower[1] = 0.0, .upper[1] = 1.0,
+      .shear_velocity = odd && what == DYNAMICS_HALF_SPACE ? 300.0 : 200.0);
+  DEF(dynamics_load, load, .lower[0] = 0.0, .upper[0] = 40.0, .lower[1] = 29.0, .upper[1] = 30.0,
+      .traction[0] = 1.0, .area = odd && what == DYNAMICS_AREA ? 2.0 : 1.0);
   mps_status status = make_set(own, 1.0, 40.0, 30.0, &set);
   TRY(mps_particles_set(set, "shear_velocity", 0, 150.0));
   TRY(mps_particles_set(set, "pressure_velocity", 0, 300.0));
@@ -331,7 +269,6 @@ static mps_status run_dynamics(mps_context *own, mps_domain *domain, int what, i
   TRY(mps_dynamics_add_load(dynamics, &load, NULL));
   if (what == DYNAMICS_START) TRY(mps_dynamics_restart(dynamics, odd ? 1.0 : 0.0));
   TRY(step_dynamics(dynamics, what, odd));
-  mps_dynamics_destroy(&dynamics);
   mps_kernel_destroy(&def.kernel);
   return status;
 }

@@ -12,7 +12,6 @@
 enum { PLANE, SPACE, TALL };
 
 static mps_status above_wave(void *user, const double *x, int32_t *inside) {
-  (void)user;
   *inside = x[1] > 1.0 + 0.4 * sin(9.0 * x[0]);
   return MPS_OK;
 }
@@ -196,14 +195,13 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
   const bool odd = mps_domain_rank(domain) == 1;
   const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, what == FILLS && odd ? 0.9 : 1.0};
   const double drop[2] = {2.0, what == POSITIONS && odd ? 2.1 : 2.0};
-  mps_particles_def def = mps_particles_defaults();
   scoped_material *material = NULL;
   scoped_particles *set = NULL;
   scoped_mpm *mpm = NULL;
   mps_dynamics *dynamics = NULL;
   mps_fluid *fluid = NULL;
   (void)length, (void)r;
-  def.spacing = what == SPACINGS && odd ? 0.11 : 0.1;
+  DEF(particles, def, .spacing = what == SPACINGS && odd ? 0.11 : 0.1);
   mps_status status = mps_domain_create_particles(domain, &def, &set);
   TRY(mps_particles_fill_box(set, lo, hi, NULL));
   TRY(mps_particles_append(set, 1, drop));

@@ -18,13 +18,11 @@ static mps_status compute_two(mps_context *own, mps_domain *domain, int what, in
                               result *r) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {120.0, 8.0}, to[2] = {30.0, 40.0};
   const double high[2] = {20.0, 8.5}, loose[6] = {60.1, 8.7, 60.3, 8.7, 70.2, 8.6};
-  mps_particles_def def = mps_particles_defaults();
-  mps_dynamics_def solver = mps_dynamics_defaults();
   scoped_particles *set = NULL;
   scoped_dynamics *dynamics = NULL;
   (void)what, (void)length;
-  def.spacing = 0.5;
-  solver.domain = domain;
+  DEF(particles, def, .spacing = 0.5);
+  DEF(dynamics, solver, .domain = domain);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, &set)
                              : mps_particles_create(own, &def, &set);
   TRY(mps_particles_fill_box(set, lo, hi, NULL));

@@ -30,13 +30,12 @@ static mps_mpm_def ground_def(mps_domain *domain, int kind) {
 }
 
 static mps_status make_ground(mps_context *own, int kind, mps_particles **out) {
-  mps_particles_def def = mps_particles_defaults();
   const double lo[3] = {kind == AROUND ? 0.0 : 0.03, 0.01, 0.03};
   const double hi[3] = {in_space(kind) ? 0.83 : 1.13, 0.57, 0.75};
   mps_view x;
   mps_edit v, k_of;
-  def.dim = dim_here(kind);
-  def.spacing = in_space(kind) ? 0.5 * ground_def(NULL, kind).cell : 0.02;
+  DEF(particles, def, .dim = dim_here(kind),
+      .spacing = in_space(kind) ? 0.5 * ground_def(NULL, kind).cell : 0.02);
   mps_status status = mps_particles_create(own, &def, out);
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1900.0));
@@ -59,14 +58,11 @@ static mps_status make_ground(mps_context *own, int kind, mps_particles **out) {
 
 static mps_status add_water(mps_mpm *mpm, int kind, bool implicit) {
   DEF(pore_water, def, .porosity = 0.4);
-  mps_pore_face_def face = mps_pore_face_defaults();
   const double level[3] = {0.0, 0.4, 0.0};
   if (implicit) def.scheme = MPS_PORE_SCHEME_IMPLICIT;
   if (kind != UNDRAINED) def.exponent = 2.0, def.ratio_slope = 0.5;
-  face.kind = MPS_PORE_FACE_DRAINED;
-  face.sides = 1u << MPS_SIDE_Y_LOWER;
-  face.pressure = 3e3, face.at_rest = 1;
-  face.upper[0] = 0.5;
+  DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_Y_LOWER,
+      .pressure = 3e3, .at_rest = 1, .upper[0] = 0.5);
   mps_status status = mps_mpm_add_pore_water(mpm, &def);
   TRY(mps_mpm_add_pore_face(mpm, &face, NULL));
   TRY(mps_mpm_set_pore_level(mpm, level));
@@ -204,39 +200,25 @@ TEST(test_refused_memory) {
   refuse_memory(compute_wet, IMPLICIT + LAYERS, 6, 9);
 }
 
-enum {
-  OTHER_BULK,
-  BAD_POROSITY,
-  OTHER_FACE,
-  OTHER_LEVEL,
-  OTHER_NUMBER,
-  OTHER_SCHEME,
-  NO_SOLUTION,
-  NO_FORGETTING,
-  TROUBLES
-};
+#define WATER_TROUBLES(ROW)                                                                        \
+  ROW(OTHER_BULK, MPS_ERROR_ARGUMENT, "bulk is ")                                                  \
+  ROW(BAD_POROSITY, MPS_ERROR_ARGUMENT, "rank 1: porosity is -1")                                  \
+  ROW(OTHER_FACE, MPS_ERROR_ARGUMENT, "pressure is ")                                              \
+  ROW(OTHER_LEVEL, MPS_ERROR_ARGUMENT, "point is ")                                                \
+  ROW(OTHER_NUMBER, MPS_ERROR_ARGUMENT, "number is ")                                              \
+  ROW(OTHER_SCHEME, MPS_ERROR_ARGUMENT, "scheme is ")                                              \
+  ROW(NO_SOLUTION, MPS_ERROR_NUMERIC, "has the residual 1 of the right side")                      \
+  ROW(NO_FORGETTING, MPS_ERROR_CANCELLED, "rank 1: ")
+enum { WATER_TROUBLES(CASE_NAME) TROUBLES };
 
-static const trouble_case trouble[TROUBLES] = {
-    [OTHER_BULK] = {MPS_ERROR_ARGUMENT, "bulk is "},
-    [BAD_POROSITY] = {MPS_ERROR_ARGUMENT, "rank 1: porosity is -1"},
-    [OTHER_FACE] = {MPS_ERROR_ARGUMENT, "pressure is "},
-    [OTHER_LEVEL] = {MPS_ERROR_ARGUMENT, "point is "},
-    [OTHER_SCHEME] = {MPS_ERROR_ARGUMENT, "scheme is "},
-    [NO_SOLUTION] = {MPS_ERROR_NUMERIC, "has the residual 1 of the right side"},
-    [NO_FORGETTING] = {MPS_ERROR_CANCELLED, "rank 1: "},
-    [OTHER_NUMBER] = {MPS_ERROR_ARGUMENT, "number is "},
-};
+static const trouble_case trouble[TROUBLES] = {WATER_TROUBLES(CASE_ROW)};
 
 /* ---- a solver of the caller that cannot forget, on one rank ---------------------------------- */
 
-static mps_status take_nothing(void *user, const mps_linear_matrix *matrix) {
-  (void)user, (void)matrix;
-  return MPS_OK;
-}
+static mps_status take_nothing(void *user, const mps_linear_matrix *matrix) { return MPS_OK; }
 
 static mps_status solve_nothing(void *user, const double *b, double tolerance, double *x,
                                 mps_linear_result *out) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)out;
   return MPS_OK;
 }
 
@@ -247,27 +229,22 @@ static mps_status forget(void *user) {
 
 static mps_status set_linear(mps_mpm *mpm, mps_domain *domain, mps_linear_forget_fn forgets,
                              int32_t *rank) {
-  mps_linear_solver_def def = mps_linear_solver_defaults();
-  def.rank = mps_domain_rank(domain), def.ranks = mps_domain_size(domain);
-  def.user = rank;
-  def.matrix = take_nothing, def.solve = solve_nothing, def.forget = forgets;
+  DEF(linear_solver, def, .rank = mps_domain_rank(domain), .ranks = mps_domain_size(domain),
+      .user = rank, .matrix = take_nothing, .solve = solve_nothing, .forget = forgets);
   return mps_solver_set_linear_solver(mps_mpm_solver(mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE, &def);
 }
 
 /* A rollback that one rank refuses is refused on all. */
 static mps_status go_back(mps_mpm *mpm, mps_domain *domain, int32_t *rank) {
-  mps_snapshot *then = NULL;
+  scoped_snapshot *then = NULL;
   mps_status status = mps_mpm_snapshot(mpm, &then);
   TRY(set_linear(mpm, domain, forget, rank));
   TRY(mps_mpm_rollback(mpm, then));
-  mps_snapshot_destroy(&then);
   return status;
 }
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   SCOPED(end_scene) scene s = {.set = NULL};
-  mps_pore_water_def def = mps_pore_water_defaults();
-  mps_pore_face_def face = mps_pore_face_defaults();
   const double level[2] = {0.0, what == OTHER_LEVEL ? 0.1 * rank : 0.4};
   const mps_mpm_def solver = ground_def(domain, LAYERS);
   double mass;
@@ -276,12 +253,11 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s.set, s.material[0], &solver, &s.mpm));
   TRY(mps_particles_set(s.set, "permeability", 0, 1e-4));
-  def.porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4;
+  DEF(pore_water, def, .porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4);
   if (what == NO_SOLUTION || (what == OTHER_SCHEME && rank == 1))
     def.scheme = MPS_PORE_SCHEME_IMPLICIT;
   if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
-  face.kind = MPS_PORE_FACE_DRAINED;
-  face.pressure = what == OTHER_FACE ? rank : 0.0;
+  DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .pressure = what == OTHER_FACE ? rank : 0.0);
   TRY(mps_mpm_add_pore_water(s.mpm, &def));
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
   TRY(mps_mpm_set_pore_level(s.mpm, level));

@@ -65,11 +65,9 @@ static int otherwise(plan *p, int count, bool odd) {
 }
 
 static mps_status fill(subject *s, int dim, double spacing, double width, double height) {
-  mps_particles_def def = mps_particles_defaults();
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {width, height, 4.0 * spacing};
-  def.dim = dim, def.spacing = spacing;
+  DEF(particles, def, .dim = dim, .spacing = spacing);
   mps_status status = mps_particles_create(s->own, &def, &s->set);
-  TRY(mps_particles_fill_box(s->set, lo, hi, NULL));
+  TRY(mps_particles_fill_box(s->set, AT(0.0, 0.0, 0.0), AT(width, height, 4.0 * spacing), NULL));
   TRY(mps_particles_set(s->set, "density", 0, 1000.0));
   return status;
 }
@@ -85,17 +83,15 @@ static mps_status edit_velocity(subject *s, double factor, double add) {
 
 static mps_status add_body(subject *s, plan *p, double width, double height, int other) {
   const bool free_body = p->springs || pick(p, 2) == 0, springs = p->springs || pick(p, 2) == 0;
-  mps_body_def def = mps_body_defaults();
-  mps_contact_def contact = mps_contact_defaults();
   mps_body_motion motion = mps_body_motion_defaults();
   const bool within = pick(p, 3) == 0; /* the soil, which is pushed out at the start */
-  def.position[0] = uniform(p, 0.2, 0.8) * width;
-  def.position[1] = height + (within ? uniform(p, 0.02, 0.1) : 0.111);
+  DEF(body, def, .position[0] = uniform(p, 0.2, 0.8) * width,
+      .position[1] = height + (within ? uniform(p, 0.02, 0.1) : 0.111));
   if (free_body) {
     def.motion = MPS_BODY_MOTION_FREE;
     def.mass = 20.0, def.inertia[2] = 0.2, def.velocity[1] = -2.0, def.gravity[1] = -9.81;
   }
-  contact.friction = uniform(p, 0.0, 0.6) + (other == 0 ? 0.01 : 0.0);
+  DEF(contact, contact, .friction = uniform(p, 0.0, 0.6) + (other == 0 ? 0.01 : 0.0));
   if (other == 1) def.position[0] += 1e-9;
   if (other == 2 && free_body) def.mass = 20.001;
   if (other == 2 && !free_body) contact.depth = 0.05;
@@ -113,7 +109,6 @@ static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
   static const int32_t kinds[3] = {MPS_BOUNDARY_ROLLER, MPS_BOUNDARY_HELD, MPS_BOUNDARY_FRICTIONAL};
   const double width = uniform(p, 0.8, 1.6), height = uniform(p, 0.3, 0.6), h = 0.08;
   const int body = p->springs || pick(p, 3) > 0, other = otherwise(p, body ? 10 : 7, odd);
-  mps_mpm_def def = mps_mpm_defaults();
   mps_status status = fill(s, 2, 0.04, width, height);
   const double young = uniform(p, 2e5, 2e6) * (other == 0 ? 1.001 : 1.0);
   if (pick(p, 2)) {
@@ -123,9 +118,8 @@ static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
         .cohesion = 1e3);
     TRY(mps_material_create_drucker_prager(s->own, &law, &s->material));
   }
-  def.domain = domain;
-  def.cell = h, def.spline = 2 + (pick(p, 2) + (other == 1)) % 2;
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 40.0 * h;
+  DEF(mpm, def, .domain = domain, .cell = h, .spline = 2 + (pick(p, 2) + (other == 1)) % 2,
+      .lower[0] = def.lower[1] = 0.0, .upper[0] = 40.0 * h);
   s->gravity = def.gravity[1] = other == 2 ? -9.80 : -9.81;
   def.edge = pick(p, 2) ? MPS_MPM_EDGE_FIT : MPS_MPM_EDGE_MIRROR;
   def.volumetric = (pick(p, 3) + (other == 3)) % 3;
@@ -146,7 +140,6 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
   const double wall[3][4] = {{0, 0, 0, 1}, {0, 0, 1, 0}, {2.0 * width, 0, -1, 0}};
   const int other = otherwise(p, 6, odd);
   DEF(fluid, def, .domain = domain, .viscosity = other == 0 ? 1.0 : 0.1);
-  mps_fluid_load_def load = mps_fluid_load_defaults();
   mps_status status = fill(s, 2, 0.02, width, uniform(p, 0.3, 0.5));
   if (other == 1) def.dt = 1e-4;
   if (other == 2) def.tolerance = 1e-7;
@@ -158,8 +151,8 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
     if (other == 3 && k == 2) b.point[0] += 1e-9;
     TRY(mps_fluid_add_boundary(s->fluid, &b, &s->wall));
   }
-  load.lower[0] = 0.1, load.upper[0] = 0.5, load.lower[1] = 0.0, load.upper[1] = 0.2;
-  load.acceleration[0] = other == 4 ? 1.01 : 1.0;
+  DEF(fluid_load, load, .lower[0] = 0.1, .upper[0] = 0.5, .lower[1] = 0.0, .upper[1] = 0.2,
+      .acceleration[0] = other == 4 ? 1.01 : 1.0);
   if (pick(p, 2) || other == 5) TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   return status;
 }
@@ -174,17 +167,15 @@ static mps_status shake(void *user, double t, double motion[3]) {
 static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool odd) {
   static int any;
   const int other = otherwise(p, 6, odd), shaken = pick(p, 2);
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics_boundary_def floor = mps_dynamics_boundary_defaults();
-  mps_signal *signal = NULL;
+  scoped_signal *signal = NULL;
   mps_status status = fill(s, 2, 0.1, uniform(p, 6.0, 10.0), uniform(p, 3.0, 6.0));
   if (other == 1) TRY(mps_particles_set(s->set, "density", 0, 1000.5));
   TRY(mps_material_create_linear_elastic(s->own, other == 0 ? 2e7 : 1e7, 0.25, &s->material));
-  def.domain = domain, def.material = s->material;
-  def.rotation = (pick(p, 2) + (other == 2)) % 2;
+  DEF(dynamics, def, .domain = domain, .material = s->material,
+      .rotation = (pick(p, 2) + (other == 2)) % 2);
   TRY(mps_dynamics_create(s->own, s->set, &def, &s->dynamics));
-  floor.lower[0] = -1.0, floor.upper[0] = 20.0;
-  floor.lower[1] = -1.0, floor.upper[1] = other == 3 ? 0.2 : 0.1;
+  DEF(dynamics_boundary, floor, .lower[0] = -1.0, .upper[0] = 20.0, .lower[1] = -1.0,
+      .upper[1] = other == 3 ? 0.2 : 0.1);
   TRY(mps_signal_create_user(s->own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, shake,
                              other == 4 ? &any : NULL, NULL, &signal));
   if (shaken || other == 4) {
@@ -193,7 +184,6 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   }
   if (other == 5) floor.dofs = MPS_DOF_X;
   TRY(mps_dynamics_add_boundary(s->dynamics, &floor, &s->wall));
-  mps_signal_destroy(&signal);
   TRY(edit_velocity(s, 0.0, uniform(p, -1.0, 1.0)));
   if (shaken) TRY(mps_dynamics_step(s->dynamics, 1)); /* which shows whether motions differ */
   return status;

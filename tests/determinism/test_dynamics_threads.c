@@ -30,23 +30,17 @@ static mps_status run(const setting *s, uint64_t *hash) {
   }
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   mps_particles_def set = mps_particles_defaults();
-  scoped_particles *particles = NULL;
   set.spacing = test_races() ? 1.25 : 1.0; /* m: 28 blocks still, and 3 batches */
   const double outline[] = {0.0,   0.0,  200.0, 0.0,   200.0, 80.0,
                             130.0, 80.0, 70.0,  170.0, 0.0,   170.0};
-  OK(mps_particles_create(context, &set, &particles));
+  MAKE(particles, particles, create, context, &set);
   OK(mps_particles_fill_polygon(particles, 6, outline, NULL));
-  OK(mps_particles_set(particles, "density", 0, 1800.0));
-  OK(mps_particles_set(particles, "shear_velocity", 0, 150.0));
-  OK(mps_particles_set(particles, "pressure_velocity", 0, 330.0));
-  mps_view x;
-  mps_edit h;
-  OK(mps_particles_set(particles, "damping", 0, 0.0));
-  OK(mps_particles_view(particles, "position", &x));
-  OK(mps_particles_edit(particles, "damping", &h));
-  for (int64_t k = 0; s->damped && k < x.shape[0]; k++)
-    *mps_edit_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
-  OK(mps_particles_commit(particles, &h));
+  SET_FIELDS(particles, {"density", 1800.0}, {"shear_velocity", 150.0},
+             {"pressure_velocity", 330.0}, {"damping", 0.0});
+  mps_view x = view_field(particles, "position");
+  EDIT(h, particles, "damping")
+    for (int64_t k = 0; s->damped && k < x.shape[0]; k++)
+      *mps_edit_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
   OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_LOWER, 2));
   OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_UPPER, 2));
   DEF(dynamics, dynamics_def, .dt = 1e-3);
@@ -55,11 +49,8 @@ static mps_status run(const setting *s, uint64_t *hash) {
   if (status == MPS_OK) {
     int64_t count;
     int64_t *base = soil_select(particles, -10.0, -1.0, 1000.0, set.spacing, &count);
-    mps_signal *ricker = NULL;
-    OK(mps_signal_create_ricker(context, 4.0, 0.05, 1.0, &ricker));
-    DEF(dynamics_boundary, boundary, .signal[0] = ricker);
-    OK(soil_add_viscous(dynamics, &boundary, count, base));
-    mps_signal_destroy(&ricker);
+    MAKE(signal, ricker, create_ricker, context, 4.0, 0.05, 1.0);
+    USING(dynamics_boundary, soil_add_viscous(dynamics, &given, count, base), .signal[0] = ricker);
     free(base);
     OK(mps_dynamics_step(dynamics, test_quick() ? 6 : 60));
     mps_totals energy;

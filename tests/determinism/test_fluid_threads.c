@@ -9,10 +9,9 @@
 static uint64_t run(const mps_context_def *def) {
   static const char *const names[] = {"id", "position", "velocity", "pressure", NULL};
   scoped_context *context = NULL;
-  scoped_signal *piston = NULL;
   char text[256];
   if (mps_context_create(def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.3, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.3, 0.0);
   scoped_tank t = tank_make(context, 2.0, 1.0, 0.02, piston, 2e-3);
   OK(mps_fluid_step(t.fluid, test_quick() ? 20 : 80));
   uint64_t hash = digest_fields(t.water, names);

@@ -14,7 +14,6 @@ typedef struct quest {
 } quest;
 
 static void find(void *data, int64_t block, int32_t worker) {
-  (void)worker;
   quest *q = data;
   for (int64_t i = BLOCK * block; i < BLOCK * (block + 1); i++)
     q->foot[i] = mpsi_body_foot(q->body, q->x[i]);

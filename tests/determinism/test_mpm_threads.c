@@ -19,9 +19,8 @@ static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
 
 /* A plate of a fifth of a cell in the block, up to its middle. */
 static void add_fin(mpm_scene *s) {
-  scoped_body *fin = NULL;
   DEF(body, body, .position[0] = 0.505, .position[1] = 0.5);
-  OK(mps_body_create_box(s->context, &body, 0.004, 0.4, &fin));
+  MAKE(body, fin, create_box, s->context, &body, 0.004, 0.4);
   mpm_scene_contact(s, fin, 0.4);
 }
 
@@ -42,10 +41,9 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   DEF(mpm, def, .geometry = geometry, .cell = 0.02, .lower[0] = 0.0, .upper[0] = 1.0,
       .gravity[1] = -9.81);
   solve(&s, &def, options);
-  mps_body *floor = NULL;
   DEF(body, body, .position[1] = 0.06);
   const double up[] = {0.1, 1.0};
-  OK(mps_body_create_half_plane(context, &body, up, &floor));
+  MAKE(body, floor, create_half_plane, context, &body, up);
   DEF(contact, rough, .friction = 0.4, .adhesion = 50.0, .strength = 2000.0);
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin below the slope */
   OK(mps_mpm_add_contact(s.mpm, floor, &rough, NULL));
@@ -57,7 +55,6 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   OK(mps_body_create_disc(context, &body, 0.07, disc));
   if (options & FIN) add_fin(&s);
   mpm_scene_contact(&s, *disc, 0.4);
-  mps_body_destroy(&floor);
   OK(mps_mpm_step(s.mpm, 100));
   return s;
 }
@@ -73,9 +70,8 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
   solve(&s, &def, options);
-  scoped_body *ball = NULL;
   DEF(body, body, .position[0] = 0.3, .position[2] = 0.08);
-  OK(mps_body_create_sphere(context, &body, 0.03, &ball));
+  MAKE(body, ball, create_sphere, context, &body, 0.03);
   DEF(contact, rough, .friction = 0.4, .strength = 500.0);
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin in it */
   OK(mps_mpm_add_contact(s.mpm, ball, &rough, NULL));
@@ -94,10 +90,8 @@ static mpm_scene slide_in_space(mps_context *context) {
   mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
-  mpm_scene_solve(&s, &def);
-  scoped_body *floor = NULL;
-  OK(mps_body_create_half_space(context, NULL, up, &floor));
+  USING(mpm, mpm_scene_solve(&s, &given), .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
+  MAKE(body, floor, create_half_space, context, NULL, up);
   mpm_scene_contact(&s, floor, 0.3);
   mps_reaction reaction;
   int64_t most = 0;
@@ -188,8 +182,7 @@ TEST(options_too) {
   same_bits(MPS_MPM_GEOMETRY_SPACE, SLAB, numbers(2), threads);
 }
 
-TEST(any_order_of_particles) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(any_order_of_particles) {
   mps_body *disc[2] = {NULL};
   scoped_mpm_scene a = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, false, &disc[0]);
   scoped_mpm_scene b = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, true, &disc[1]);
@@ -249,8 +242,7 @@ TEST(any_history_of_sorts) {
       *mps_edit_f64(&v, k, c) = 20.0 * (double)(seed >> 11) * 0x1p-53 - 8.0;
     }
   mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = 0.02, .dt = 1e-4, .lower[1] = 0.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .dt = 1e-4, .lower[1] = 0.0);
   exchange(&s, start, false);
   const uint64_t epoch = mps_particles_epoch(s.particles);
   for (int turn = 0; turn < 2; turn++) {

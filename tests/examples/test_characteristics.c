@@ -5,7 +5,6 @@
 
 #include "footing/characteristics.h"
 
-#define PI 3.14159265358979323846
 #define DEGREE (PI / 180.0)
 
 /* Undrained ground: 2 + pi, on smooth and rough base, and whatever its weight. */

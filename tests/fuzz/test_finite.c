@@ -65,14 +65,13 @@ static void seas(void) {
   double f[ROWS] = {0.3, 0.5, 0.7, 0.9, 1.2}, s[ROWS] = {0.0, 1e-4, 2e-4, 1e-4, 0.0};
   bend(a, N);
   if (draw(4) == 0) bend(s, ROWS);
-  mps_waves_def d = mps_waves_defaults();
-  d.kind = (int32_t)draw(4), d.phases = d.kind == 0 ? 0 : (int32_t)draw(3);
-  d.theory = (int32_t)draw(3);
-  d.depth = a[0], d.gravity = a[1], d.height = draw(5) ? a[2] : NAN, d.period = a[3];
-  d.gamma = a[4], d.repeat = d.kind ? a[5] : NAN, d.crest = a[6], d.position = a[7];
+  DEF(waves, d, .kind = (int32_t)draw(4), .phases = d.kind == 0 ? 0 : (int32_t)draw(3),
+      .theory = (int32_t)draw(3), .depth = a[0], .gravity = a[1], .height = draw(5) ? a[2] : NAN,
+      .period = a[3], .gamma = a[4], .repeat = d.kind ? a[5] : NAN, .crest = a[6],
+      .position = a[7]);
   d.time = a[8], d.ramp = draw(2) ? a[9] : NAN, d.lower = a[10], d.upper = a[11];
   d.count = ROWS, d.frequency = f, d.density = s;
-  mps_waves *w = NULL;
+  scoped_waves *w = NULL;
   if (a[5] / a[3] > 60.0 || mps_waves_create(context, &d, &w) != MPS_OK) return;
   mps_waves_report r;
   double amplitude[64], phase[64], frequency[64];
@@ -90,7 +89,6 @@ static void seas(void) {
     finite("mps_waves_get_piston", m[0], 16, t, 4);
   if (mps_waves_get_levels(w, fabs(extreme()), 4, t, level[0], level[1]) == MPS_OK)
     finite("mps_waves_get_levels", level[0], 8, t, 4);
-  mps_waves_destroy(&w);
 }
 
 static void absorbers(void) {
@@ -101,7 +99,7 @@ static void absorbers(void) {
   if (draw(2)) d.leak = a[4];
   if (draw(2)) d.stroke = a[5];
   if (draw(2)) d.acceleration = a[6];
-  mps_absorber *piston = NULL;
+  scoped_absorber *piston = NULL;
   if (mps_absorber_create(context, &d, &piston) != MPS_OK) return;
   double t = 0.0, m[2], reflection;
   for (int k = 0; k < 4; k++) {
@@ -113,7 +111,6 @@ static void absorbers(void) {
   }
   if (mps_absorber_get_reflection(piston, fabs(extreme()), &reflection) == MPS_OK)
     finite("mps_absorber_get_reflection", &reflection, 1, a, 7);
-  mps_absorber_destroy(&piston);
 }
 
 static void gauges(void) {
@@ -310,23 +307,17 @@ static void laws(void) {
 
 static void ground(void) {
   double a[8] = {1.0, 0.5, 1900.0, 9.81, 1e4, 2.0, 1e3, 0.6};
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.8};
-  mps_particles_def def = mps_particles_defaults();
-  scoped_particles *set = NULL;
   bend(a, 8);
-  def.spacing = 0.1;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  scoped_particles *set = box_of(context, 0.1, AT(0.0, 0.0), AT(0.4, 0.8));
   const mps_geostatic_layer layer = {a[0], a[1], a[2]};
   DEF(geostatic, rest, .layer_count = 1, .layers = &layer, .gravity = a[3], .surcharge = a[4]);
   if (mps_particles_set_geostatic(set, &rest) == MPS_OK) {
-    scoped_material *clay = NULL;
     DEF(material_cam_clay, cc, .critical_slope = 1.0, .compression = 0.2, .swelling = 0.05,
         .void_ratio = 1.0, .preconsolidation = 1e4);
     DEF(consolidation, past, .ocr = a[5], .pop = a[6]);
     mps_view v;
     if (draw(2)) past.k0 = a[7];
-    OK(mps_material_create_cam_clay(context, &cc, &clay));
+    MAKE(material, clay, create_cam_clay, context, &cc);
     const bool clayey = mps_particles_set_consolidation(set, clay, &past) == MPS_OK;
     static const char *const names[] = {"stress", "preconsolidation", "void_ratio"};
     for (int f = 0; f < (clayey ? 3 : 1); f++) {
@@ -341,8 +332,7 @@ static void couplings(void) {
   enum { N = 3 };
   double start[N] = {1.0, -2.0, 0.5}, answer[N], guess[N];
   DEF(coupling, d, .method = (int32_t)draw(3), .size = N, .repeats = 8);
-  mps_coupling *c = NULL;
-  OK(mps_coupling_create(context, &d, &c));
+  MAKE(coupling, c, create, context, &d);
   for (int step = 0; step < 3; step++) {
     int32_t done = 0;
     bend(start, N);
@@ -365,7 +355,6 @@ static void couplings(void) {
     finite("mps_coupling_get_report", &r.residual, 1, answer, N);
     if (done) OK(mps_coupling_accept(c));
   }
-  mps_coupling_destroy(&c);
 }
 
 TEST(answers_are_finite) {

@@ -5,6 +5,7 @@
  *
  *   plan.c     what a seed makes: the features of a scene of WLS-MPM
  *   scene.c    the scene of a plan under a change, its steps, its result
+ *   plane.c    lattices in the plane, of dynamics.c and elastic.c
  *   dynamics.c layers of explicit dynamics
  *   elastic.c  blocks of implicit elasticity in motion
  *   compare.c  two results, and how far they may be apart
@@ -104,20 +105,17 @@ static inline double uniform(uint64_t *r, double low, double high) {
 }
 static inline int below(uint64_t *r, int n) { return (int)(mix(r) % (uint64_t)n); }
 
+/* Of turns in the plane, under a change. */
+static inline double sense_of_turns(const change *by) {
+  return (by->axis[0] == 0 ? 1.0 : -1.0) * by->sign[0] * by->sign[1];
+}
+
 void make_plan(uint64_t seed, plan *out);
 /* The features of a plan, in words. */
 void print_plan(const plan *p);
 
 /* Runs a plan under a change; `out` is in the units and axes of the plan again. */
 void run_plan(const plan *p, const change *by, const char *folder, result *out);
-
-/* Of layers and blocks in the plane: spacing in m; edges are left, right, bottom, top. */
-#define SPACING 0.5
-enum { EDGES = 4 };
-void place_in_plane(const change *by, const double *x, double *out);
-double sense_of_turns(const change *by);
-/* Ids of the particles at edge k of nx by ny, row by row; returns their number. */
-int64_t list_edge(int nx, int ny, int k, int64_t *ids);
 
 /* The same for layers of explicit dynamics; of the plan only the seed is used. */
 void print_layers(const plan *p);

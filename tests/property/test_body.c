@@ -1,14 +1,8 @@
 /* test_body.c - distance to rigid bodies against brute force: the least distance to points strewn
  * along the surface, the sign by winding, the normal by differences, concave corners.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "test_fixture.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 /* A pile with an inner step, a star and a thin wedge: concave, and with sharp corners. */
 static const double pile[] = {0.0, 0.0, 0.2, 0.0, 0.2, 1.0, 0.9, 1.0,
@@ -32,9 +26,8 @@ static void reversed_corners(int64_t n, const double *xy, double *out) {
 static mps_body *make_body(int shape, bool reverse, const mps_body_def *def) {
   double turned[32];
   const double *xy = shapes[shape].xy;
-  mps_body *body = NULL;
   if (reverse) reversed_corners(shapes[shape].n, xy, turned);
-  OK(mps_body_create_polygon(context, def, shapes[shape].n, reverse ? turned : xy, &body));
+  MAKE_KEPT(body, body, create_polygon, context, def, shapes[shape].n, reverse ? turned : xy);
   return body;
 }
 

@@ -12,12 +12,11 @@ static const double measures[] = {1.0, 0.5, 2.0};
 /* A box of .2 x .1 m about (x, y). */
 static mps_body *make_box(int32_t motion, double x, double y, double mass) {
   DEF(body, def, .motion = motion, .position[0] = x, .position[1] = y);
-  mps_body *box = NULL;
   if (motion == MPS_BODY_MOTION_FREE) {
     def.mass = mass, def.inertia[2] = mass * (0.2 * 0.2 + 0.1 * 0.1) / 12.0;
     def.gravity[1] = -TANK_G;
   }
-  OK(mps_body_create_box(context, &def, 0.2, 0.1, &box));
+  MAKE_KEPT(body, box, create_box, context, &def, 0.2, 0.1);
   return box;
 }
 
@@ -27,18 +26,17 @@ static mpm_scene make_soil(double measure, double x0, double x1, double y0, doub
   mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, x0, y0, x1, y0 + 0.1);
   mpm_scene_affine(&s, v0, none);
-  DEF(mpm, def, .cell = 2.0 * SPACING, .measure = measure, .gravity[1] = -TANK_G, .lower[0] = -0.2,
-      .upper[0] = 1.0, .lower[1] = -0.2, .upper[1] = 1.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 2.0 * SPACING, .measure = measure,
+        .gravity[1] = -TANK_G, .lower[0] = -0.2, .upper[0] = 1.0, .lower[1] = -0.2,
+        .upper[1] = 1.0);
   return s;
 }
 
 /* A tank .6 x .2 m of water of `measure` with the box in it. */
 static tank make_water(double measure, mps_body *box, int32_t mover, mps_contact **contact) {
   tank t = {NULL, NULL};
-  DEF(particles, set, .spacing = SPACING);
   DEF(fluid, def, .level = 0.2, .measure = measure, .dt = 1e-3);
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = SPACING);
   for (int j = 0; j < 10; j++)
     for (int i = 0; i < 30; i++) {
       const double p[2] = {(i + 0.5) * SPACING, (j + 0.5) * SPACING};
@@ -107,15 +105,13 @@ TEST(a_ring_of_soil) {
   for (int k = 0; k < 2; k++) {
     scoped_mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, 0.0, 1e5);
     mps_body_def at = mps_body_defaults();
-    mps_mpm_def def = mps_mpm_defaults();
-    scoped_body *plate = NULL;
     mps_reaction r;
     mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
-    def.cell = 2.0 * SPACING, def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, def.measure = angles[k];
-    def.lower[0] = 0.0, def.upper[0] = 0.4, def.lower[1] = 0.0, def.upper[1] = 0.4;
+    DEF(mpm, def, .cell = 2.0 * SPACING, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC,
+        .measure = angles[k], .lower[0] = 0.0, .upper[0] = 0.4, .lower[1] = 0.0, .upper[1] = 0.4);
     mpm_scene_solve(&s, &def);
     at.position[1] = 0.1 + 0.049; /* presses 1 mm */
-    OK(mps_body_create_box(context, &at, 1.0, 0.1, &plate));
+    MAKE(body, plate, create_box, context, &at, 1.0, 0.1);
     mpm_scene_contact(&s, plate, 0.0);
     OK(mps_mpm_step(s.mpm, 20));
     OK(mps_body_get_reaction(plate, -1, &r));

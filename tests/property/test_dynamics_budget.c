@@ -9,22 +9,18 @@
 static mps_dynamics *block(mps_particles **set, int integrator, double damping, bool watch) {
   const soil_layer soil = {1e9, 1700.0, 120.0, 260.0, damping};
   *set = soil_particles(context, 0.5, 5.0, 6.0, 1, &soil);
-  mps_view x;
-  mps_edit v;
   OK(mps_particles_set(*set, "velocity", 0, 0.0));
-  OK(mps_particles_view(*set, "position", &x));
-  OK(mps_particles_edit(*set, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_edit_f64(&v, k, 0) = 1e-9 * sin(1.0 + *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&v, k, 1) = 1e-9 * cos(2.0 * *mps_view_f64(&x, k, 0));
-  }
-  OK(mps_particles_commit(*set, &v));
+  mps_view x = view_field(*set, "position");
+  EDIT(v, *set, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      *mps_edit_f64(&v, k, 0) = 1e-9 * sin(1.0 + *mps_view_f64(&x, k, 1));
+      *mps_edit_f64(&v, k, 1) = 1e-9 * cos(2.0 * *mps_view_f64(&x, k, 0));
+    }
   DEF(dynamics, def, .integrator = integrator);
-  mps_dynamics *d = NULL;
   def.dt = integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? 1e-5 : 1e-3; /* Euler grows */
   def.measure = 2.5;
   def.watch_damping = watch;
-  OK(mps_dynamics_create(context, *set, &def, &d));
+  MAKE_KEPT(dynamics, d, create, context, *set, &def);
   return d;
 }
 
@@ -62,11 +58,9 @@ static void add_everything(mps_dynamics *d, mps_particles *set, bool external) {
   def.signal[0] = NULL, def.signal[1] = wave;
   OK(mps_dynamics_add_boundary(d, &def, &number));
   assert_int_equal(number, 2);
-  DEF(dynamics_load, load, .lower[0] = 4.5, .lower[1] = -INFINITY);
-  load.upper[0] = load.upper[1] = INFINITY;
-  load.traction[0] = 2.0;
-  load.signal[0] = factor;
-  load.factor[0] = 1e7;
+  DEF(dynamics_load, load, .lower[0] = 4.5, .lower[1] = -INFINITY,
+      .upper[0] = load.upper[1] = INFINITY, .traction[0] = 2.0, .signal[0] = factor,
+      .factor[0] = 1e7);
   OK(mps_dynamics_add_load(d, &load, &number));
   load = mps_dynamics_load_defaults();
   load.kind = MPS_DYNAMICS_LOAD_BODY, load.all = 1;
@@ -146,12 +140,10 @@ TEST(impulses_are_changes_of_momentum) {
     scoped_particles *set = NULL;
     scoped_dynamics *d = block(&set, integrator, 0.0, false);
     const mps_totals before = totals(d);
-    mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
     int32_t number[2];
     OK(mps_dynamics_step(d, 10)); /* between steps, not only before the first */
-    def.dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION;
-    def.lower[0] = def.lower[1] = -INFINITY;
-    def.upper[0] = INFINITY, def.upper[1] = 1.0;
+    DEF(dynamics_boundary, def, .dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION,
+        .lower[0] = def.lower[1] = -INFINITY, .upper[0] = INFINITY, .upper[1] = 1.0);
     OK(mps_dynamics_add_boundary(d, &def, &number[0]));
     OK(mps_dynamics_step(d, 57));
     def = mps_dynamics_boundary_defaults();
@@ -188,20 +180,16 @@ TEST(impulses_are_changes_of_momentum) {
 TEST(reactions_carry_the_weight) {
   scoped_particles *set = NULL;
   scoped_dynamics *d = block(&set, MPS_DYNAMICS_INTEGRATOR_VERLET, 0.2, false);
-  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
   int32_t base, gravity, pressure;
   OK(mps_particles_add_field(set, "reaction", 0));
   OK(mps_particles_set(set, "velocity", 0, 0.0));
   OK(mps_particles_set(set, "velocity", 1, 0.0));
   OK(mps_dynamics_restart(d, 0.0));
   OK(mps_dynamics_set_dt(d, 2e-4));
-  def.dofs = MPS_DOF_X | MPS_DOF_Y;
-  def.lower[0] = def.lower[1] = -INFINITY;
-  def.upper[0] = INFINITY, def.upper[1] = 0.5;
-  OK(mps_dynamics_add_boundary(d, &def, &base));
-  load.kind = MPS_DYNAMICS_LOAD_BODY, load.all = 1;
-  load.acceleration[1] = -9.8;
+  USING(dynamics_boundary, mps_dynamics_add_boundary(d, &given, &base),
+        .dofs = MPS_DOF_X | MPS_DOF_Y, .lower[0] = given.lower[1] = -INFINITY, .upper[0] = INFINITY,
+        .upper[1] = 0.5);
+  DEF(dynamics_load, load, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.8);
   OK(mps_dynamics_add_load(d, &load, &gravity));
   load = mps_dynamics_load_defaults();
   load.lower[0] = -INFINITY, load.lower[1] = 5.5;
@@ -216,8 +204,7 @@ TEST(reactions_carry_the_weight) {
   NEAR(r.force[1] / (weight + top), 1.0, 1e-3);
   NEAR(r.force[0] / weight, 0.0, 1e-6);
   NEAR(r.moment[2] / (2.5 * (weight + top)), 1.0, 1e-3); /* at the middle, x = 2.5 m */
-  mps_view each;
-  OK(mps_particles_view(set, "reaction", &each));
+  mps_view each = view_field(set, "reaction");
   double sum = 0.0;
   for (int64_t k = 0; k < each.shape[0]; k++) sum += *mps_view_f64(&each, k, 1);
   NEAR(sum / r.force[1], 1.0, 1e-12);
@@ -234,14 +221,13 @@ TEST(loads_accelerate_a_free_body) {
     for (int kind = 0; kind < 3; kind++) {
       scoped_particles *set = NULL;
       scoped_dynamics *d = block(&set, integrator, 0.0, false);
-      mps_dynamics_load_def load = mps_dynamics_load_defaults();
       int32_t number;
       const double g = -3.0, mass = 1700.0 * 0.25 * 2.5;
       const mps_totals before = totals(d);
-      load.lower[0] = load.lower[1] = -INFINITY;
-      load.upper[0] = load.upper[1] = INFINITY;
-      load.kind = kind == 0 ? MPS_DYNAMICS_LOAD_BODY : MPS_DYNAMICS_LOAD_TRACTION;
-      load.acceleration[1] = g;
+      DEF(dynamics_load, load, .lower[0] = load.lower[1] = -INFINITY,
+          .upper[0] = load.upper[1] = INFINITY,
+          .kind = kind == 0 ? MPS_DYNAMICS_LOAD_BODY : MPS_DYNAMICS_LOAD_TRACTION,
+          .acceleration[1] = g);
       load.traction[1] = mass * g / 1.25; /* spacing times measure */
       if (kind < 2)
         OK(mps_dynamics_add_load(d, &load, &number));

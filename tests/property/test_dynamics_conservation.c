@@ -1,25 +1,19 @@
 /* test_dynamics_conservation.c - what the equations must keep: momentum, energy, rest under rigid
  * motion, action and reaction of the damping.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "soil_column.h"
-
-static double uniform(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
 
 /* `count` free particles of random material thrown into a square, moving and spinning at random.
  * Damping ratios differ when `damped`. */
 static mps_dynamics *random_body(mps_context *context, int64_t count, double speed, bool damped,
                                  const mps_dynamics_def *def, mps_particles **particles) {
   uint64_t seed = 7;
-  DEF(particles, set, .spacing = 1.0);
-  OK(mps_particles_create(context, &set, particles));
+  USING(particles, mps_particles_create(context, &given, particles), .spacing = 1.0);
   const double side = sqrt((double)count);
   for (int64_t placed = 0; placed < count;) { /* apart by at least half a spacing */
-    const double x[2] = {0.5 * side * uniform(&seed), 0.5 * side * uniform(&seed)};
-    mps_view view;
-    OK(mps_particles_view(*particles, "position", &view));
+    const double x[2] = {0.5 * side * noise(&seed), 0.5 * side * noise(&seed)};
+    mps_view view = view_field(*particles, "position");
     bool free_place = true;
     for (int64_t k = 0; k < placed && free_place; k++)
       free_place =
@@ -36,17 +30,15 @@ static mps_dynamics *random_body(mps_context *context, int64_t count, double spe
     OK(mps_particles_edit(*particles, names[f], &view[f]));
   }
   for (int64_t k = 0; k < count; k++) {
-    *mps_edit_f64(&view[0], k, 0) = 1500.0 + 500.0 * uniform(&seed);
-    *mps_edit_f64(&view[1], k, 0) = 100.0 + 40.0 * uniform(&seed);
-    *mps_edit_f64(&view[2], k, 0) =
-        *mps_view_f64(&view[1].view, k, 0) * (1.8 + 0.3 * uniform(&seed));
-    *mps_edit_f64(&view[3], k, 0) = damped ? 0.05 + 0.04 * uniform(&seed) : 0.0;
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&view[4], k, c) = speed * uniform(&seed);
-    *mps_edit_f64(&view[5], k, 0) = speed * uniform(&seed);
+    *mps_edit_f64(&view[0], k, 0) = 1500.0 + 500.0 * noise(&seed);
+    *mps_edit_f64(&view[1], k, 0) = 100.0 + 40.0 * noise(&seed);
+    *mps_edit_f64(&view[2], k, 0) = *mps_view_f64(&view[1].view, k, 0) * (1.8 + 0.3 * noise(&seed));
+    *mps_edit_f64(&view[3], k, 0) = damped ? 0.05 + 0.04 * noise(&seed) : 0.0;
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&view[4], k, c) = speed * noise(&seed);
+    *mps_edit_f64(&view[5], k, 0) = speed * noise(&seed);
   }
   for (int f = 0; f < 6; f++) OK(mps_particles_commit(*particles, &view[f]));
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, *particles, def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *particles, def);
   return dynamics;
 }
 
@@ -63,10 +55,9 @@ typedef struct scales {
 
 static scales momentum_scales(mps_particles *particles) {
   scales s = {0.0, 0.0};
-  mps_view rho, x, v;
-  OK(mps_particles_view(particles, "density", &rho));
-  OK(mps_particles_view(particles, "position", &x));
-  OK(mps_particles_view(particles, "velocity", &v));
+  mps_view rho = view_field(particles, "density");
+  mps_view x = view_field(particles, "position");
+  mps_view v = view_field(particles, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double p =
         *mps_view_f64(&rho, k, 0) * hypot(*mps_view_f64(&v, k, 0), *mps_view_f64(&v, k, 1));
@@ -132,18 +123,14 @@ TEST(energy_stays_bounded_over_1e5_steps) {
   const soil_layer soil = {16.0, 1500.0, 100.0, 200.0, 0.0};
   mps_particles *particles = soil_particles(context, 1.0, 12.0, 16.0, 1, &soil);
   OK(mps_particles_add_field(particles, "velocity", 0));
-  mps_view x;
-  mps_edit v;
-  OK(mps_particles_view(particles, "position", &x));
-  OK(mps_particles_edit(particles, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_edit_f64(&v, k, 0) = 1e-3 * sin(0.3 * *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&v, k, 1) = 1e-3 * cos(0.4 * *mps_view_f64(&x, k, 0));
-  }
-  OK(mps_particles_commit(particles, &v));
+  mps_view x = view_field(particles, "position");
+  EDIT(v, particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      *mps_edit_f64(&v, k, 0) = 1e-3 * sin(0.3 * *mps_view_f64(&x, k, 1));
+      *mps_edit_f64(&v, k, 1) = 1e-3 * cos(0.4 * *mps_view_f64(&x, k, 0));
+    }
   DEF(dynamics, def, .courant = 0.8);
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, particles, &def);
   mps_totals e;
   double least = INFINITY, most = 0.0;
   for (int k = 0; k < 1000; k++) {
@@ -163,25 +150,21 @@ TEST(rigid_motion_makes_no_force) {
     const soil_layer soil = {9.0, 1500.0, 100.0, 200.0, 0.0};
     mps_particles *particles = soil_particles(context, 1.0, 7.0, 9.0, 1, &soil);
     DEF(dynamics, def, .rotation = removal, .dt = 1e-3);
-    mps_dynamics *dynamics = NULL;
-    OK(mps_dynamics_create(context, particles, &def, &dynamics));
-    mps_view reference, a;
-    mps_edit d, th;
-    OK(mps_particles_view(particles, "reference", &reference));
-    OK(mps_particles_edit(particles, "displacement", &d));
-    OK(mps_particles_edit(particles, "rotation", &th));
-    const double angle = 2.5, c = cos(angle), s = sin(angle);
-    for (int64_t k = 0; k < d.view.shape[0]; k++) {
-      const double x = *mps_view_f64(&reference, k, 0), y = *mps_view_f64(&reference, k, 1);
-      *mps_edit_f64(&d, k, 0) = c * x - s * y - x + 3.0;
-      *mps_edit_f64(&d, k, 1) = s * x + c * y - y - 2.0;
-      *mps_edit_f64(&th, k, 0) = angle;
-    }
-    OK(mps_particles_commit(particles, &th));
-    OK(mps_particles_commit(particles, &d));
+    MAKE_KEPT(dynamics, dynamics, create, context, particles, &def);
+    mps_view reference = view_field(particles, "reference");
+    EDIT(d, particles, "displacement")
+      EDIT(th, particles, "rotation") {
+        const double angle = 2.5, c = cos(angle), s = sin(angle);
+        for (int64_t k = 0; k < d.view.shape[0]; k++) {
+          const double x = *mps_view_f64(&reference, k, 0), y = *mps_view_f64(&reference, k, 1);
+          *mps_edit_f64(&d, k, 0) = c * x - s * y - x + 3.0;
+          *mps_edit_f64(&d, k, 1) = s * x + c * y - y - 2.0;
+          *mps_edit_f64(&th, k, 0) = angle;
+        }
+      }
     OK(mps_dynamics_restart(dynamics, 0.0));
     OK(mps_dynamics_step(dynamics, 1));
-    OK(mps_particles_view(particles, "acceleration", &a));
+    mps_view a = view_field(particles, "acceleration");
     double most = 0.0;
     for (int64_t k = 0; k < a.shape[0]; k++)
       most = fmax(most, hypot(*mps_view_f64(&a, k, 0), *mps_view_f64(&a, k, 1)));

@@ -19,8 +19,7 @@ static mps_dynamics *level_ground(mps_context *context, bool columns, bool visco
   } else {
     def.period_x = 12.0;
   }
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *particles, &def);
   int64_t count;
   int64_t *base = soil_select(*particles, -100.0, -1.0, 100.0, 0.5, &count);
   mps_signal *s_wave = NULL, *p_wave = NULL;
@@ -77,24 +76,20 @@ static double energy_left(bool absorbing) {
   const soil_layer soil = {15.0, 1800.0, 200.0, 400.0, 0.0};
   mps_particles *particles = soil_particles(context, 0.5, 30.0, 15.0, 1, &soil);
   mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
   OK(mps_particles_add_field(particles, "velocity", 0));
-  mps_view x;
-  mps_edit v;
-  OK(mps_particles_view(particles, "position", &x));
-  OK(mps_particles_edit(particles, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double r2 =
-        pow(*mps_view_f64(&x, k, 0) - 15.0, 2) + pow(*mps_view_f64(&x, k, 1) - 7.0, 2);
-    *mps_edit_f64(&v, k, 0) = 0.01 * exp(-r2 / 8.0);
-    *mps_edit_f64(&v, k, 1) = 0.007 * exp(-r2 / 8.0);
-  }
-  OK(mps_particles_commit(particles, &v));
+  mps_view x = view_field(particles, "position");
+  EDIT(v, particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double r2 =
+          pow(*mps_view_f64(&x, k, 0) - 15.0, 2) + pow(*mps_view_f64(&x, k, 1) - 7.0, 2);
+      *mps_edit_f64(&v, k, 0) = 0.01 * exp(-r2 / 8.0);
+      *mps_edit_f64(&v, k, 1) = 0.007 * exp(-r2 / 8.0);
+    }
   if (absorbing) {
     OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_LOWER, 2));
     OK(mps_dynamics_add_free_field(particles, MPS_SIDE_X_UPPER, 2));
   }
-  OK(mps_dynamics_create(context, particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, particles, &def);
   if (absorbing) {
     int64_t count;
     int64_t *base = soil_select(particles, -100.0, -1.0, 100.0, 0.5, &count);

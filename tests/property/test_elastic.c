@@ -119,8 +119,7 @@ static void check_patch(test_body *b, double young, double nu, int plane_stress)
   NEAR(worst_r, 0.0, 1e-12);
 }
 
-TEST(constant_stress_is_exact_on_an_l_shape) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(constant_stress_is_exact_on_an_l_shape) {
   for (int plane_stress = 0; plane_stress < 2; plane_stress++) {
     DEF(elastic, def,
         .state = plane_stress ? MPS_ELASTIC_STATE_PLANE_STRESS : MPS_ELASTIC_STATE_PLANE_STRAIN);
@@ -129,15 +128,13 @@ TEST(constant_stress_is_exact_on_an_l_shape) {
   }
 }
 
-TEST(constant_stress_is_exact_on_a_stepped_block) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(constant_stress_is_exact_on_a_stepped_block) {
   scoped_test_body b = stepped(context, 0.3);
   check_patch(&b, 3.0, 0.3, 0);
 }
 
 /* Layers of half cells along one axis, two, three: tractions on their facets balance the stress. */
-TEST(constant_stress_is_exact_where_layers_are_cut) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(constant_stress_is_exact_where_layers_are_cut) {
   for (int dim = 2; dim <= 3; dim++)
     for (int axes = 1; axes <= dim; axes++) {
       DEF(elastic, def, .state = MPS_ELASTIC_STATE_PLANE_STRAIN);
@@ -175,9 +172,8 @@ static double *pressed(mps_context *context, int m, bool half, int64_t *count) {
   OK(mps_elastic_select_facets(b.elastic, MPS_SIDE_Y_UPPER, NULL, NULL, 512, &n, facets));
   OK(test_load(b.elastic, MPS_ELASTIC_LOAD_TRACTION, n, facets, top, false));
   OK(mps_elastic_solve(b.elastic));
-  mps_view u;
   int64_t *seen = malloc(4096 * sizeof *seen);
-  OK(mps_particles_view(b.particles, "displacement", &u));
+  mps_view u = view_field(b.particles, "displacement");
   OK(mps_particles_select_box(b.particles, plane, high, 4096, count, seen));
   double *uy = malloc((size_t)*count * sizeof *uy);
   for (int64_t k = 0; k < *count; k++)
@@ -189,8 +185,7 @@ static double *pressed(mps_context *context, int m, bool half, int64_t *count) {
 /* A cut layer does not know that the body continues as its mirror image: its gradient across the
  * plane is one-sided, where the whole body's is 0 by symmetry, and it has fewer stabilising pairs.
  * The difference is that of a discretisation, and falls with the spacing (docs/elastic.md). */
-TEST(a_half_differs_from_the_whole_by_the_discretisation) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_half_differs_from_the_whole_by_the_discretisation) {
   double off[3];
   for (int r = 0; r < 3; r++) {
     int64_t count, of_half;
@@ -242,8 +237,7 @@ static void check_modes(test_body *b, int rigid, double gap) {
   free(w);
 }
 
-TEST(rigid_motions_and_no_others_are_free) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(rigid_motions_and_no_others_are_free) {
   mps_elastic_def def = mps_elastic_defaults();
   scoped_test_body b = l_shape(context, &def, 0.3);
   check_modes(&b, 3, 1e-3);
@@ -305,8 +299,7 @@ static void check_matrix(test_body *b) {
   free(column);
 }
 
-TEST(the_assembled_matrix_is_the_operator) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_assembled_matrix_is_the_operator) {
   mps_elastic_def def = mps_elastic_defaults();
   test_body b = stepped(context, 0.2);
   check_matrix(&b);
@@ -316,10 +309,8 @@ TEST(the_assembled_matrix_is_the_operator) {
     def.radius_ratio = ratio[k / 2];
     b = l_shape_by(context, &def, 0.3, k % 2 ? TEST_PUBLISHED : TEST_CONSERVATIVE);
     /* A material that varies, and cells cut in half. */
-    mps_edit young;
-    OK(mps_particles_edit(b.particles, "young", &young));
-    for (int64_t i = 0; i < b.n; i++) *mps_edit_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
-    OK(mps_particles_commit(b.particles, &young));
+    EDIT(young, b.particles, "young")
+      for (int64_t i = 0; i < b.n; i++) *mps_edit_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
     OK(mpsi_elastic_renew_material(b.elastic, __func__));
     int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);
     OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_LOWER, ids, count));
@@ -332,12 +323,11 @@ TEST(the_assembled_matrix_is_the_operator) {
   def.bending = 0.7;
   for (int k = 0; k < 4; k++) {
     b = k % 2 ? stepped_by(context, &def, 0.2) : l_shape(context, &def, 0.3);
-    mps_edit young;
-    OK(mps_particles_edit(b.particles, "young", &young));
-    for (int64_t i = 0; i < b.n; i++)
-      if (k / 2 && test_value(&b, "position", i, 1) < 0.6 && test_value(&b, "position", i, 0) > 0.4)
-        *mps_edit_f64(&young, i, 0) = 8.0;
-    OK(mps_particles_commit(b.particles, &young));
+    EDIT(young, b.particles, "young")
+      for (int64_t i = 0; i < b.n; i++)
+        if (k / 2 && test_value(&b, "position", i, 1) < 0.6 &&
+            test_value(&b, "position", i, 0) > 0.4)
+          *mps_edit_f64(&young, i, 0) = 8.0;
     OK(mpsi_elastic_renew_material(b.elastic, __func__));
     int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);
     OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_LOWER, ids, count));
@@ -349,8 +339,7 @@ TEST(the_assembled_matrix_is_the_operator) {
 
 /* ---- equilibrium, rollers, orders ------------------------------------------------------------ */
 
-TEST(loads_and_reactions_are_in_equilibrium) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(loads_and_reactions_are_in_equilibrium) {
   for (int dim = 2; dim <= 3; dim++) {
     scoped_test_body b = dim == 2 ? l_shape(context, NULL, 0.3) : stepped(context, 0.3);
     int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
@@ -386,8 +375,7 @@ TEST(loads_and_reactions_are_in_equilibrium) {
 
 /* A square on a 45 degree roller below and a parallel pressure above: compression t along the
  * roller's normal gives the same displacement along it as turned supports say. */
-TEST(a_roller_lets_particles_slide_across_only) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_roller_lets_particles_slide_across_only) {
   scoped_test_body b = test_body_begin(context, 2, 0.1);
   test_body_box(&b, 0, 0, 0, 1, 1, 0);
   test_body_finish(&b, 2.0, 0.25, NULL);

@@ -3,18 +3,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
-static const double PI = 3.14159265358979323846;
-
 static mps_particles *make_set(mps_context *context, int32_t dim, double spacing) {
   DEF(particles, def, .dim = dim, .spacing = spacing);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE_KEPT(particles, set, create, context, &def);
   return set;
 }
 
 /* The error of an area by counting sites is at most about half a cell along the boundary. */
-TEST(the_area_of_a_polygon_converges) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_area_of_a_polygon_converges) {
   enum { CORNERS = 14 };
   double xy[2 * CORNERS], area = 0.0, length = 0.0;
   for (int k = 0; k < CORNERS; k++) { /* a star of seven points, not symmetric to the lattice */
@@ -39,8 +35,7 @@ TEST(the_area_of_a_polygon_converges) {
   assert_true(last < 1e-3 * area);
 }
 
-TEST(disc_and_ball_have_their_area_and_volume) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(disc_and_ball_have_their_area_and_volume) {
   const double centre[3] = {0.013, -0.21, 0.37}, r = 1.7;
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int level = 0; level < 4; level++) {
@@ -52,8 +47,7 @@ TEST(disc_and_ball_have_their_area_and_volume) {
       OK(mps_particles_fill_ball(set, centre, r, &added));
       /* far below half a cell along the surface: errors of a curved one cancel */
       NEAR((double)added * pow(d, dim), exact, 0.15 * surface * d);
-      mps_view x;
-      OK(mps_particles_view(set, "position", &x));
+      mps_view x = view_field(set, "position");
       for (int64_t i = 0; i < added; i++) {
         double square = 0.0;
         for (int32_t c = 0; c < dim; c++) square += pow(*mps_view_f64(&x, i, c) - centre[c], 2);
@@ -81,8 +75,7 @@ static int compare_points(const void *a, const void *b) {
 
 /* All sites of a set, sorted; to be freed. */
 static double *sorted_sites(mps_particles *set) {
-  mps_view x;
-  OK(mps_particles_view(set, "position", &x));
+  mps_view x = view_field(set, "position");
   double *points = malloc((size_t)x.shape[0] * 2 * sizeof *points);
   assert_non_null(points);
   for (int64_t i = 0; i < x.shape[0]; i++)

@@ -102,13 +102,11 @@ static void closed_tank(mps_context *c) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_load_def shake = mps_fluid_load_defaults();
-  scoped_particles *water = NULL;
-  scoped_fluid *fluid = NULL;
   unsigned seed = 2;
   set.spacing = 0.02, def.viscosity = 2.0;
-  OK(mps_particles_create(c, &set, &water));
+  MAKE(particles, water, create, c, &set);
   tank_fill(water, 0.4, 0.2, jitter, &seed);
-  OK(mps_fluid_create(c, water, &def, &fluid));
+  MAKE(fluid, fluid, create, c, water, &def);
   const double wall[4][4] = {
       {0.0, 0.0, 0.0, 1.0}, {0.0, 0.0, 1.0, 0.0}, {0.4, 0.0, -1.0, 0.0}, {0.0, 0.2, 0.0, -1.0}};
   for (int k = 0; k < 4; k++) {
@@ -142,10 +140,9 @@ static void floating_box(mps_context *c) {
       .gravity[1] = -TANK_G, .position[0] = 0.35, .position[1] = 0.37, .rotation[2] = 0.1,
       .velocity[1] = -1.0);
   const double xy[] = {-0.1, -0.05, 0.1, -0.05, 0.1, 0.05, -0.1, 0.05};
-  scoped_body *body = NULL;
   mps_reaction felt, fluid;
   mps_body_totals own;
-  OK(mps_body_create_polygon(c, &def, 4, xy, &body));
+  MAKE(body, body, create_polygon, c, &def, 4, xy);
   scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_SOLVER);
   OK(mps_fluid_step(t.fluid, test_quick() ? 60 : 200));
   const balance b = check(t.fluid, 3, contact);
@@ -180,14 +177,11 @@ static strike one_particle(mps_context *c, double u) {
   const double x[2] = {0.012, 0.5};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  mps_edit v;
   set.spacing = 0.02, def.gravity[1] = 0.0, def.dt = 5e-4, def.level = 1.0;
   OK(mps_particles_create(c, &set, &s.water));
   OK(mps_particles_append(s.water, 1, x));
   OK(mps_particles_add_field(s.water, "velocity", 0));
-  OK(mps_particles_edit(s.water, "velocity", &v));
-  *mps_edit_f64(&v, 0, 0) = u, *mps_edit_f64(&v, 0, 1) = 0.25;
-  OK(mps_particles_commit(s.water, &v));
+  EDIT(v, s.water, "velocity") *mps_edit_f64(&v, 0, 0) = u, *mps_edit_f64(&v, 0, 1) = 0.25;
   OK(mps_fluid_create(c, s.water, &def, &s.fluid));
   return s;
 }
@@ -243,12 +237,11 @@ TEST(a_body_gets_what_a_particle_loses) {
   SCOPED(drop_strike) strike s = one_particle(context, -1.0);
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 40.0, .inertia[2] = 1.0,
       .position[0] = -0.1, .position[1] = 0.5);
-  scoped_body *body = NULL;
   mps_reaction felt, fluid;
   mps_body_totals own;
   mps_totals sum;
   const double xy[] = {-0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1};
-  OK(mps_body_create_polygon(context, &def, 4, xy, &body));
+  MAKE(body, body, create_polygon, context, &def, 4, xy);
   scoped_contact *contact = tank_body(s.fluid, body, MPS_CONTACT_MOVER_OTHER);
   for (int k = 0; k < 40; k++) {
     OK(mps_fluid_step(s.fluid, 1));

@@ -25,17 +25,15 @@ static mps_status creep(void *user, const mps_material_block *block) {
 static mps_material *make_law(int which) {
   static const char *const history[] = {"volume_strain"};
   mps_material *material = NULL;
-  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
   mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   mps_material_mohr_coulomb_def coulomb = mps_material_mohr_coulomb_defaults();
-  mps_material_newtonian_def fluid = mps_material_newtonian_defaults();
   mps_material_user_def user = mps_material_user_defaults();
-  mises.young = cone.young = coulomb.young = 1e7;
-  mises.yield_stress = 2e4, mises.hardening = 1e6;
+  DEF(material_von_mises, mises, .young = cone.young = coulomb.young = 1e7, .yield_stress = 2e4,
+      .hardening = 1e6);
   cone.friction = coulomb.friction = 0.6, cone.dilation = 0.2;
   cone.cohesion = coulomb.cohesion = 5e3, cone.tension = which == 3 ? 2e3 : INFINITY;
-  fluid.bulk_modulus = 2e6, fluid.viscosity = 3.0;
-  fluid.state = which == 6, fluid.no_tension = which == 6;
+  DEF(material_newtonian, fluid, .bulk_modulus = 2e6, .viscosity = 3.0, .state = which == 6,
+      .no_tension = which == 6);
   user.update = creep, user.wave_modulus = 1e6, user.history = history, user.history_count = 1;
   mps_status status = MPS_OK;
   if (which >= 11) { /* strength that falls with the slip and grows with the rate */
@@ -84,17 +82,17 @@ static void fill(columns *c, bool hoop, bool space) {
   for (int k = 0; k < COUNT; k++) {
     for (int i = 0; i < 9; i++) {
       const bool plane = i == 0 || i == 1 || i == 3 || i == 4 || (i == 8 && hoop);
-      const double x = random_number(&seed), y = random_number(&seed);
+      const double x = noise(&seed), y = noise(&seed);
       if (space || plane) c->gradient[i][k] = 4.0 * (x - 0.1);
       c->deformation[i][k] = (i % 4 == 0) + (space || plane ? 0.1 * y : 0.0);
     }
     for (int i = 0; i < 6; i++) {
-      const double x = random_number(&seed);
+      const double x = noise(&seed);
       if (space || i < 4) c->stress[i][k] = 1e4 * x - (i < 3 ? 1e4 : 0.0);
     }
-    c->history[k] = 0.01 * (1.0 + random_number(&seed));
-    c->opening[k] = k % 3 == 0 ? 0.01 * (1.0 + random_number(&seed)) : 0.0;
-    c->volume[k] = 1.0 + 0.02 * random_number(&seed);
+    c->history[k] = 0.01 * (1.0 + noise(&seed));
+    c->opening[k] = k % 3 == 0 ? 0.01 * (1.0 + noise(&seed)) : 0.0;
+    c->volume[k] = 1.0 + 0.02 * noise(&seed);
   }
 }
 

@@ -7,7 +7,7 @@
 #include "material/material_private.h"
 
 static double between(uint64_t *seed, double low, double high) {
-  return low + (high - low) * 0.5 * (random_number(seed) + 1.0);
+  return low + (high - low) * 0.5 * (noise(seed) + 1.0);
 }
 
 /* Evenly in the logarithm. */
@@ -29,7 +29,7 @@ static clay random_clay(uint64_t *seed) {
 /* A stress of mean pressure p and a random deviator of norm q. */
 static void set_stress(mps_material_point *x, uint64_t *seed, double p, double q) {
   double mean = 0.0, *s = x->stress;
-  for (int c = 0; c < 6; c++) s[c] = random_number(seed);
+  for (int c = 0; c < 6; c++) s[c] = noise(seed);
   for (int c = 0; c < 3; c++) mean += s[c] / 3.0;
   for (int c = 0; c < 3; c++) s[c] -= mean;
   const double scale = q / (ROOT3 * root_j2(s));
@@ -64,10 +64,10 @@ TEST(any_state_returns_to_the_surface) {
       mps_material_point x = point_under(m, 0.0), old;
       const double pc = x.history[CLAY_PC], p = pc * scaled(&seed, 2e-3, 1.0);
       const double most = c.M * sqrt(fmax(0.0, p * (pc - p)));
-      const double inside = random_number(&seed) > 0.0 ? 1.0 : fabs(random_number(&seed));
+      const double inside = noise(&seed) > 0.0 ? 1.0 : fabs(noise(&seed));
       set_stress(&x, &seed, p, inside * most);
       double L[9], size = 0.0;
-      for (int k = 0; k < 9; k++) L[k] = random_number(&seed), size += L[k] * L[k];
+      for (int k = 0; k < 9; k++) L[k] = noise(&seed), size += L[k] * L[k];
       const double length = scaled(&seed, 1e-6, 1e-2) / sqrt(size);
       for (int k = 0; k < 9; k++) L[k] *= length;
       old = x;
@@ -148,7 +148,7 @@ TEST(geometries_agree) {
   scoped_material *m = make_clay(&clays[0]);
   for (int k = 0; k < N; k++) {
     for (int c = 0; c < 9; c++)
-      L[c][k] = c == 0 || c == 1 || c == 3 || c == 4 ? 5e-3 * random_number(&seed) : 0.0;
+      L[c][k] = c == 0 || c == 1 || c == 3 || c == 4 ? 5e-3 * noise(&seed) : 0.0;
     for (int g = 0; g < 3; g++) {
       for (int c = 0; c < 6; c++) s[g][c][k] = c < 3 ? -60e3 : 0.0;
       for (int c = 0; c < 4; c++) h[g][c][k] = mps_material_history_initial(m, c);
@@ -208,7 +208,7 @@ static void fill_block(const mps_material *m, const clay *c, clay_block *b) {
     const double pc = x.history[CLAY_PC], p = pc * scaled(&seed, 1e-3, 1.0);
     set_stress(&x, &seed, p, c->M * sqrt(fmax(0.0, p * (pc - p))));
     const double length = scaled(&seed, 1e-6, k % 10 == 0 ? 3e-2 : 3e-3);
-    for (int i = 0; i < 9; i++) b->gradient[i][k] = length * random_number(&seed);
+    for (int i = 0; i < 9; i++) b->gradient[i][k] = length * noise(&seed);
     for (int i = 0; i < 6; i++) b->stress[i][k] = x.stress[i];
     for (int i = 0; i < 4; i++) b->history[i][k] = x.history[i];
     if (k % 9 == 0) b->history[CLAY_GAP][k] = 1e-4;
@@ -266,11 +266,10 @@ TEST(blocks_agree_with_single_particles) {
   for (int draw = 0; draw < 60; draw++) {
     const clay c = random_clay(&seed);
     mps_material_cam_clay_def def = clay_def(&c);
-    scoped_material *m = NULL;
     clay_block first, whole, cut;
     def.lode = draw % 2;
     if (draw % 3 == 0) def.shear_modulus = 20.0 * c.p0;
-    OK(mps_material_create_cam_clay(context, &def, &m));
+    MAKE(material, m, create_cam_clay, context, &def);
     for (int kind = 0; kind < 3; kind++) {
       fill_block(m, &c, &whole), fill_block(m, &c, &cut);
       OK(step_block(m, kind, &whole, 0, BLOCK));

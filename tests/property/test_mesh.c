@@ -2,15 +2,9 @@
  * angle, and a fine mesh of a sphere against the sphere.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/body_internal.h"
+#include "kit/random.h"
 #include "mesh_shapes.h"
 #include "test_fixture.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 static mesh_shape shape;
 
@@ -145,8 +139,7 @@ TEST(order_and_place_do_not_matter) {
 
 TEST(fine_mesh_is_the_sphere) {
   DEF(body, def, .position[0] = 0.3, .rotation[1] = 0.8);
-  scoped_body *exact = NULL;
-  OK(mps_body_create_sphere(context, &def, 1.0, &exact));
+  MAKE(body, exact, create_sphere, context, &def, 1.0);
   double last = 0.0;
   for (int level = 1; level <= 3; level++) {
     scoped_body *body = NULL;
@@ -192,7 +185,7 @@ TEST(overlap_and_walls) {
   const double shifts[] = {1.0, 0.99, 0.3, -0.29, 0.45};
   const int axes[] = {0, 0, 2, 2, 1};
   const bool expected[] = {false, true, false, true, true};
-  mps_body *still = make_body(BLOCK, NULL);
+  scoped_body *still = make_body(BLOCK, NULL);
   NEAR(mpsi_body_thickness(still), 0.3, 1e-12);
   for (int k = 0; k < 5; k++) {
     DEF(body, def, .position[axes[k]] = shifts[k]);
@@ -200,12 +193,10 @@ TEST(overlap_and_walls) {
     assert_int_equal(mpsi_body_overlap(still, moved, 5e-3), expected[k]);
     assert_int_equal(mpsi_body_overlap(moved, still, 5e-3), expected[k]);
   }
-  mps_body_destroy(&still);
   scoped_body *torus = make_body(TORUS, NULL);
   assert_true(mpsi_body_thickness(torus) > 0.6 && mpsi_body_thickness(torus) < 0.7);
   for (int k = 0; k < 2; k++) {
-    scoped_body *ball = NULL;
-    OK(mps_body_create_sphere(context, NULL, k ? 0.57 : 0.54, &ball));
+    MAKE(body, ball, create_sphere, context, NULL, k ? 0.57 : 0.54);
     assert_int_equal(mpsi_body_overlap(torus, ball, 5e-3), k);
   }
 }

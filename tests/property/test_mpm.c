@@ -1,17 +1,11 @@
 /* test_mpm.c - what the WLS-MPM solver keeps: partition of unity, linear functions, momentum, also
  * beside bodies and edges; nothing passes through a thin wall.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
 #include "mpm/base/mpm_solver.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 /* A concave polygon with a thin tooth, and a disc, in a square domain full of particles at random
  * places, some of them deep inside the bodies. */
@@ -349,9 +343,9 @@ static void keeps_momentum(int dim, int spline, int64_t steps) {
   const double centre[] = {0.0, 0.0, 0.0};
   OK(mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
-      .spline = spline, .cell = 0.02);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given),
+        .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
+        .spline = spline, .cell = 0.02);
   const mps_totals a = mpm_scene_totals(&s);
   OK(mps_mpm_step(s.mpm, steps));
   const mps_totals b = mpm_scene_totals(&s);
@@ -393,8 +387,7 @@ static void check_momentum(double corner, double flip_time) {
   const double v0[] = {2.0, -0.5}, L[] = {0.0, -3.0, 3.0, 0.0};
   mpm_scene_ball(&s, 0.0, 0.0, 0.1);
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .cell = 0.02, .flip_time = flip_time);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .flip_time = flip_time);
   mps_body *bodies[2] = {NULL};
   DEF(body, body, .motion = MPS_BODY_MOTION_FREE, .mass = 20.0, .inertia[2] = 0.2,
       .position[0] = 0.2, .position[1] = -0.05, .rotation[2] = 0.4);
@@ -440,8 +433,7 @@ TEST(contact_in_space_keeps_momentum) {
   const double centre[3] = {0.0, 0.0, 0.0}, normal[] = {0.2, 1.0, 0.1};
   OK(mps_particles_fill_ball(s.particles, centre, 0.05, NULL));
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
   mps_body *bodies[2] = {NULL};
   DEF(body, body, .motion = MPS_BODY_MOTION_FREE, .mass = 2.0);
   for (int c = 0; c < 3; c++) body.inertia[c] = 0.002 + 0.001 * c;
@@ -495,13 +487,11 @@ TEST(thin_wall_lets_nothing_pass) {
     for (int64_t k = 0; k < x.shape[0]; k++)
       if (*mps_view_f64(&x, k, 0) < shift) *mps_edit_f64(&v, k, 0) = 1.0;
     mpm_scene_commit(&s, &v);
-    DEF(mpm, def, .cell = h);
-    mpm_scene_solve(&s, &def);
-    scoped_body *wall = NULL;
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = h);
     mps_body_def body = mps_body_defaults();
     body.position[0] =
         shift + h - 0.0005; /* off the lump at rest, which would be in contact by round-off */
-    OK(mps_body_create_box(context, &body, 2.0 * h, 1.0, &wall));
+    MAKE(body, wall, create_box, context, &body, 2.0 * h, 1.0);
     mpm_scene_contact(&s, wall, 0.3);
     OK(mps_mpm_step(s.mpm, 100));
     mps_reaction reaction;
@@ -524,16 +514,13 @@ static mpm_scene between_discs(int count, const double *at, const double *angle,
   const double L[] = {0.0, 0.0, 0.0, 0.0};
   OK(mps_particles_append(s.particles, count, at));
   mpm_scene_affine(&s, v, L);
-  DEF(mpm, def, .cell = 0.1, .dt = 1e-12, .flip_time = flip_time);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .dt = 1e-12, .flip_time = flip_time);
   for (int b = 0; b < 2; b++) {
     const double radius = 0.25, far = radius + 0.03; /* beyond the reach of the contact */
     DEF(body, disc, .position[0] = at[0] + far * cos(angle[b]),
         .position[1] = at[1] + far * sin(angle[b]));
-    scoped_body *body = NULL;
-    OK(mps_body_create_disc(context, &disc, radius, &body));
-    DEF(contact, contact, .offset = 0.0);
-    OK(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+    MAKE(body, body, create_disc, context, &disc, radius);
+    USING(contact, mps_mpm_add_contact(s.mpm, body, &given, NULL), .offset = 0.0);
   }
   return s;
 }
@@ -576,9 +563,8 @@ TEST(thin_plates_elsewhere_change_nothing) {
     const double at[] = {x, x, x + 0.4 * cos(aside), x + 0.4 * sin(aside)};
     const double angle[] = {first, first + apart};
     scoped_mpm_scene s = between_discs(2, at, angle, v, 0.0);
-    mps_body_def plate = mps_body_defaults();
     scoped_body *body = NULL;
-    plate.position[0] = plate.position[1] = 0.05;
+    DEF(body, plate, .position[0] = plate.position[1] = 0.05);
     OK(mps_body_create_box(context, &plate, 0.02, 0.06, &body));
     mpm_scene_contact(&s, body, 0.0);
     OK(mps_mpm_step(s.mpm, 1));
@@ -616,10 +602,9 @@ static int few_between_bodies(int dim, int spline, double *worst) {
     OK(mps_particles_append(s.particles, 1, x));
   }
   mpm_scene_affine(&s, zero, zero);
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int k = 0; k < FEW; k++)
-    for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.1, 0.1);
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int k = 0; k < FEW; k++)
+      for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.1, 0.1);
   DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
       .spline = spline, .cell = 0.1, .dt = 5e-4, .gravity[1] = -1.0);
   mpm_scene_solve(&s, &def);

@@ -85,10 +85,9 @@ TEST(closes_with_lists_of_particles) {
       mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
       DEF(mpm, def, .cell = 0.02, .budget = 1, .gravity[1] = -9.81, .volumetric = volumetric);
       if (law == 1) {
-        DEF(material_mohr_coulomb, sand, .young = 1e5, .friction = 0.5, .dilation = 0.2,
-            .cohesion = 10.0);
         mps_material_destroy(&s.material);
-        OK(mps_material_create_mohr_coulomb(context, &sand, &s.material));
+        USING(material_mohr_coulomb, mps_material_create_mohr_coulomb(context, &given, &s.material),
+              .young = 1e5, .friction = 0.5, .dilation = 0.2, .cohesion = 10.0);
       }
       mpm_scene_solve(&s, &def);
       scoped_signal *shake = NULL;
@@ -187,8 +186,7 @@ static void sliding_box(bool body) {
   scoped_body *floor = NULL;
   if (body) {
     const double up[] = {0.0, 1.0};
-    DEF(body, plane, .position[1] = 0.2);
-    OK(mps_body_create_half_plane(context, &plane, up, &floor));
+    USING(body, mps_body_create_half_plane(context, &given, up, &floor), .position[1] = 0.2);
     mpm_scene_contact(&s, floor, mu);
   } else {
     mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu);
@@ -220,11 +218,9 @@ TEST(piston) {
   const double young = 1e5, M = young * 0.7 / (1.3 * 0.4), t[] = {0.0, 1.0}, v[] = {0.004, 0.004};
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, young);
   mpm_scene_box(&s, 0.0, 0.0, 0.4, 0.1);
-  DEF(mpm, def, .cell = 0.02, .budget = 1);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.6, def.upper[1] = 0.1;
-  mpm_scene_solve(&s, &def);
-  scoped_signal *push = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &push));
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .budget = 1,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.6, .upper[1] = 0.1);
+  MAKE(signal, push, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
   const double low[] = {0.36, -1.0}, high[] = {0.5, 1.0};
   mps_mpm_boundary_def wall = mpm_scene_box_def(s.mpm, low, high, 0, push, -1.0);
   int32_t number;
@@ -249,22 +245,18 @@ TEST(piston) {
 /* A free bar in its first axial mode: energy goes to and fro between motion and strain; what is
  * lost, the transfers have taken. */
 TEST(vibrating_bar) {
-  const double pi = 3.14159265358979323846;
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 0.04);
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   OK(mps_particles_add_field(s.particles, "velocity_gradient", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  mps_edit L = mpm_scene_edit(&s, "velocity_gradient");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_edit_f64(&v, k, 0) = -0.01 * cos(pi * *mps_view_f64(&x, k, 0));
-    *mps_edit_f64(&L, k, 0) = 0.01 * pi * sin(pi * *mps_view_f64(&x, k, 0));
-  }
-  mpm_scene_commit(&s, &L);
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = 0.02, .budget = 1);
-  mpm_scene_solve(&s, &def);
+  EDIT(v, s.particles, "velocity")
+    EDIT(L, s.particles, "velocity_gradient")
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        *mps_edit_f64(&v, k, 0) = -0.01 * cos(PI * *mps_view_f64(&x, k, 0));
+        *mps_edit_f64(&L, k, 0) = 0.01 * PI * sin(PI * *mps_view_f64(&x, k, 0));
+      }
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .budget = 1);
   const double start = mpm_scene_totals(&s).kinetic;
   double most = 0.0;
   for (int step = 0; step < 1500; step++) {

@@ -12,18 +12,12 @@
  * exchanged. The floor moves along both axes. */
 static mpm_scene corner_of(int32_t kind, int32_t walls, double settle, bool turned) {
   mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e6);
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
-  scoped_signal *signal = NULL;
   const int x = turned ? 1 : 0, y = 1 - x;
   mpm_scene_box(&s, 0.0, 0.0, 1.5, 1.5);
-  def.cell = 0.25;
-  def.lower[0] = def.lower[1] = 0.0;
-  def.edge = walls;
-  def.gravity[x] = -2.0, def.gravity[y] = -9.75;
-  mpm_scene_solve(&s, &def);
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 1e-3, 0.3, &signal));
-  side.kind = kind, side.settle = settle;
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.25, .lower[0] = given.lower[1] = 0.0,
+        .edge = walls, .gravity[x] = -2.0, .gravity[y] = -9.75);
+  MAKE(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 1e-3, 0.3);
+  DEF(mpm_boundary, side, .kind = kind, .settle = settle);
   OK(mps_mpm_set_boundary(s.mpm, 2 * x, &side));
   side.signal[x] = side.signal[y] = signal, side.factor[x] = 0.7;
   side.settle *= 2.0;
@@ -112,8 +106,6 @@ TEST(friction_along_an_edge) {
  * on borders of cells where `first` says so, and the sides stop some. */
 static void falls_alike(double first, int32_t spline) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e6);
-  mps_material_von_mises_def law = mps_material_von_mises_defaults();
-  mps_mpm_def def = mps_mpm_defaults();
   enum { SIDE = 20 };
   double x[SIDE * SIDE][2];
   const int n = first == 0.0 ? SIDE + 1 : SIDE;
@@ -124,12 +116,11 @@ static void falls_alike(double first, int32_t spline) {
       x[count][1] = 0.125 * (0.5 + j);
     }
   OK(mps_particles_append(s.particles, count, x[0]));
-  law.young = 2e6, law.yield_stress = 4e3;
+  DEF(material_von_mises, law, .young = 2e6, .yield_stress = 4e3);
   mps_material_destroy(&s.material);
   OK(mps_material_create_von_mises(context, &law, &s.material));
-  def.cell = 0.25, def.spline = spline, def.gravity[1] = -9.81;
-  def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
-  def.lower[0] = -1.25, def.upper[0] = 1.25, def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.25, .spline = spline, .gravity[1] = -9.81,
+      .volumetric = MPS_MPM_VOLUMETRIC_CELL, .lower[0] = -1.25, .upper[0] = 1.25, .lower[1] = 0.0);
   mpm_scene_solve(&s, &def);
   for (int32_t side = 0; side < 2; side++) mpm_scene_side(&s, side, MPS_BOUNDARY_FREE, 0.0);
   OK(mps_mpm_step(s.mpm, 60));

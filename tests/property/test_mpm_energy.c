@@ -31,18 +31,16 @@ enum { CELLS = 8 };
 static void scatter(mpm_scene *s, int32_t geometry, uint64_t *seed) {
   const int dim = mps_particles_dim(s->particles);
   OK(mps_particles_add_field(s->particles, "velocity", 0));
-  mps_edit x = mpm_scene_edit(s, "position");
-  for (int64_t k = 0; k < x.view.shape[0]; k++)
-    for (int c = 0; c < dim; c++) {
-      const double place = k % 3 == 0 ? 0.1 * uniform(seed) : CELLS * uniform(seed);
-      const bool lower = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 ? false : k % 2 == 0;
-      *mps_edit_f64(&x, k, c) = 1.0 + 0.1 * (lower ? place : CELLS - place);
-    }
-  mpm_scene_commit(s, &x);
-  mps_edit v = mpm_scene_edit(s, "velocity");
-  for (int64_t k = 0; k < v.view.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = 0.4 * (uniform(seed) - 0.5);
-  mpm_scene_commit(s, &v);
+  EDIT(x, s->particles, "position")
+    for (int64_t k = 0; k < x.view.shape[0]; k++)
+      for (int c = 0; c < dim; c++) {
+        const double place = k % 3 == 0 ? 0.1 * uniform(seed) : CELLS * uniform(seed);
+        const bool lower = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 ? false : k % 2 == 0;
+        *mps_edit_f64(&x, k, c) = 1.0 + 0.1 * (lower ? place : CELLS - place);
+      }
+  EDIT(v, s->particles, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++)
+      for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = 0.4 * (uniform(seed) - 0.5);
 }
 
 static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uint64_t seed) {
@@ -87,10 +85,9 @@ TEST(works_between_soil_and_bodies_cancel) {
   for (int32_t method = MPS_CONTACT_METHOD_IMPULSE; method <= MPS_CONTACT_METHOD_PENALTY; method++)
     for (uint64_t seed = 0; seed < 3; seed++) {
       scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e6);
-      DEF(material_mohr_coulomb, sand, .young = 1e6, .friction = 0.5, .dilation = 0.2,
-          .cohesion = 2e3);
       mps_material_destroy(&s.material);
-      OK(mps_material_create_mohr_coulomb(context, &sand, &s.material));
+      USING(material_mohr_coulomb, mps_material_create_mohr_coulomb(context, &given, &s.material),
+            .young = 1e6, .friction = 0.5, .dilation = 0.2, .cohesion = 2e3);
       mpm_scene_box(&s, 0.0, 0.0, 0.8, 0.2);
       DEF(mpm, def, .cell = 0.04, .budget = 1, .gravity[1] = -9.81);
       def.volumetric = (int32_t)seed; /* each option */
@@ -101,8 +98,8 @@ TEST(works_between_soil_and_bodies_cancel) {
       DEF(body, disc, .motion = MPS_BODY_MOTION_FREE, .mass = 20.0 + 20.0 * uniform(&state_of),
           .inertia[2] = 0.1, .position[0] = 0.3 + 0.2 * uniform(&state_of), .position[1] = 0.305,
           .velocity[0] = uniform(&state_of), .velocity[1] = -1.0,
-          .spin[2] = 4.0 * uniform(&state_of) - 2.0, .gravity[1] = -9.81);
-      disc.damping[0] = disc.damping[1] = seed == 2 ? 1.0 : 0.0;
+          .spin[2] = 4.0 * uniform(&state_of) - 2.0, .gravity[1] = -9.81,
+          .damping[0] = disc.damping[1] = seed == 2 ? 1.0 : 0.0);
       OK(mps_body_create_disc(context, &disc, 0.1, &body));
       DEF(contact, contact, .method = method, .friction = 0.4);
       OK(mps_mpm_add_contact(s.mpm, body, &contact, NULL));

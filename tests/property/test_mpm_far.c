@@ -13,13 +13,11 @@ static mpm_scene swing(int32_t geometry, int far, const double (*at)[3]) {
   for (int k = 0; k < far; k++) OK(mps_particles_append(s.particles, 1, at[k]));
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   const mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < mps_particles_count(s.particles) - far; k++)
-    for (int c = 0; c < dim; c++)
-      *mps_edit_f64(&v, k, c) = 2.0 * sin(7.0 * *mps_view_f64(&x, k, (c + 1) % dim));
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .geometry = geometry, .cell = 0.2, .dt = 5e-4);
-  mpm_scene_solve(&s, &def);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < mps_particles_count(s.particles) - far; k++)
+      for (int c = 0; c < dim; c++)
+        *mps_edit_f64(&v, k, c) = 2.0 * sin(7.0 * *mps_view_f64(&x, k, (c + 1) % dim));
+  USING(mpm, mpm_scene_solve(&s, &given), .geometry = geometry, .cell = 0.2, .dt = 5e-4);
   OK(mps_mpm_step(s.mpm, 100)); /* some of them sort */
   return s;
 }

@@ -9,17 +9,15 @@
 #define DEGREE 0.017453292519943295
 
 static mps_material *make_water(void) {
-  mps_material *out = NULL;
   DEF(material_newtonian, law, .bulk_modulus = 1e6, .no_tension = 1);
-  OK(mps_material_create_newtonian(context, &law, &out));
+  MAKE_KEPT(material, out, create_newtonian, context, &law);
   return out;
 }
 
 static mps_material *make_sand(double young, double cohesion) {
-  mps_material *out = NULL;
   DEF(material_mohr_coulomb, law, .young = young, .friction = 30.0 * DEGREE, .dilation = 0.0,
       .cohesion = cohesion);
-  OK(mps_material_create_mohr_coulomb(context, &law, &out));
+  MAKE_KEPT(material, out, create_mohr_coulomb, context, &law);
   return out;
 }
 
@@ -84,9 +82,8 @@ static heap collapse(double young, int32_t volumetric, int32_t spline) {
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
   mps_material_destroy(&s.material);
   s.material = make_sand(young, 0.0);
-  DEF(mpm, def, .cell = h, .spline = spline, .volumetric = volumetric, .budget = 1);
-  def.lower[0] = def.lower[1] = 0.0, def.gravity[1] = -9.81;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = h, .spline = spline, .volumetric = volumetric,
+        .budget = 1, .lower[0] = given.lower[1] = 0.0, .gravity[1] = -9.81);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
   OK(mps_mpm_run(s.mpm, 1.2, INT64_MAX, NULL, NULL));
   mps_mpm_energy_report l;
@@ -142,8 +139,7 @@ static mpm_scene step_rough(bool water, int32_t volumetric, int32_t geometry, in
   const double h = 0.1, lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.9, 1.1, 0.5};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * h, 0.0, 0.0, 1e6);
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
-  OK(mps_particles_set(s.particles, "stress", 0, 0.0));
-  OK(mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
+  SET_FIELDS(s.particles, {"stress", 0.0}, {"volume_ratio", 1.0});
   mps_material_destroy(&s.material);
   s.material = water ? make_water() : make_sand(1e6, 0.0);
   mps_edit stress = mpm_scene_edit(&s, "stress"), ratio = mpm_scene_edit(&s, "volume_ratio");
@@ -193,8 +189,7 @@ static double beside_plate(bool water, int32_t volumetric) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.5, 1.0);
   mpm_scene_box(&s, 0.55, 0.0, 1.0, 1.0);
-  OK(mps_particles_set(s.particles, "stress", 0, 0.0));
-  OK(mps_particles_set(s.particles, "volume_ratio", 0, 1.0));
+  SET_FIELDS(s.particles, {"stress", 0.0}, {"volume_ratio", 1.0});
   mps_material_destroy(&s.material);
   s.material = water ? make_water() : make_sand(1e6, 0.0);
   mps_edit stress = mpm_scene_edit(&s, "stress"), ratio = mpm_scene_edit(&s, "volume_ratio");
@@ -210,8 +205,7 @@ static double beside_plate(bool water, int32_t volumetric) {
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 1.0;
   mpm_scene_solve(&s, &def);
   DEF(body, at, .position[0] = 0.525, .position[1] = 0.5);
-  scoped_body *plate = NULL;
-  OK(mps_body_create_box(context, &at, 0.05, 1.4, &plate));
+  MAKE(body, plate, create_box, context, &at, 0.05, 1.4);
   mpm_scene_contact(&s, plate, 0.0);
   OK(mps_mpm_step(s.mpm, 97));
   mps_view p = mpm_scene_view(&s, "stress");
@@ -242,9 +236,8 @@ static mps_mpm_energy_report splash(int32_t volumetric, double *noise) {
   mps_material_destroy(&s.material);
   s.material = make_water();
   OK(mps_particles_set(s.particles, "density", 0, 1000.0));
-  DEF(mpm, def, .cell = h, .volumetric = volumetric, .budget = 1);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.5, def.gravity[1] = -9.81;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = h, .volumetric = volumetric, .budget = 1,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 1.5, .gravity[1] = -9.81);
   OK(mps_mpm_run(s.mpm, 0.8, INT64_MAX, NULL, NULL));
   mps_mpm_energy_report out;
   OK(mps_mpm_get_energy_report(s.mpm, &out));
@@ -279,10 +272,9 @@ TEST(ground_at_rest_does_not_move) {
       const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.5, .density = NAN};
       DEF(geostatic, rest, .layers = &layer, .layer_count = 1, .gravity = 9.81, .surface = 1.0);
       OK(mps_particles_set_geostatic(s.particles, &rest));
-      DEF(mpm, def, .cell = 0.1, .spline = spline, .gravity[1] = -9.81,
-          .volumetric = option == 0 ? MPS_MPM_VOLUMETRIC_POINT : MPS_MPM_VOLUMETRIC_BY_LAW);
-      def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
-      mpm_scene_solve(&s, &def);
+      USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .spline = spline, .gravity[1] = -9.81,
+            .volumetric = option == 0 ? MPS_MPM_VOLUMETRIC_POINT : MPS_MPM_VOLUMETRIC_BY_LAW,
+            .lower[0] = given.lower[1] = 0.0, .upper[0] = 2.0);
       double start[800];
       mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
       assert_int_equal(x.shape[0], 800);
@@ -316,14 +308,12 @@ static double creep(int32_t volumetric, double push) {
   const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.5, .density = NAN};
   DEF(geostatic, rest, .layers = &layer, .layer_count = 1, .gravity = 9.81, .surface = 0.5);
   OK(mps_particles_set_geostatic(s.particles, &rest));
-  DEF(mpm, def, .cell = h, .gravity[1] = -9.81, .volumetric = volumetric);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.2;
+  DEF(mpm, def, .cell = h, .gravity[1] = -9.81, .volumetric = volumetric,
+      .lower[0] = def.lower[1] = 0.0, .upper[0] = 1.2);
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   DEF(body, at, .motion = MPS_BODY_MOTION_FREE, .position[0] = 0.6, .position[1] = 0.55,
-      .gravity[1] = -9.81);
-  at.mass = weight / 9.81, at.inertia[2] = 0.1 * at.mass * width * width;
-  mps_body *block = NULL;
-  OK(mps_body_create_box(context, &at, width, 0.1, &block));
+      .gravity[1] = -9.81, .mass = weight / 9.81, .inertia[2] = 0.1 * at.mass * width * width);
+  MAKE(body, block, create_box, context, &at, width, 0.1);
   mpm_scene_contact(&s, block, 0.5);
   mps_body_state first, last;
   OK(mps_mpm_run(s.mpm, 0.5, INT64_MAX, NULL, NULL));
@@ -339,7 +329,6 @@ static double creep(int32_t volumetric, double push) {
                 push, (long long)mps_mpm_steps(s.mpm), 1e3 * (first.position[1] - last.position[1]),
                 1e3 * (0.55 - last.position[1]));
   mpm_scene_end(&s);
-  mps_body_destroy(&block);
   return first.position[1] - last.position[1];
 }
 
@@ -369,16 +358,13 @@ typedef enum choice {
 
 static mps_material *make_law(choice which) {
   mps_material *out = NULL;
-  mps_material_mohr_coulomb_def pyramid = mps_material_mohr_coulomb_defaults();
   mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   mps_material_von_mises_def mises = mps_material_von_mises_defaults();
-  mps_material_newtonian_def fluid = mps_material_newtonian_defaults();
-  pyramid.young = cone.young = mises.young = 1e6;
-  pyramid.friction = cone.friction = which == SAND || which == CONE ? 0.5 : 0.0;
-  pyramid.dilation = cone.dilation = which == SAND ? 0.2 : 0.0;
-  pyramid.cohesion = cone.cohesion = 100.0;
+  DEF(material_mohr_coulomb, pyramid, .young = cone.young = mises.young = 1e6,
+      .friction = cone.friction = which == SAND || which == CONE ? 0.5 : 0.0,
+      .dilation = cone.dilation = which == SAND ? 0.2 : 0.0, .cohesion = cone.cohesion = 100.0);
   mises.poisson = 0.3, mises.yield_stress = 200.0;
-  fluid.bulk_modulus = 1e6;
+  DEF(material_newtonian, fluid, .bulk_modulus = 1e6);
   mps_status status = MPS_OK;
   if (which == SAND || which == CLAY)
     status = mps_material_create_mohr_coulomb(context, &pyramid, &out);
@@ -445,15 +431,13 @@ static void strike_beside(bool beside, double (*stress)[4]) {
   mpm_scene_box(&s, 0.1, 0.0, 0.6, 0.5);
   if (beside) mpm_scene_box(&s, 2.1, 0.0, 2.6, 0.5);
   mpm_scene_affine(&s, v0, still);
-  DEF(mpm, def, .cell = 0.1, .lower[1] = 0.0, .dt = 2e-4);
   mps_material_destroy(&s.material);
   s.material = make_law(SAND);
-  mpm_scene_solve(&s, &def);
-  mps_material *water = make_law(WATER);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .lower[1] = 0.0, .dt = 2e-4);
+  scoped_material *water = make_law(WATER);
   int64_t ids[100];
   for (int k = 0; k < 100; k++) ids[k] = 100 + k;
   if (beside) OK(mps_mpm_set_material(s.mpm, water, ids, 100));
-  mps_material_destroy(&water);
   OK(mps_mpm_step(s.mpm, 40));
   mps_view all = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
   assert_int_equal(all.shape[0], beside ? 200 : 100);

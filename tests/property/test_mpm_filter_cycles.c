@@ -36,12 +36,10 @@ static void shake(int32_t spline, look *looks) {
   DEF(material_mohr_coulomb, law, .young = 1e6, .friction = 30.0 * DEGREE, .dilation = 0.0);
   OK(mps_material_create_mohr_coulomb(context, &law, &s.material));
   mpm_scene_weigh(&s, 9810.0, 0.5, depth);
-  DEF(mpm, def, .cell = h, .spline = spline);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width, def.gravity[1] = -9.81;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = h, .spline = spline,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = width, .gravity[1] = -9.81);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  scoped_signal *sine = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 2.0, 1.0, 0.0, &sine));
+  MAKE(signal, sine, create_sine, context, MPS_SIGNAL_QUANTITY_VALUE, 2.0, 1.0, 0.0);
   mps_view id = mpm_scene_view(&s, "id"), m = mpm_scene_view(&s, "mass");
   int64_t *ids = malloc((size_t)id.shape[0] * sizeof *ids);
   double *mass = malloc((size_t)id.shape[0] * sizeof *mass);

@@ -51,10 +51,9 @@ static mps_material_user_def define(cone *c) {
 }
 
 static mps_material *make_users(cone *c, int32_t frictional) {
-  mps_material *out = NULL;
   mps_material_user_def def = define(c);
   def.frictional = frictional;
-  OK(mps_material_create_user(context, &def, &out));
+  MAKE_KEPT(material, out, create_user, context, &def);
   return out;
 }
 
@@ -65,9 +64,8 @@ static mps_material_drucker_prager_def library_cone(void) {
 }
 
 static mps_material *make_library(void) {
-  mps_material *out = NULL;
   const mps_material_drucker_prager_def law = library_cone();
-  OK(mps_material_create_drucker_prager(context, &law, &out));
+  MAKE_KEPT(material, out, create_drucker_prager, context, &law);
   return out;
 }
 
@@ -82,9 +80,8 @@ static mpm_scene slump(mps_material *law, int32_t volumetric, set_up fields, voi
   mpm_scene_affine(&s, v0, squeeze);
   mps_material_destroy(&s.material), s.material = law;
   if (fields) fields(&s, data);
-  DEF(mpm, def, .cell = 0.1, .volumetric = volumetric, .lower[1] = 0.0, .dt = 2e-4,
-      .gravity[1] = -9.81);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .volumetric = volumetric, .lower[1] = 0.0,
+        .dt = 2e-4, .gravity[1] = -9.81);
   OK(mps_mpm_step(s.mpm, 500));
   return s;
 }
@@ -117,8 +114,7 @@ static void set_factors(mpm_scene *s, void *data) {
   const double *factor = data;
   OK(mps_particles_add_field(s->particles, "stiffness_factor", 1));
   OK(mps_particles_add_field(s->particles, "strength_factor", 1));
-  OK(mps_particles_set(s->particles, "stiffness_factor", 0, factor[0]));
-  OK(mps_particles_set(s->particles, "strength_factor", 0, factor[1]));
+  SET_FIELDS(s->particles, {"stiffness_factor", factor[0]}, {"strength_factor", factor[1]});
 }
 
 TEST(sand_by_field_is_filtered_as_sand) {

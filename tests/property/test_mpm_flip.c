@@ -4,7 +4,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define CELL 0.02 /* m */
 
 /* ---- a wave without forces ------------------------------------------------------------------- */
@@ -19,13 +18,11 @@ static double wet_energy_left(int32_t scheme, int32_t volumetric, double flip_ti
   mpm_scene_box(&s, 0.0, 0.0, width, width);
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t p = 0; p < x.shape[0]; p++)
-    *mps_edit_f64(&v, p, 1) = 1e-3 * cos(k * *mps_view_f64(&x, p, 0));
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = CELL, .dt = dt, .flip_time = flip_time, .lower[0] = 0.0, .upper[0] = width,
-      .volumetric = volumetric);
-  mpm_scene_solve(&s, &def);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t p = 0; p < x.shape[0]; p++)
+      *mps_edit_f64(&v, p, 1) = 1e-3 * cos(k * *mps_view_f64(&x, p, 0));
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = CELL, .dt = dt, .flip_time = flip_time,
+        .lower[0] = 0.0, .upper[0] = width, .volumetric = volumetric);
   DEF(pore_water, water, .scheme = scheme, .porosity = 0.4);
   if (scheme >= 0) OK(mps_mpm_add_pore_water(s.mpm, &water));
   OK(mps_mpm_step(s.mpm, 5)); /* slopes have become those of the wave */
@@ -81,9 +78,9 @@ static mps_totals shaken(int dim, double flip_time, mps_totals *start) {
   scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, -0.001, 1e5);
   OK(mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
-      .cell = CELL, .flip_time = flip_time);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given),
+        .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN, .cell = CELL,
+        .flip_time = flip_time);
   *start = mpm_scene_totals(&s);
   OK(mps_mpm_step(s.mpm, dim == 3 ? 300 : 1000));
   return mpm_scene_totals(&s);

@@ -66,8 +66,7 @@ TEST(loads_follow_particles) {
   mpm_scene_ball(&s, 0.0, 0.0, 0.1);
   const double v0[] = {3.0, 0.0}, L[] = {0.0, -20.0, 20.0, 0.0};
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .cell = 0.02);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
   const int64_t ids[] = {3, 100, 7};
   const double area[] = {0.1, -0.2, 0.3}, pull[] = {10.0, -20.0};
   int32_t load = -1;

@@ -1,17 +1,11 @@
 /* test_mpm_mirror.c - mirrored sides of the WLS-MPM solver: a roller is a mirror, also at corners
  * and where bodies cross it; what walls and bodies give is what the particles get, also of moving
  * walls; the energy budget closes. SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
 #include "mpm/base/mpm_solver.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 /* ---- half and whole -------------------------------------------------------------------------- */
 
@@ -35,30 +29,26 @@ static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, con
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++) { /* what all the mirrors have */
-    double at[3] = {0.0};
-    for (int c = 0; c < dim; c++) at[c] = *mps_view_f64(&x, k, c);
-    for (int c = 0; c < dim; c++)
-      *mps_edit_f64(&v, k, c) =
-          c == 1 ? cos(20.0 * at[0]) * sin(9.0 * at[1]) * cos(15.0 * at[2])
-                 : sin(12.0 * at[c]) * cos(7.0 * at[1]) * (c == 0 ? cos(8.0 * at[2]) : 1.0);
-  }
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) { /* what all the mirrors have */
+      double at[3] = {0.0};
+      for (int c = 0; c < dim; c++) at[c] = *mps_view_f64(&x, k, c);
+      for (int c = 0; c < dim; c++)
+        *mps_edit_f64(&v, k, c) =
+            c == 1 ? cos(20.0 * at[0]) * sin(9.0 * at[1]) * cos(15.0 * at[2])
+                   : sin(12.0 * at[c]) * cos(7.0 * at[1]) * (c == 0 ? cos(8.0 * at[2]) : 1.0);
+    }
   DEF(mpm, def, .geometry = geometry, .spline = spline, .volumetric = volumetric,
-      .cell = 2.0 * spacing);
-  def.dt = 0.2 * def.cell / sqrt(1e5 * 0.7 / (1.3 * 0.4) / 1000.0);
+      .cell = 2.0 * spacing, .dt = 0.2 * def.cell / sqrt(1e5 * 0.7 / (1.3 * 0.4) / 1000.0));
   for (int c = 0; c < dim; c++)
     if (c == 1 || cut >> c & 1) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   if (b->radius == 0.0) return s;
   scoped_body *ball = NULL;
-  mps_body_def body = mps_body_defaults();
-  scoped_signal *down = NULL;
   const double t[] = {0.0, 1.0}, way[] = {0.0, -0.5}; /* s, m */
-  body.position[1] = 0.2 + b->radius + 0.5 * spacing;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t, way, &down));
+  DEF(body, body, .position[1] = 0.2 + b->radius + 0.5 * spacing);
+  MAKE(signal, down, create_table, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t, way);
   OK(dim == 3 ? mps_body_create_sphere(context, &body, b->radius, &ball)
               : mps_body_create_disc(context, &body, b->radius, &ball));
   OK(mps_body_drive(ball, 1, down, 1.0));
@@ -179,16 +169,14 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   OK(mps_particles_add_field(s.particles, "velocity", 0));
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < v.view.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.5, 0.5);
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++)
+      for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.5, 0.5);
   DEF(mpm, def, .geometry = geometry, .spline = spline, .budget = budget, .cell = 0.02);
   for (int c = 0; c < dim; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
   def.gravity[0] = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 3.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 0.0005, 0.3, &signal));
+  MAKE(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 20.0, 0.0005, 0.3);
   mpm_scene_side(&s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mpm_scene_side(&s, MPS_SIDE_Y_UPPER, MPS_BOUNDARY_FRICTIONAL, 0.2);
@@ -197,16 +185,14 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
     mpm_scene_drive(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 1.0);
     if (dim == 3) mpm_scene_drive(&s, MPS_SIDE_Z_LOWER, MPS_BOUNDARY_HELD, 0.0, 1, signal, -0.5);
   }
-  mps_signal_destroy(&signal);
   if (!body) return s;
   scoped_body *ball = NULL;
   DEF(body, at, .position[0] = 0.4, .position[2] = dim == 3 ? 0.01 : 0.0);
-  DEF(contact, contact, .friction = 0.4,
-      .method = body == 1 ? MPS_CONTACT_METHOD_PENALTY : MPS_CONTACT_METHOD_IMPULSE,
-      .inside = MPS_CONTACT_INSIDE_REMOVE);
   OK(dim == 3 ? mps_body_create_sphere(context, &at, 0.05, &ball)
               : mps_body_create_disc(context, &at, 0.05, &ball));
-  OK(mps_mpm_add_contact(s.mpm, ball, &contact, NULL));
+  USING(contact, mps_mpm_add_contact(s.mpm, ball, &given, NULL), .friction = 0.4,
+        .method = body == 1 ? MPS_CONTACT_METHOD_PENALTY : MPS_CONTACT_METHOD_IMPULSE,
+        .inside = MPS_CONTACT_INSIDE_REMOVE);
   return s;
 }
 

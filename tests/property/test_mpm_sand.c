@@ -17,14 +17,13 @@ typedef struct sand {
 static mps_material *make_sand(mps_context *own, const sand *c) {
   mps_material *out = NULL;
   if (c->cone) {
-    DEF(material_drucker_prager, law, .young = 1e8, .friction = 30.0 * DEGREE,
-        .dilation = c->dilation * DEGREE, .cohesion = 1e4);
-    OK(mps_material_create_drucker_prager(own, &law, &out));
+    USING(material_drucker_prager, mps_material_create_drucker_prager(own, &given, &out),
+          .young = 1e8, .friction = 30.0 * DEGREE, .dilation = c->dilation * DEGREE,
+          .cohesion = 1e4);
     return out;
   }
-  DEF(material_mohr_coulomb, law, .young = 1e8, .friction = 30.0 * DEGREE,
-      .dilation = c->dilation * DEGREE, .cohesion = 1e4);
-  OK(mps_material_create_mohr_coulomb(own, &law, &out));
+  USING(material_mohr_coulomb, mps_material_create_mohr_coulomb(own, &given, &out), .young = 1e8,
+        .friction = 30.0 * DEGREE, .dilation = c->dilation * DEGREE, .cohesion = 1e4);
   return out;
 }
 
@@ -57,10 +56,8 @@ static mpm_scene begin(mps_context *own, const sand *c, mps_body **strip) {
   else
     OK(mps_body_create_polygon(own, &body, 4, corners, strip));
   const double t[] = {0.0, 1.0}, v[] = {-0.1, -0.1};
-  mps_signal *down = NULL;
-  OK(mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down));
+  MAKE(signal, down, create_table, own, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
   OK(mps_body_drive(*strip, 1, down, 1.0));
-  mps_signal_destroy(&down);
   mpm_scene_contact(&s, *strip, 0.5);
   return s;
 }
@@ -132,7 +129,7 @@ TEST(threads_and_restarts_change_nothing) {
     mps_body *strip[2] = {NULL, NULL};
     scoped_context *other = test_context(MPS_CONTEXT_EXECUTOR_THREADS, 3);
     mpm_scene one = begin(context, &c, &strip[0]), three = begin(other, &c, &strip[1]);
-    mps_snapshot *snapshot = NULL;
+    scoped_snapshot *snapshot = NULL;
     OK(mps_mpm_step(one.mpm, 93));
     OK(mps_mpm_step(three.mpm, 43)); /* 43 = 5 x 8 + 3 */
     OK(mps_mpm_snapshot(three.mpm, &snapshot));
@@ -140,7 +137,6 @@ TEST(threads_and_restarts_change_nothing) {
     OK(mps_mpm_rollback(three.mpm, snapshot));
     OK(mps_mpm_step(three.mpm, 50));
     for (int f = 0; f < 6; f++) same_field(&one, &three, fields[f]);
-    mps_snapshot_destroy(&snapshot);
     end(&one, &strip[0]);
     end(&three, &strip[1]);
   }

@@ -10,12 +10,10 @@
 #define WIDTH 0.2
 #define SHEAR 1e6 /* Pa; of density 1000: Vs = sqrt(1000) m/s */
 #define STRAIN_R 1e-3
-#define PI 3.14159265358979323846
 
 static mps_material *make_small(void) {
   DEF(material_small_strain, def, .shear_modulus = SHEAR, .reference_strain = STRAIN_R);
-  mps_material *m = NULL;
-  OK(mps_material_create_small_strain(context, &def, &m));
+  MAKE_KEPT(material, m, create_small_strain, context, &def);
   return m;
 }
 
@@ -28,7 +26,6 @@ static mpm_scene column(double gamma, bool small) {
     s.material = make_small();
   }
   mpm_scene_box(&s, 0.5, 0.0, 0.5 + WIDTH, HEIGHT);
-  DEF(mpm, def, .cell = 0.1, .lower[1] = 0.0, .budget = 1, .dt = 2e-4);
   const double k = PI / (2.0 * HEIGHT), speed = gamma * sqrt(SHEAR / 1000.0);
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   OK(mps_particles_add_field(s.particles, "velocity_gradient", 0));
@@ -41,7 +38,7 @@ static mpm_scene column(double gamma, bool small) {
   }
   mpm_scene_commit(&s, &v);
   mpm_scene_commit(&s, &L);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .lower[1] = 0.0, .budget = 1, .dt = 2e-4);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double lower[2] = {-1.0, -1.0}, upper[2] = {3.0, 3.0};
   mps_mpm_boundary_def still = mpm_scene_box_def(s.mpm, lower, upper, 1, NULL, 1.0);
@@ -117,7 +114,7 @@ TEST(the_budget_knows_the_loops) {
 /* The deviators of the layers belong to the state. */
 TEST(snapshots_and_files_continue_bit_for_bit) {
   scoped_mpm_scene s = column(2.0 * STRAIN_R, true), other = column(1e-6, true);
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   static const char path[] = TEST_TMP "/small_strain.h5";
   OK(mps_mpm_step(s.mpm, 150));
   OK(mps_mpm_snapshot(s.mpm, &snapshot));
@@ -133,7 +130,6 @@ TEST(snapshots_and_files_continue_bit_for_bit) {
     OK(mps_mpm_step(other.mpm, 200));
     NEAR(top_of(&other), once, 0.0);
   }
-  mps_snapshot_destroy(&snapshot);
   (void)remove(path);
 }
 

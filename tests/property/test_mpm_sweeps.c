@@ -15,9 +15,8 @@ static int32_t sides = MPS_BOUNDARY_ROLLER;
 static press make_press(int32_t sweeps, double tolerance) {
   press p = {.s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6)};
   mpm_scene_box(&p.s, 0.0, 0.0, 0.2, 0.1);
-  DEF(mpm, def, .cell = 0.02, .origin[1] = 0.005, .lower[0] = 0.0, .upper[0] = 0.2,
-      .lower[1] = -0.095, .upper[1] = 0.205);
-  mpm_scene_solve(&p.s, &def);
+  USING(mpm, mpm_scene_solve(&p.s, &given), .cell = 0.02, .origin[1] = 0.005, .lower[0] = 0.0,
+        .upper[0] = 0.2, .lower[1] = -0.095, .upper[1] = 0.205);
   for (int32_t side = MPS_SIDE_X_LOWER; side <= MPS_SIDE_X_UPPER; side++)
     mpm_scene_side(&p.s, side, sides, 0.0);
   const double up[] = {0.0, 1.0}, down[] = {0.0, -1.0};
@@ -89,9 +88,8 @@ static double drag(double damping, double *sticks) {
   const double mu = 0.22, up[] = {0.0, 1.0}, down[] = {0.0, -1.0};
   mpm_scene s = mpm_scene_begin(context, 0.005, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  DEF(mpm, def, .cell = 0.01, .origin[1] = 0.0025, .viscous_damping = damping, .lower[0] = 0.0,
-      .upper[0] = 0.1);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.01, .origin[1] = 0.0025,
+        .viscous_damping = damping, .lower[0] = 0.0, .upper[0] = 0.1);
   mps_body *body[2] = {NULL, NULL};
   mps_contact *contact[2] = {NULL, NULL};
   for (int b = 0; b < 2; b++) {
@@ -195,9 +193,8 @@ TEST(bad_tolerances_are_refused) {
   const double bad[] = {-1e-3, 1.0, INFINITY};
   SCOPED(end_press) press p = make_press(0, NAN);
   mps_body_def at = mps_body_defaults();
-  scoped_body *disc = NULL;
   at.position[0] = 10.0, at.position[1] = 0.05; /* between the two */
-  OK(mps_body_create_disc(context, &at, 0.02, &disc));
+  MAKE(body, disc, create_disc, context, &at, 0.02);
   for (int k = 0; k < 3; k++) {
     DEF(contact, contact, .tolerance = bad[k]);
     REFUSES(mps_mpm_add_contact(p.s.mpm, disc, &contact, NULL), "must be >= 0 and below 1");

@@ -1,15 +1,9 @@
 /* test_neighbours.c - neighbour lists of every kind of cloud against all pairs, with every number
  * of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "pthread_executor.h"
 #include "test_common.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 enum { SIZE = 4500 }; /* above one block of work */
 
@@ -37,16 +31,12 @@ static void make_cloud(cloud kind, int32_t dim, int64_t n, double *x) {
 
 static mps_neighbours *lists_of(mps_context *context, const double *x, int64_t n, int32_t dim,
                                 double radius, int32_t half) {
-  mps_neighbours_def def = mps_neighbours_defaults();
-  mps_neighbours *nb = NULL;
   const mps_view view = {.data = (void *)(uintptr_t)x,
                          .shape = {n, dim, 1},
                          .stride = {dim, 1, 1},
                          .dtype = {2, 64, 1}};
-  def.dim = dim;
-  def.radius = radius;
-  def.half = half;
-  OK(mps_neighbours_create(context, &def, &nb));
+  DEF(neighbours, def, .dim = dim, .radius = radius, .half = half);
+  MAKE_KEPT(neighbours, nb, create, context, &def);
   OK(mps_neighbours_build(nb, &view));
   return nb;
 }
@@ -76,8 +66,7 @@ static int64_t check_against_all_pairs(const mps_neighbours *nb, const double *x
   return found;
 }
 
-TEST(lists_are_those_of_all_pairs) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(lists_are_those_of_all_pairs) {
   double *x = malloc(3 * SIZE * sizeof *x);
   assert_non_null(x);
   for (int32_t kind = 0; kind < CLOUDS; kind++)
@@ -87,9 +76,8 @@ TEST(lists_are_those_of_all_pairs) {
       const int64_t n = kind == LATTICE || kind == UNIFORM ? SIZE : 700;
       make_cloud((cloud)kind, dim, n, x);
       for (int32_t half = 0; half < 2; half++) {
-        mps_neighbours *nb = lists_of(context, x, n, dim, radius, half);
+        scoped_neighbours *nb = lists_of(context, x, n, dim, radius, half);
         pairs[half] = check_against_all_pairs(nb, x, n, dim, radius, half, cloud_names[kind]);
-        mps_neighbours_destroy(&nb);
       }
       assert_int_equal(pairs[0], 2 * pairs[1]);
       /* At radius 1 the lattice has no pair: the nearest are at the radius itself. */
@@ -100,8 +88,7 @@ TEST(lists_are_those_of_all_pairs) {
 
 /* Neighbours closer than the radius by one rounding error, all the way across the cells, near
  * zero and far from it: cells must not lose them. */
-TEST(pairs_just_inside_the_radius_are_found_everywhere) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(pairs_just_inside_the_radius_are_found_everywhere) {
   const double places[] = {0.0, -1.0, 1.0 / 3.0, 1e3, -1e6 - 0.1, 1e9 + 0.7};
   const double radius = 0.1;
   for (int p = 0; p < 6; p++)
@@ -110,13 +97,12 @@ TEST(pairs_just_inside_the_radius_are_found_everywhere) {
       double b = a + radius;
       while (!((b - a) * (b - a) < radius * radius)) b -= fmax(fabs(a), radius) * 0x1p-52;
       const double xy[] = {0.0, 0.0, a, a, b, a}; /* cells are counted from one of the three */
-      mps_neighbours *nb = lists_of(context, xy, 3, 2, radius, 1);
+      scoped_neighbours *nb = lists_of(context, xy, 3, 2, radius, 1);
       check_against_all_pairs(nb, xy, 3, 2, radius, 1, "edge");
       int64_t n;
       const int64_t *offsets;
       OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
       assert_true(offsets[3] - offsets[1] == 1);
-      mps_neighbours_destroy(&nb);
     }
 }
 
@@ -128,7 +114,7 @@ TEST(lists_do_not_depend_on_the_threads) {
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int32_t half = 0; half < 2; half++) {
       make_cloud(UNIFORM, dim, n, x);
-      mps_neighbours *expected = lists_of(serial, x, n, dim, 0.4, half);
+      scoped_neighbours *expected = lists_of(serial, x, n, dim, 0.4, half);
       const int64_t *offsets, *indices, *other_offsets, *other_indices;
       OK(mps_neighbours_lists(expected, NULL, &offsets, &indices));
       for (int t = 0; t < 4; t++) {
@@ -136,14 +122,12 @@ TEST(lists_do_not_depend_on_the_threads) {
         const mps_context_def def = pthread_executor_def(&threads);
         scoped_context *context = NULL;
         assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
-        mps_neighbours *nb = lists_of(context, x, n, dim, 0.4, half);
+        scoped_neighbours *nb = lists_of(context, x, n, dim, 0.4, half);
         OK(mps_neighbours_lists(nb, NULL, &other_offsets, &other_indices));
         assert_memory_equal(offsets, other_offsets, (size_t)(n + 1) * sizeof *offsets);
         assert_memory_equal(indices, other_indices, (size_t)offsets[n] * sizeof *indices);
-        mps_neighbours_destroy(&nb);
       }
       assert_true(offsets[n] > 3000);
-      mps_neighbours_destroy(&expected);
     }
   free(x);
 }

@@ -2,14 +2,8 @@
  * driven rotations, and what a free body keeps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/body_internal.h"
+#include "kit/random.h"
 #include "test_fixture.h"
-
-static uint64_t seed = 1;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 static double dot(const double *a, const double *b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -77,8 +71,7 @@ TEST(solids_of_revolution) {
     const double *rz;
   } list[] = {{4, pile}, {6, pipe}};
   for (int k = 0; k < 2; k++) {
-    scoped_body *body = NULL;
-    OK(mps_body_create_revolution(context, NULL, list[k].n, list[k].rz, &body));
+    MAKE(body, body, create_revolution, context, NULL, list[k].n, list[k].rz);
     for (int p = 0; p < 2000; p++) {
       const double near = p % 5 == 0 ? 1e-3 : 1.0; /* some near the axis */
       const double x[3] = {near * uniform(-1, 1), near * uniform(-1, 1), uniform(-1, 1)};
@@ -158,8 +151,7 @@ TEST(parallel_surfaces_narrow) {
 
 /* At the tip of a cone, and above it on the axis, the normal is the axis. */
 TEST(tip_of_a_cone) {
-  scoped_body *body = NULL;
-  OK(mps_body_create_revolution(context, NULL, 4, pile, &body));
+  MAKE(body, body, create_revolution, context, NULL, 4, pile);
   const double x[6] = {0.0, 0.0, -0.5, 0.0, 0.0, -0.7};
   double d[2], n[6];
   OK(mps_body_distance(body, 2, x, d, n, NULL, NULL));
@@ -179,11 +171,10 @@ static bool overlap(int one, int two, double by, double turn) {
   mps_body *body[2] = {NULL};
   for (int k = 0; k < 2; k++) {
     const int what = k ? two : one;
-    mps_body_def def = mps_body_defaults();
     const double shift = (k ? -1.0 : 1.0) * (what == 1 ? 0.5 : 0.0) + (k ? by : 0.0);
     const double angle = turn + (what == 0 && k ? 4.0 * atan(1.0) : 0.0);
-    def.position[0] = shift * cos(turn), def.position[1] = shift * sin(turn);
-    def.rotation[2] = angle;
+    DEF(body, def, .position[0] = shift * cos(turn), .position[1] = shift * sin(turn),
+        .rotation[2] = angle);
     if (what == 0) OK(mps_body_create_polygon(context, &def, 4, square, &body[k]));
     if (what == 1) OK(mps_body_create_disc(context, &def, 0.5, &body[k]));
     if (what == 2) OK(mps_body_create_half_plane(context, &def, left, &body[k]));
@@ -228,8 +219,7 @@ TEST(overlap_in_space) {
 }
 
 TEST(thickness_of_walls) {
-  scoped_body *body = NULL;
-  OK(mps_body_create_box(context, NULL, 2.0, 0.1, &body));
+  MAKE(body, body, create_box, context, NULL, 2.0, 0.1);
   NEAR(mpsi_body_thickness(body), 0.1, 1e-12);
   mps_body_destroy(&body);
   const double wedge[] = {0.0, 0.0, 1.0, 0.0, 0.5, 0.8}; /* corners of 58, 58 and 64 degrees */
@@ -252,8 +242,7 @@ TEST(thickness_of_walls) {
  * the velocity of a point fixed to the body against the change of its place. */
 TEST(turns_as_driven) {
   DEF(body, def, .rotation[0] = 0.4, .rotation[1] = -0.3, .rotation[2] = 1.9, .position[1] = 2.0);
-  scoped_body *body = NULL;
-  OK(mps_body_create_sphere(context, &def, 1.0, &body));
+  MAKE(body, body, create_sphere, context, &def, 1.0);
   for (int c = 0; c < 6; c++) {
     scoped_signal *sine = NULL;
     OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.3 + 0.1 * c, 0.4, 0.0,
@@ -309,8 +298,7 @@ static mps_body *free_body(const double *inertia, const double *spin) {
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 1.0, .rotation[0] = 0.7,
       .rotation[2] = -0.2);
   for (int c = 0; c < 3; c++) def.inertia[c] = inertia[c], def.spin[c] = spin[c];
-  mps_body *body = NULL;
-  OK(mps_body_create_sphere(context, &def, 1.0, &body));
+  MAKE_KEPT(body, body, create_sphere, context, &def, 1.0);
   return body;
 }
 
@@ -319,7 +307,7 @@ TEST(tumbling_keeps_momentum_and_energy) {
   const double inertia[3] = {1.0, 2.0, 3.0}, spin[3] = {0.1, 4.0, 2.5};
   double swing[2];
   for (int k = 0; k < 2; k++) { /* and with half the step */
-    mps_body *body = free_body(inertia, spin);
+    scoped_body *body = free_body(inertia, spin);
     mps_body_state s = get_state(body);
     double L0[3], E0, L[3], E, worst = 0.0, drift = 0.0, lowest = 1.0, highest = -1.0;
     momentum_and_energy(&s, inertia, L0, &E0);
@@ -340,7 +328,6 @@ TEST(tumbling_keeps_momentum_and_energy) {
     NEAR(worst, 0.0, 1e-12 * sqrt(dot(L0, L0)));
     assert_true(drift < 2e-5);
     swing[k] = drift;
-    mps_body_destroy(&body);
   }
   assert_true(swing[1] < 0.3 * swing[0]); /* second order */
 }
@@ -368,8 +355,7 @@ TEST(top_precesses_exactly) {
 TEST(reactions_move_a_free_body) {
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 2.0, .inertia[0] = 0.5, .inertia[1] = 0.8,
       .inertia[2] = 1.1, .gravity[2] = -9.81);
-  scoped_body *body = NULL;
-  OK(mps_body_create_cylinder(context, &def, 0.3, 1.0, &body));
+  MAKE(body, body, create_cylinder, context, &def, 0.3, 1.0);
   OK(mps_body_name_part(body, "side", 2, 1, NULL));
   const double force[3] = {1.0, 2.0, 3.0}, moment[3] = {0.1, -0.2, 0.3}, dt = 1e-3;
   OK(mps_body_set_load(body, force, moment));

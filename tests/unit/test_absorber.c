@@ -7,7 +7,6 @@
 
 #include <complex.h>
 
-#define PI 3.14159265358979323846
 #define G 9.81
 
 static double period_of(double kd, double depth) {
@@ -15,8 +14,7 @@ static double period_of(double kd, double depth) {
 }
 
 static mps_absorber *make(const mps_absorber_def *def) {
-  mps_absorber *a = NULL;
-  OK(mps_absorber_create(context, def, &a));
+  MAKE_KEPT(absorber, a, create, context, def);
   return a;
 }
 
@@ -26,7 +24,7 @@ static mps_absorber *make(const mps_absorber_def *def) {
 static double reflect(int32_t form, double kd, double depth, double limit, int64_t *limited) {
   DEF(absorber, def, .form = form, .depth = depth, .period = period_of(kd, depth),
       .acceleration = limit);
-  mps_absorber *end = make(&def);
+  scoped_absorber *end = make(&def);
   double far, near;
   far = theory_far(def.period, depth, G), near = theory_near(def.period, depth, G);
   const double a = 0.01, w = 2.0 * PI / def.period, dt = def.period / 10000.0;
@@ -48,7 +46,6 @@ static double reflect(int32_t form, double kd, double depth, double limit, int64
   const double R = cabs(a + I * far * X) / a;
   printf("form %d, kd %.1f: reflection %.4f, theory %.4f\n", form, kd, R, expected);
   if (isnan(limit)) NEAR(R, expected, 0.003);
-  mps_absorber_destroy(&end);
   return R;
 }
 
@@ -70,7 +67,7 @@ TEST(theory_has_its_closed_form) {
   static const double kd[] = {0.5, 1.0, 2.0}, R[] = {0.020, 0.066, 0.168};
   for (int n = 0; n < 3; n++) {
     DEF(absorber, def, .depth = 0.4, .period = period_of(kd[n], 0.4), .leak = 0.0);
-    mps_absorber *a = make(&def);
+    scoped_absorber *a = make(&def);
     double r;
     OK(mps_absorber_get_reflection(a, def.period, &r));
     NEAR(r, R[n], 6e-4);
@@ -79,7 +76,6 @@ TEST(theory_has_its_closed_form) {
     a = make(&def);
     OK(mps_absorber_get_reflection(a, def.period, &r));
     NEAR(r, 0.0, 1e-9);
-    mps_absorber_destroy(&a);
   }
 }
 
@@ -109,10 +105,9 @@ TEST(pistons_do_not_run_away_together) {
  * stroke. */
 TEST(the_sea_asked_for_is_made) {
   DEF(waves, sea, .depth = 0.4, .height = 0.05, .period = 1.4);
-  mps_waves *w = NULL;
-  OK(mps_waves_create(context, &sea, &w));
+  MAKE(waves, w, create, context, &sea);
   DEF(absorber, def, .depth = 0.4, .waves = w, .stroke = 0.2);
-  mps_absorber *a = make(&def);
+  scoped_absorber *a = make(&def);
   double s = 0.0, u = 0.0;
   const double dt = 1e-3;
   for (int n = 0; n < 8000; n++) {
@@ -131,13 +126,11 @@ TEST(the_sea_asked_for_is_made) {
   mps_absorber_report r;
   OK(mps_absorber_get_report(a, &r));
   assert_true(r.limited > 0 && s > 0.1);
-  mps_absorber_destroy(&a);
-  mps_waves_destroy(&w);
 }
 
 TEST(memory_continues_bit_for_bit) {
   DEF(absorber, def, .form = MPS_ABSORBER_FORM_TUNED, .depth = 0.4, .period = 1.3);
-  mps_absorber *one = make(&def), *two = make(&def);
+  scoped_absorber *one = make(&def), *two = make(&def);
   double s, u, other[2], memory[MPS_ABSORBER_MEMORY];
   for (int n = 0; n < 500; n++)
     OK(mps_absorber_advance(one, 0.01 * n, 0.01, 0.02 * sin(0.05 * n), &s, &u));
@@ -153,13 +146,11 @@ TEST(memory_continues_bit_for_bit) {
   FAILS(mps_absorber_set_memory(two, memory), MPS_ERROR_FORMAT, "values[1]");
   memory[1] = 0.0, memory[0] = 3.0;
   FAILS(mps_absorber_set_memory(two, memory), MPS_ERROR_FORMAT, "stroke");
-  mps_absorber_destroy(&one);
-  mps_absorber_destroy(&two);
 }
 
 TEST(wrong_steps_are_refused) {
   DEF(absorber, def, .depth = 0.4, .period = 1.3);
-  mps_absorber *a = make(&def);
+  scoped_absorber *a = make(&def);
   double s = 7.0, u = 7.0;
   REFUSES(mps_absorber_advance(a, 0.0, 0.0, 0.0, &s, &u), "dt");
   REFUSES(mps_absorber_advance(a, NAN, 0.1, 0.0, &s, &u), "t is");
@@ -167,7 +158,6 @@ TEST(wrong_steps_are_refused) {
   assert_true(s == 7.0 && u == 7.0);
   OK(mps_absorber_advance(a, 0.0, 0.1, NAN, &s, &u)); /* no surface */
   assert_true(s == 0.0 && u == 0.0);
-  mps_absorber_destroy(&a);
 }
 
 /* ---- separation ------------------------------------------------------------------------------ */
@@ -184,7 +174,6 @@ static const int waves[WAVES] = {25, 31, 40}; /* cycles in 40 s */
 
 /* Uneven times; levels of incident and reflected waves with phases. */
 static mps_separation_def fill(field *f) {
-  mps_separation_def def = mps_separation_defaults();
   for (int64_t n = 0; n < SAMPLES; n++) {
     f->times[n] = 41.0 * (n + 0.3 * sin(7.0 * n)) / SAMPLES - 0.1;
     for (int p = 0; p < GAUGES; p++) {
@@ -198,9 +187,8 @@ static mps_separation_def fill(field *f) {
       f->levels[n * GAUGES + p] = eta;
     }
   }
-  def.gauges = GAUGES, def.depth = 0.5, def.position = gauge;
-  def.samples = SAMPLES, def.times = f->times, def.levels = f->levels;
-  def.from = 0.5, def.to = 40.5, def.lower = 0.4, def.upper = 1.2;
+  DEF(separation, def, .gauges = GAUGES, .depth = 0.5, .position = gauge, .samples = SAMPLES,
+      .times = f->times, .levels = f->levels, .from = 0.5, .to = 40.5, .lower = 0.4, .upper = 1.2);
   return def;
 }
 

@@ -29,16 +29,14 @@ static mps_contact *touch(mpm_scene *s, mps_body *body) {
 static mps_body *half_at(double x, double normal) {
   DEF(body, def, .position[0] = x);
   const double n[] = {normal, 0.0};
-  mps_body *body = NULL;
-  OK(mps_body_create_half_plane(context, &def, n, &body));
+  MAKE_KEPT(body, body, create_half_plane, context, &def, n);
   return body;
 }
 
 /* A plate across x, its middle at 0. */
 static mps_body *plate_of(double thickness, double height) {
   mps_body_def def = mps_body_defaults();
-  mps_body *plate = NULL;
-  OK(mps_body_create_box(context, &def, thickness, height, &plate));
+  MAKE_KEPT(body, plate, create_box, context, &def, thickness, height);
   return plate;
 }
 
@@ -168,14 +166,11 @@ TEST(ground_is_whole_past_an_end) {
   scoped_mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, 0.0, 1e6);
   add_rows(&s, -0.002, -1, 8, 16, 1);
   add_rows(&s, 0.002, 1, 8, 16, 1);
-  DEF(mpm, def, .cell = CELL);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = CELL);
   DEF(body, body, .position[1] = 0.08 + 0.25, .motion = MPS_BODY_MOTION_FREE, .mass = 1.0,
       .inertia[2] = 0.02, .velocity[0] = 0.5);
-  scoped_body *plate = NULL;
-  OK(mps_body_create_box(context, &body, 0.004, 0.5, &plate));
-  DEF(contact, rough, .friction = 0.5);
-  OK(mps_mpm_add_contact(s.mpm, plate, &rough, NULL));
+  MAKE(body, plate, create_box, context, &body, 0.004, 0.5);
+  USING(contact, mps_mpm_add_contact(s.mpm, plate, &given, NULL), .friction = 0.5);
   const double mass = 256 * 1000.0 * SPACING * SPACING;
   OK(mps_mpm_step(s.mpm, 200));
   mps_body_state at;
@@ -203,8 +198,7 @@ TEST(a_plate_that_left_is_gone) {
   for (int plates = 0; plates < 2; plates++) {
     scoped_mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, 0.0, 1e6);
     add_rows(&s, -0.02, -1, 8, 16, 1);
-    DEF(mpm, def, .cell = CELL, .gravity[1] = -9.81);
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = CELL, .gravity[1] = -9.81);
     scoped_body *plate = plates ? plate_of(0.1 * CELL, 2.0) : NULL;
     if (plate) OK(mps_mpm_add_contact(s.mpm, plate, NULL, NULL));
     OK(mps_mpm_set_dt(s.mpm, 2e-4));

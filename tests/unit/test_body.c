@@ -29,8 +29,7 @@ TEST(refuses_bad_definitions) {
 
 TEST(refuses_what_a_plane_has_not) {
   scoped_body *body = NULL;
-  DEF(body, def, .motion = MPS_BODY_MOTION_FREE);
-  def.mass = def.inertia[2] = 1.0;
+  DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = def.inertia[2] = 1.0);
   REFUSES(
       mps_body_create_sphere(context, &def, 1.0, &body),
       "inertia[0] is nan kg m2, must be in 1e-30 to 1e+30 where motion is MPS_BODY_MOTION_FREE");
@@ -58,8 +57,7 @@ TEST(refuses_bad_solids) {
 }
 
 TEST(refuses_bad_calls) {
-  mps_body *body = NULL;
-  OK(mps_body_create_polygon(context, NULL, 4, square, &body));
+  MAKE_KEPT(body, body, create_polygon, context, NULL, 4, square);
   mps_body_state s;
   mps_reaction r;
   const double force[] = {1.0, 2.0, 0.0}, bad[] = {0.0, INFINITY};
@@ -89,8 +87,7 @@ TEST(refuses_bad_calls) {
 }
 
 TEST(names_parts) {
-  scoped_body *body = NULL;
-  OK(mps_body_create_polygon(context, NULL, 4, square, &body));
+  MAKE(body, body, create_polygon, context, NULL, 4, square);
   int32_t tip, side;
   OK(mps_body_name_part(body, "tip", 0, 1, &tip));
   OK(mps_body_name_part(body, "side", 3, 2, &side)); /* 3 and 0 */
@@ -116,8 +113,7 @@ TEST(follows_signals) {
   OK(mps_signal_create_ramp(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 1.0, 2.0, &ramp));
   OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.25, 0.5, 0.0, &sine));
   DEF(body, def, .position[0] = 1.0, .rotation[2] = 0.3);
-  scoped_body *body = NULL;
-  OK(mps_body_create_box(context, &def, 4.0, 2.0, &body));
+  MAKE(body, body, create_box, context, &def, 4.0, 2.0);
   OK(mps_body_drive(body, 1, ramp, -1.0));
   OK(mps_body_drive(body, 5, sine, 1.0));
   REFUSES(mps_body_drive(body, 5, sine, 1e300), "factor is 1e+300"); /* and nothing has changed */
@@ -146,8 +142,7 @@ TEST(follows_signals) {
 TEST(falls_freely) {
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 2.0, .inertia[2] = 0.5, .velocity[0] = 3.0,
       .spin[2] = 1.0, .gravity[1] = -10.0);
-  scoped_body *body = NULL;
-  OK(mps_body_create_disc(context, &def, 1.0, &body));
+  MAKE(body, body, create_disc, context, &def, 1.0);
   const double force[] = {4.0, 0.0, 0.0}, moment[] = {0.0, 0.0, 0.25};
   OK(mps_body_set_load(body, force, moment));
   FAILS(mps_body_drive(body, 0, NULL, 1.0), MPS_ERROR_STATE, "follows no");
@@ -165,11 +160,9 @@ TEST(falls_freely) {
 
 /* A servo: placed, then moved on by velocity and spin until it is set again. */
 TEST(moves_from_outside) {
-  scoped_body *body = NULL;
   mps_body_state s;
-  mps_signal *ramp = NULL;
-  OK(mps_signal_create_ramp(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 1.0, 2.0, &ramp));
-  OK(mps_body_create_box(context, NULL, 4.0, 2.0, &body));
+  MAKE_KEPT(signal, ramp, create_ramp, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 1.0, 2.0);
+  MAKE(body, body, create_box, context, NULL, 4.0, 2.0);
   OK(mps_body_drive(body, 0, ramp, 1.0));
   mps_signal_destroy(&ramp);
   WITH_DEFAULTS(mps_body_motion, motion, .position[0] = 3.0, .velocity[1] = -0.5, .spin[2] = 0.2);
@@ -200,9 +193,8 @@ TEST(moves_from_outside) {
 
 /* In space a constant spin is a rotation about a fixed axis. */
 TEST(turns_from_outside) {
-  scoped_body *body = NULL;
   mps_body_state s;
-  OK(mps_body_create_sphere(context, NULL, 1.0, &body));
+  MAKE(body, body, create_sphere, context, NULL, 1.0);
   WITH_DEFAULTS(mps_body_motion, motion, .rotation[0] = 0.1);
   REFUSES(mps_body_set_motion(body, &motion), "all components are given, or none");
   motion.rotation[1] = motion.rotation[2] = 0.0;
@@ -266,12 +258,11 @@ TEST(begins_where_it_is) {
   const double t[] = {-1.0, 2.0}, v[] = {0.01, 0.01}, a[] = {1.0, 1.0};
   for (int kind = 0; kind < 2; kind++) {
     scoped_signal *signal = NULL;
-    scoped_body *body = NULL;
     mps_body_state s;
     OK(mps_signal_create_table(
         context, kind ? MPS_SIGNAL_QUANTITY_ACCELERATION : MPS_SIGNAL_QUANTITY_VELOCITY, 2, t,
         kind ? a : v, &signal));
-    OK(mps_body_create_disc(context, NULL, 1.0, &body));
+    MAKE(body, body, create_disc, context, NULL, 1.0);
     OK(mps_body_drive(body, 1, signal, -1.0));
     OK(mps_body_get_state(body, &s));
     NEAR(s.position[1], 0.0, 1e-16);

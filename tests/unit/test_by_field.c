@@ -10,11 +10,10 @@ enum { N = 40, COLUMNS = 20 };
 
 static mps_material *make(int law, double stiff, double strength) {
   mps_material *m = NULL;
-  mps_material_von_mises_def v = mps_material_von_mises_defaults();
   mps_material_drucker_prager_def d = mps_material_drucker_prager_defaults();
   mps_material_mohr_coulomb_def c = mps_material_mohr_coulomb_defaults();
-  v.young = d.young = c.young = 1e6 * stiff;
-  v.yield_stress = 1e3 * strength, v.hardening = 1e5 * stiff;
+  DEF(material_von_mises, v, .young = d.young = c.young = 1e6 * stiff,
+      .yield_stress = 1e3 * strength, .hardening = 1e5 * stiff);
   d.friction = c.friction = 0.5, d.dilation = c.dilation = 0.1;
   d.cohesion = c.cohesion = 200.0 * strength, d.tension = c.tension = 100.0 * strength;
   if (law == 0) OK(mps_material_create_linear_elastic(context, v.young, 0.3, &m));
@@ -48,7 +47,7 @@ TEST(factors_are_those_of_the_constants) {
     uint64_t seed = 5;
     double *history[COLUMNS];
     for (int k = 0; k < N; k++) {
-      for (int c = 0; c < 9; c++) L[c][k] = 4e-3 * random_number(&seed);
+      for (int c = 0; c < 9; c++) L[c][k] = 4e-3 * noise(&seed);
       for (int c = 0; c < 6; c++) s[c][k] = c < 3 ? -500.0 : 0.0;
       for (int c = 0; c < columns; c++) h[c][k] = 0.0;
       h[columns][k] = k == 0 ? 0.0 : stiff_of(k); /* 0: 1 */
@@ -144,12 +143,10 @@ TEST(a_profile_by_depth) {
     NEAR(*mps_view_f64(&view, k, 0), d < 0.5 ? 1.0 + 2.0 * d : 2.0 + 6.0 * (d - 0.5), 1e-12);
     largest = fmax(largest, *mps_view_f64(&view, k, 0));
   }
-  mps_material *m = NULL;
-  OK(mps_material_create_by_field(context, s.material, &m));
+  MAKE_KEPT(material, m, create_by_field, context, s.material);
   mps_material_destroy(&s.material);
   s.material = m;
-  DEF(mpm, def, .cell = 0.1);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1);
   const double wave = largest * mps_material_wave_modulus(m);
   NEAR(mps_mpm_limit(s.mpm), 0.1 / sqrt(wave / 1000.0), 1e-9);
   FAILS(mps_particles_set_material(s.particles, m, 1000.0, NULL, 0), MPS_ERROR_UNSUPPORTED,

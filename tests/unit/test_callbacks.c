@@ -65,7 +65,6 @@ static void ask_for_everything(scene *s, int from) {
   const double place[2] = {0.31, 0.33};
   const int64_t id = 3;
   mps_edit edit;
-  mps_view view;
   void *same = s->solver;
   if (!s->asks || !s->within) return;
   s->asked[from]++;
@@ -83,7 +82,7 @@ static void ask_for_everything(scene *s, int from) {
   REFUSED(mps_particles_remove_field(s->set, "user.own"));
   REFUSED(mps_particles_append(s->set, 1, place));
   REFUSED(mps_particles_remove(s->set, &id, 1));
-  OK(mps_particles_view(s->set, "position", &view));
+  (void)view_field(s->set, "position");
   scoped_particles *copy = NULL;
   OK(mps_particles_copy(s->set, &copy));
   if (from == FROM_RUN) { /* between two steps: what only reads the state is allowed */
@@ -117,65 +116,50 @@ static int32_t from_hook(void *user) {
 /* ---- the scenes ------------------------------------------------------------------------------ */
 
 static void make_set(scene *s, double spacing) {
-  DEF(particles, def, .spacing = spacing);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  OK(mps_particles_create(context, &def, &s->set));
-  OK(mps_particles_fill_box(s->set, lo, hi, NULL));
-  OK(mps_particles_set(s->set, "density", 0, 2000.0));
-  OK(mps_particles_set(s->set, "velocity", 0, 0.0));
+  USING(particles, mps_particles_create(context, &given, &s->set), .spacing = spacing);
+  OK(mps_particles_fill_box(s->set, AT(0.0, 0.0), AT(0.8, 0.4), NULL));
+  SET_FIELDS(s->set, {"density", 2000.0}, {"velocity", 0.0});
   OK(mps_particles_set(s->set, "external_force", 1, -1.0));
   OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, from_signal, s, NULL,
                             &s->signal));
 }
 
 static mps_material *stuff(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
+  MAKE_KEPT(material, material, create_linear_elastic, context, 1e6, 0.25);
   return material;
 }
 
 static void make_mpm(scene *s) {
-  mps_material *material = stuff();
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
+  scoped_material *material = stuff();
   make_set(s, 0.1);
-  def.cell = 0.2;
+  DEF(mpm, def, .cell = 0.2);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
   OK(mps_mpm_create(context, s->set, material, &def, (mps_mpm **)&s->solver));
-  side.kind = MPS_BOUNDARY_DRIVEN;
-  side.signal[0] = s->signal;
+  DEF(mpm_boundary, side, .kind = MPS_BOUNDARY_DRIVEN, .signal[0] = s->signal);
   OK(mps_mpm_set_boundary(s->solver, MPS_SIDE_Y_LOWER, &side));
-  mps_material_destroy(&material);
   s->end = 0.02;
 }
 
 static void make_dynamics(scene *s) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   make_set(s, 0.1);
-  def.material = stuff();
+  DEF(dynamics, def, .material = stuff());
   OK(mps_dynamics_create(context, s->set, &def, (mps_dynamics **)&s->solver));
-  base.kind = MPS_BOUNDARY_DRIVEN;
-  base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.1;
-  base.dofs = MPS_DOF_Y;
-  base.signal[0] = s->signal;
+  DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_DRIVEN, .lower[0] = base.lower[1] = -1.0,
+      .upper[0] = 9.0, .upper[1] = 0.1, .dofs = MPS_DOF_Y, .signal[0] = s->signal);
   OK(mps_dynamics_add_boundary(s->solver, &base, NULL));
   mps_material_destroy(&def.material);
   s->end = 0.02;
 }
 
 static void make_elastic(scene *s) {
-  mps_elastic_def def = mps_elastic_defaults();
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   make_set(s, 0.1);
-  def.material = stuff();
+  DEF(elastic, def, .material = stuff());
   OK(mps_elastic_create(context, s->set, &def, (mps_elastic **)&s->solver));
   foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
   foot.kind = MPS_BOUNDARY_DRIVEN, foot.signal[0] = s->signal;
   OK(mps_elastic_add_boundary(s->solver, &foot, NULL));
-  motion.dt = 4e-3;
-  OK(mps_elastic_start(s->solver, &motion));
+  USING(elastic_motion, mps_elastic_start(s->solver, &given), .dt = 4e-3);
   mps_material_destroy(&def.material);
   s->end = 0.02;
 }

@@ -38,9 +38,8 @@ static mpm_scene column(double surcharge) {
   mpm_scene_box(&s, 0.0, 0.0, 0.2, HEIGHT);
   OK(mps_particles_set(s.particles, "density", 0, DENSITY));
   const mps_geostatic_layer layer = {INFINITY, 0.5, NAN};
-  DEF(geostatic, ground, .layers = &layer, .layer_count = 1, .gravity = GRAVITY,
-      .surcharge = surcharge);
-  OK(mps_particles_set_geostatic(s.particles, &ground));
+  USING(geostatic, mps_particles_set_geostatic(s.particles, &given), .layers = &layer,
+        .layer_count = 1, .gravity = GRAVITY, .surcharge = surcharge);
   return s;
 }
 
@@ -87,9 +86,8 @@ TEST(bad_states_are_refused_by_name) {
   } while (0)
   REST(k0, 0.05, MPS_ERROR_ARGUMENT, "begins outside the yield surface");
   REST(critical_volume, 1.01, MPS_ERROR_ARGUMENT, "would have the void ratio");
-  scoped_material *other = NULL;
   const mps_consolidation_def good = mps_consolidation_defaults();
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &other));
+  MAKE(material, other, create_linear_elastic, context, 1e6, 0.3);
   FAILS(mps_particles_set_consolidation(s.particles, other, &good), MPS_ERROR_UNSUPPORTED,
         "the law is linear_elastic, must be cam_clay");
   assert_int_equal(mps_particles_set_consolidation(NULL, other, &good), MPS_ERROR_ARGUMENT);
@@ -182,7 +180,6 @@ TEST(a_pressed_block_stiffens) {
 /* ---- a user's moduli ------------------------------------------------------------------------- */
 
 static mps_status user_law(void *user, const mps_material_block *b) {
-  (void)user;
   for (int64_t k = 0; k < b->count; k++) b->history[0][k] += b->dt;
   return MPS_OK;
 }
@@ -203,8 +200,7 @@ TEST(a_users_law_states_its_present_modulus) {
   mps_material_destroy(&s.material);
   OK(mps_material_create_user(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, 0.4, 0.4);
-  DEF(mpm, def, .cell = 0.1, .dt = 1e-5);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .dt = 1e-5);
   NEAR(mps_mpm_limit(s.mpm), 0.1 / sqrt(1e3), 1e-9);
   OK(mps_mpm_run(s.mpm, 1e-4, 10, NULL, NULL));
   NEAR(mps_mpm_limit(s.mpm), 0.1 / sqrt(2e3), 1e-9);
@@ -216,9 +212,8 @@ TEST(a_users_law_states_its_present_modulus) {
 
 TEST(listed_particles_alone_are_set) {
   scoped_mpm_scene s = column(SURCHARGE);
-  mps_consolidation_def def = mps_consolidation_defaults();
   const int64_t some[2] = {1, 3}, wrong[1] = {1000};
-  def.count = 1, def.ids = wrong;
+  DEF(consolidation, def, .count = 1, .ids = wrong);
   REFUSES(mps_particles_set_consolidation(s.particles, s.material, &def), "1000");
   def.count = 2, def.ids = some;
   OK(mps_particles_set_consolidation(s.particles, s.material, &def));

@@ -2,47 +2,8 @@
  * callers, and definitions that are read back and given again. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "domain_threads.h"
-#include "test_fixture.h"
-
-/* A block of 0.8 m by 0.4 m: 32 particles, whose lowest row is particles 0 to 7. */
-static mps_particles *block(void) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  return set;
-}
-
-static mps_mpm *mpm;
-static mps_dynamics *dynamics;
-static mps_elastic *elastic;
-static mps_fluid *fluid;
-
-static void begin(void) {
-  mps_particles *set[4] = {block(), block(), block(), block()};
-  mps_material *material = NULL;
-  mps_mpm_def mpm_def = mps_mpm_defaults();
-  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
-  mps_elastic_def elastic_def = mps_elastic_defaults();
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
-  mpm_def.cell = 0.2, mpm_def.lower[1] = 0.0;
-  dynamics_def.material = elastic_def.material = material;
-  OK(mps_mpm_create(context, set[0], material, &mpm_def, &mpm));
-  OK(mps_dynamics_create(context, set[1], &dynamics_def, &dynamics));
-  OK(mps_elastic_create(context, set[2], &elastic_def, &elastic));
-  OK(mps_fluid_create(context, set[3], NULL, &fluid));
-  mps_material_destroy(&material);
-  for (int k = 0; k < 4; k++) mps_particles_destroy(&set[k]);
-}
-
-static void end(void) {
-  mps_mpm_destroy(&mpm);
-  mps_dynamics_destroy(&dynamics);
-  mps_elastic_destroy(&elastic);
-  mps_fluid_destroy(&fluid);
-}
+#define FOUR_SOLVERS
+#include "kit/block.h"
 
 /* ---- a condition of each kind ---------------------------------------------------------------- */
 
@@ -261,11 +222,10 @@ TEST(a_definition_read_back_says_what_it_selects) {
 /* The caller's lists and signals may go once the definition is given. */
 TEST(lists_and_signals_belong_to_the_condition) {
   begin();
-  mps_signal *signal = NULL;
   int64_t ids[2] = {1, 0};
   double values[6] = {1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0};
   int32_t number = -1;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.1, 0.0, &signal));
+  MAKE_KEPT(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.1, 0.0);
   mps_elastic_boundary_def def = mps_elastic_boundary_defaults(), out;
   def.kind = MPS_BOUNDARY_DRIVEN, def.ids = ids, def.id_count = 2, def.values = values;
   def.signal[0] = signal;
@@ -314,7 +274,7 @@ TEST(definitions_stay_when_a_state_returns) {
     any_def def, out;
     int32_t number = -1;
     int64_t count = 0;
-    mps_snapshot *snapshot = NULL;
+    scoped_snapshot *snapshot = NULL;
     const size_t size = k->make(LIST, &def);
     OK(mps_solver_add(solvers[s], k->kind, &def, &number));
     OK(mps_solver_snapshot(solvers[s], &snapshot));
@@ -325,7 +285,6 @@ TEST(definitions_stay_when_a_state_returns) {
     OK(mps_solver_get(solvers[s], k->kind, number, &out, size));
     (void)ids_of(k, &out, &count);
     assert_int_equal(count, k->lists ? 32 : 0);
-    mps_snapshot_destroy(&snapshot);
   }
   end();
 }
@@ -342,16 +301,15 @@ TEST(definitions_of_objects_are_read_back) {
                    MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(context)->message, "MPS_DEF_MPM"));
   mps_body_def body_def = mps_body_defaults(), body_out;
-  mps_body *body = NULL;
   body_def.motion = MPS_BODY_MOTION_FREE, body_def.mass = 3.0, body_def.inertia[2] = 0.5;
   body_def.position[0] = 0.4, body_def.position[1] = 2.0;
-  OK(mps_body_create_disc(context, &body_def, 0.2, &body));
+  MAKE(body, body, create_disc, context, &body_def, 0.2);
   OK(mps_body_get_def(body, &body_out));
   assert_true(body_out.mass == 3.0 && body_out.position[1] == 2.0 && body_out.inertia[2] == 0.5);
   assert_int_equal(body_out.motion, MPS_BODY_MOTION_FREE);
   mps_contact_def contact_def = mps_contact_defaults(), contact_out;
   mps_fluid_contact_def fluid_out;
-  mps_contact *contact = NULL;
+  scoped_contact *contact = NULL;
   contact_def.friction = 0.25;
   OK(mps_mpm_add_contact(mpm, body, &contact_def, &contact));
   OK(mps_contact_get_def(contact, MPS_DEF_CONTACT, &contact_out, sizeof contact_out));
@@ -361,8 +319,6 @@ TEST(definitions_of_objects_are_read_back) {
       MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_contact_get_def(NULL, MPS_DEF_CONTACT, &contact_out, sizeof contact_out),
                    MPS_ERROR_ARGUMENT);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&body);
   end();
 }
 
@@ -388,23 +344,21 @@ static void call_on_rank(void *user, team *t, int32_t rank) {
   scoped_domain *domain = NULL;
   scoped_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def domain_def = team_domain_def(t, rank);
-  mps_particles_def set_def = mps_particles_defaults();
-  mps_particles *set = NULL;
-  mps_dynamics *solver = NULL;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.1 * ROW, 2.0};
+  scoped_particles *set = NULL;
+  scoped_dynamics *solver = NULL;
   int64_t row[ROW];
   int32_t number[2] = {-1, -1};
   for (int64_t k = 0; k < ROW; k++) row[k] = ROW - 1 - k;
-  set_def.spacing = 0.1;
+  DEF(particles, set_def, .spacing = 0.1);
   mps_status *good = w->good[rank], *bad = w->bad[rank];
   good[0] = mps_domain_create(own, &domain_def, &domain);
   good[1] = mps_particles_create(own, &set_def, &set);
-  if (good[1] == MPS_OK) good[1] = mps_particles_fill_box(set, lo, hi, NULL);
+  if (good[1] == MPS_OK)
+    good[1] = mps_particles_fill_box(set, AT(0.0, 0.0), AT(0.1 * ROW, 2.0), NULL);
   if (good[1] == MPS_OK) good[1] = mps_particles_set(set, "density", 0, 1000.0);
   if (good[1] == MPS_OK) good[1] = mps_particles_set(set, "shear_velocity", 0, 10.0);
   if (good[1] == MPS_OK) good[1] = mps_particles_set(set, "pressure_velocity", 0, 20.0);
-  def.domain = domain;
+  DEF(dynamics, def, .domain = domain);
   good[2] = mps_dynamics_create(own, set, &def, &solver);
   mps_dynamics_boundary_def box = mps_dynamics_boundary_defaults(), list = box, out;
   box.upper[1] = 0.11;
@@ -426,8 +380,6 @@ static void call_on_rank(void *user, team *t, int32_t rank) {
              mps_context_error(own)->message);
   }
   good[7] = mps_dynamics_remove_boundary(solver, number[0]);
-  mps_dynamics_destroy(&solver);
-  mps_particles_destroy(&set);
 }
 
 TEST(ranks_have_their_parts_and_agree) {

@@ -11,15 +11,13 @@
 static mpm_scene block_at(double x) {
   mpm_scene s = mpm_scene_begin(context, 0.01, x, 0.0, 1e5);
   mpm_scene_box(&s, x, 0.0, x + 0.2, 0.1);
-  DEF(mpm, def, .cell = 0.02, .origin[0] = x, .lower[1] = 0.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .origin[0] = x, .lower[1] = 0.0);
   return s;
 }
 
 static mps_body *box_at(double x, double y, double width, double height) {
   DEF(body, def, .position[0] = x, .position[1] = y);
-  mps_body *body = NULL;
-  OK(mps_body_create_box(context, &def, width, height, &body));
+  MAKE_KEPT(body, body, create_box, context, &def, width, height);
   return body;
 }
 
@@ -72,9 +70,8 @@ TEST(bodies_are_shared) {
   mpm_scene s[2] = {block_at(0.0), block_at(0.5)};
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 40.0, .inertia[2] = 4.0,
       .position[0] = 0.35, .position[1] = 0.151, .velocity[1] = -0.5);
-  scoped_body *beam = NULL;
   mps_contact *contact[2];
-  OK(mps_body_create_box(context, &def, 1.2, 0.1, &beam));
+  MAKE(body, beam, create_box, context, &def, 1.2, 0.1);
   DEF(contact, other, .mover = MPS_CONTACT_MOVER_OTHER);
   for (int k = 0; k < 2; k++) {
     OK(mps_mpm_remove_boundary(s[k].mpm, MPS_SIDE_Y_LOWER));
@@ -128,11 +125,9 @@ TEST(servo_keeps_a_force) {
  * leaks by springs. */
 TEST(wedges_are_no_walls) {
   scoped_mpm_scene s = block_at(0.0);
-  mps_body_def def = mps_body_defaults();
   scoped_body *wedge = NULL;
   const double t[] = {0.0, 0.04}, way[] = {0.0, -0.04}; /* s, m */
-  scoped_signal *down = NULL;
-  def.position[0] = 0.1, def.position[1] = 0.11;
+  DEF(body, def, .position[0] = 0.1, .position[1] = 0.11);
   for (int k = 0; k < 2; k++) {
     const double half = 0.2 * tan((k ? 15.0 : 7.5) * atan(1.0) / 45.0);
     const double xy[] = {0.0, 0.0, half, 0.2, -half, 0.2};
@@ -142,7 +137,7 @@ TEST(wedges_are_no_walls) {
     if (!k)
       REFUSES(mps_mpm_add_contact(s.mpm, wedge, &springs, NULL), "meet at less than 20 degrees");
   }
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t, way, &down));
+  MAKE(signal, down, create_table, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t, way);
   OK(mps_body_drive(wedge, 1, down, 1.0));
   OK(mps_mpm_add_contact(s.mpm, wedge, NULL, NULL));
   OK(mps_mpm_run(s.mpm, 0.04, 1, NULL, NULL));
@@ -164,15 +159,13 @@ TEST(thin_plates_are_refused) {
   scoped_mpm_scene s = block_at(0.0);
   const double cells[] = {0.6, 0.9};
   for (int k = 0; k < 2; k++) {
-    mps_body *plate = box_at(0.3, 0.05, cells[k] * 0.02, 0.5);
+    scoped_body *plate = box_at(0.3, 0.05, cells[k] * 0.02, 0.5);
     DEF(contact, def, .method = MPS_CONTACT_METHOD_PENALTY);
     REFUSES(mps_mpm_add_contact(s.mpm, plate, &def, NULL), "below 2 cells momentum passes");
     def.thin = 1;
     OK(mps_mpm_add_contact(s.mpm, plate, &def, NULL));
-    mps_body_destroy(&plate);
     mps_mpm_destroy(&s.mpm);
-    DEF(mpm, solver, .cell = 0.02);
-    mpm_scene_solve(&s, &solver);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
   }
 }
 
@@ -187,8 +180,7 @@ TEST(covered_particles_are_refused) {
   OK(mps_mpm_step(s.mpm, 1));
   REFUSES(mps_mpm_add_contact(s.mpm, box, NULL, NULL), "36 particles lie inside the body");
   assert_true(mps_context_error(context)->particle >= 0);
-  DEF(contact, def, .inside = MPS_CONTACT_INSIDE_PUSH);
-  OK(mps_mpm_add_contact(s.mpm, box, &def, NULL));
+  USING(contact, mps_mpm_add_contact(s.mpm, box, &given, NULL), .inside = MPS_CONTACT_INSIDE_PUSH);
 }
 
 /* How deep a particle is below the surface of a body at most, m. */
@@ -212,10 +204,9 @@ TEST(driven_too_deep_is_told) {
   for (int k = 0; k < 3; k++) {
     scoped_mpm_scene s = block_at(0.0);
     const double v[] = {speeds[k], speeds[k]};
-    scoped_signal *down = NULL;
     scoped_body *body = NULL;
     DEF(body, def, .position[0] = 0.1, .position[1] = 0.105);
-    OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down));
+    MAKE(signal, down, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
     OK(mps_body_create_polygon(context, &def, 3, wedge, &body));
     OK(mps_body_drive(body, 1, down, -1.0));
     mpm_scene_contact(&s, body, 0.0);
@@ -278,10 +269,9 @@ TEST(free_bodies_stay_on_the_axis) {
   REFUSES(mps_mpm_add_contact(plane.mpm, body, &contact, NULL),
           "another solver, which is axisymmetric");
   tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, 2e-3);
-  mps_body *lid = box_at(0.0, 0.3, 0.2, 0.1);
+  scoped_body *lid = box_at(0.0, 0.3, 0.2, 0.1);
   OK(mps_mpm_add_contact(s.mpm, lid, &contact, NULL));
   REFUSES(mps_fluid_add_contact(t.fluid, lid, NULL, NULL), "another solver, which is axisymmetric");
-  mps_body_destroy(&lid);
   tank_free(&t);
   mps_body_state now;
   OK(mps_mpm_run(s.mpm, 0.05, 100000, NULL, NULL));

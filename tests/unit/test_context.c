@@ -34,16 +34,13 @@ TEST(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero) {
 }
 
 static mps_status refuse_node(void *user, const double *x, int32_t *inside) {
-  (void)x, (void)inside;
   return mps_context_set_error(user, MPS_ERROR_IO, "my_reader", "the tape has ended");
 }
 
-TEST(a_callback_says_why_it_has_failed) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_callback_says_why_it_has_failed) {
   DEF(particles, def, .spacing = 0.5);
-  scoped_particles *set = NULL;
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 1.0, 1.0};
-  OK(mps_particles_create(context, &def, &set));
+  MAKE(particles, set, create, context, &def);
   FAILS(mps_particles_fill_where(set, lo, hi, refuse_node, context, NULL), MPS_ERROR_IO,
         "my_reader: the tape has ended");
   REFUSES(mps_context_set_error(context, MPS_OK, "f", "nothing"), "status is MPS_OK");
@@ -100,8 +97,7 @@ static void backwards(void *user, int64_t count, mps_context_task_fn task, void 
   for (int64_t i = count - 1; i >= 0; i--) task(data, i, 0);
 }
 
-TEST(an_error_names_its_object) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(an_error_names_its_object) {
   const mps_error *error = mps_context_error(context);
   (void)mpsi_fail(context, "mps_body_create_disc", MPS_ERROR_ARGUMENT, "x");
   assert_string_equal(error->object, "body");
@@ -113,22 +109,14 @@ TEST(an_error_names_its_object) {
   assert_string_equal(error->object, "");
 }
 
-static void count_log(void *user, int32_t level, const char *message) {
-  (void)level;
-  (void)message;
-  (*(int *)user)++;
-}
-static void count_progress(void *user, const mps_context_progress *progress) {
-  (void)progress;
-  (*(int *)user)++;
-}
+static void count_log(void *user, int32_t level, const char *message) { (*(int *)user)++; }
+static void count_progress(void *user, const mps_context_progress *progress) { (*(int *)user)++; }
 static int32_t say_stop(void *user) {
   (*(int *)user)++;
   return 1;
 }
 
-TEST(hooks_can_be_replaced) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(hooks_can_be_replaced) {
   int first = 0, second = 0;
   mps_context_set_log(context, count_log, &first, NULL);
   mpsi_log(context, MPS_CONTEXT_LOG_INFO, "a");
@@ -148,8 +136,7 @@ TEST(hooks_can_be_replaced) {
   mps_context_set_log(NULL, NULL, NULL, NULL);
 }
 
-TEST(a_callback_is_guarded_and_its_status_explained) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_callback_is_guarded_and_its_status_explained) {
   const mps_error *error = mps_context_error(context);
   mpsi_guard guard = {0};
   assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
@@ -178,11 +165,9 @@ TEST(a_callback_is_guarded_and_its_status_explained) {
 
 /* Executors that number their workers from 1, or leave the last unit out. */
 static void count_from_one(void *user, int64_t count, mps_context_task_fn task, void *data) {
-  (void)user;
   for (int64_t k = 0; k < count; k++) task(data, k, 1 + (int32_t)(k % 2));
 }
 static void forget_one(void *user, int64_t count, mps_context_task_fn task, void *data) {
-  (void)user;
   for (int64_t k = 0; k + 1 < count; k++) task(data, k, 0);
 }
 static void go_wrong_later(void *user, int64_t count, mps_context_task_fn task, void *data) {
@@ -190,7 +175,6 @@ static void go_wrong_later(void *user, int64_t count, mps_context_task_fn task, 
   for (int64_t k = 0; k < count; k++) task(data, k, k == 1 ? worker : 0);
 }
 static void note_worker(void *data, int64_t index, int32_t worker) {
-  (void)index;
   if (worker < 0 || worker > 1) *(int *)data = 1;
 }
 
@@ -215,8 +199,7 @@ TEST(a_bad_executor_is_noticed) {
 
 /* Each text is kept once, up to a bound, without a log hook too; contexts have lists of their own.
  */
-TEST(warnings_are_a_list) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(warnings_are_a_list) {
   scoped_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_context_warning w;
   assert_int_equal(mps_context_warning_count(context), 0);
@@ -318,10 +301,8 @@ TEST(the_callers_allocator_is_used_and_everything_returned) {
   }
 }
 
-TEST(lattice_density_is_the_sheet_value) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scoped_kernel *kernel = NULL;
-  OK(mps_kernel_create(context, MPS_KERNEL_MPS, 1.5 * 0.7, &kernel));
+TEST_SERIAL(lattice_density_is_the_sheet_value) {
+  MAKE(kernel, kernel, create, context, MPS_KERNEL_MPS, 1.5 * 0.7);
   NEAR(mpsi_kernel_density(kernel, 0.7), 4 * 0.5 + 4 * (1.5 / sqrt(2.0) - 1.0), 1e-14); /* 2.2426 */
   NEAR(mps_kernel_weight(kernel, 0.7), 0.5, 1e-15);
   assert_true(mps_kernel_weight(kernel, 0.0) == 0.0);

@@ -1,14 +1,10 @@
 /* test_core_parts.c - small parts that all layers use: principal values of symmetric tensors,
  * identifiers. SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "test_common.h"
 
 #include "core/internal.h"
 #include "core/base/symmetric.h"
-
-static double noise(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
 
 /* A v = value v, directions orthonormal, also where values coincide or scales differ. */
 TEST(principal_values_and_directions) {

@@ -5,8 +5,6 @@
 
 #include "contact/corner.h"
 
-#define PI 3.14159265358979323846
-
 static uint64_t seed;
 
 /* Even in -1 to 1. */
@@ -61,8 +59,7 @@ static void compare_with_box(const mps_body *body, int dim, const double *b, dou
 
 TEST(boxes_are_rounded) {
   const double plane[2] = {0.3, 0.2};
-  scoped_body *body = NULL;
-  OK(mps_body_create_box(context, NULL, 0.6, 0.4, &body));
+  MAKE(body, body, create_box, context, NULL, 0.6, 0.4);
   for (double radius = 0.01; radius < 0.11; radius += 0.03)
     compare_with_box(body, 2, plane, radius);
 }
@@ -85,8 +82,7 @@ TEST(edges_in_space_are_rounded) {
 /* The rim of a cylinder is that of a box in the plane through its axis. */
 TEST(rims_are_rounded) {
   const double section[2] = {0.3, 0.2}, radius = 0.04;
-  scoped_body *body = NULL;
-  OK(mps_body_create_cylinder(context, NULL, 0.3, 0.4, &body));
+  MAKE(body, body, create_cylinder, context, NULL, 0.3, 0.4);
   for (int n = 0; n < 500; n++) {
     const double angle = PI * random_number(), z = 0.23 * random_number();
     const double r = 0.26 + 0.07 * random_number(), rz[2] = {r, z};
@@ -102,8 +98,7 @@ TEST(rims_are_rounded) {
 TEST(tips_keep_particles_out) {
   const double xy[6] = {0.0, 0.0, 0.5, 0.5 * sqrt(3.0), -0.5, 0.5 * sqrt(3.0)};
   const double radius = 0.02, x[3] = {0.0, -0.004, 0.0};
-  scoped_body *body = NULL;
-  OK(mps_body_create_polygon(context, NULL, 3, xy, &body));
+  MAKE(body, body, create_polygon, context, NULL, 3, xy);
   const mpsi_bearing large = bearing_of(body, radius, x, 0.04);
   NEAR(large.foot.distance, 0.004 + radius, 1e-12);
   NEAR(large.foot.at[1], radius, 1e-12);

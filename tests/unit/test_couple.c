@@ -33,8 +33,7 @@ static void answer_to(const double *exact, const double *x, double *answer) {
 
 static mps_coupling *make(int32_t method, int64_t size) {
   DEF(coupling, def, .method = method, .size = size, .tolerance = 1e-8);
-  mps_coupling *c = NULL;
-  OK(mps_coupling_create(context, &def, &c));
+  MAKE_KEPT(coupling, c, create, context, &def);
   return c;
 }
 
@@ -56,7 +55,7 @@ static int take_step(mps_coupling *c, int step, double *x) {
 }
 
 TEST(one_value_takes_three_repeats_then_two) {
-  mps_coupling *c = make(MPS_COUPLING_METHOD_AITKEN, 1);
+  scoped_coupling *c = make(MPS_COUPLING_METHOD_AITKEN, 1);
   for (int step = 0; step < 4;
        step++) { /* x = 5 + step - 20 x: by fixed-point iteration it diverges */
     double x, answer;
@@ -72,20 +71,18 @@ TEST(one_value_takes_three_repeats_then_two) {
     NEAR(x, (5.0 + step * step) / 21.0, 1e-7);
     assert_true(repeats <= (step == 0 ? 3 : 2));
   }
-  mps_coupling_destroy(&c);
 }
 
 /* Four eigenvalues besides zero: what they do is known after five differences. */
 TEST(a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes) {
   double x[N];
-  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
+  scoped_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
   const int first = take_step(c, 0, x);
   assert_in_range(first, 4, 8);
   int later = 0;
   for (int step = 1; step <= 10; step++) later += take_step(c, step, x);
   print_message("%d repeats, then %.1f a step\n", first, later / 10.0);
   assert_true(later <= 35); /* what was learnt serves again */
-  mps_coupling_destroy(&c);
 }
 
 TEST(a_field_by_one_factor_takes_more) {
@@ -106,10 +103,9 @@ TEST(a_field_by_one_factor_takes_more) {
 TEST(what_does_not_agree_is_an_error_and_can_begin_again) {
   double x = 0.0, answer = 0.0;
   int32_t done = 0;
-  mps_coupling *c = NULL;
   DEF(coupling, def, .method = MPS_COUPLING_METHOD_CONSTANT, .size = 1, .relaxation = 0.5,
       .repeats = 7);
-  OK(mps_coupling_create(context, &def, &c));
+  MAKE(coupling, c, create, context, &def);
   OK(mps_coupling_begin(c, NULL, &x));
   mps_status status = MPS_OK;
   for (int k = 0; k < 7 && status == MPS_OK; k++) {
@@ -125,11 +121,10 @@ TEST(what_does_not_agree_is_an_error_and_can_begin_again) {
   OK(mps_coupling_next(c, &answer, &x, &done));
   assert_int_equal(done, 1);
   OK(mps_coupling_accept(c));
-  mps_coupling_destroy(&c);
 }
 
 TEST(guesses_lie_on_a_line_through_the_last_steps) {
-  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 1);
+  scoped_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 1);
   for (int step = 0; step < 4; step++) {
     double x, answer = 2.0 + 3.0 * step;
     int32_t done;
@@ -140,7 +135,6 @@ TEST(guesses_lie_on_a_line_through_the_last_steps) {
     assert_int_equal(done, 1);
     OK(mps_coupling_accept(c));
   }
-  mps_coupling_destroy(&c);
 }
 
 /* Memory put into another object: both continue bit for bit. */
@@ -169,13 +163,11 @@ TEST(what_is_learnt_can_be_kept) {
 /* Warnings of 300 accepted steps of two values: `large` cos(w n) about a mean of 5, waves of .04
  * rad a step and an amplitude of 1, and `noise`. */
 static int warnings(journal *j, double large, double w, double noise) {
-  mps_coupling_def def = mps_coupling_defaults();
-  mps_coupling *c = NULL;
   uint64_t seed = 7;
   *j = (journal){0};
-  def.size = 2, def.floor = 1e-3;
+  DEF(coupling, def, .size = 2, .floor = 1e-3);
   mps_context_set_log(context, journal_note, j, NULL);
-  OK(mps_coupling_create(context, &def, &c));
+  MAKE(coupling, c, create, context, &def);
   for (int n = 0; n < 300; n++) {
     double x[2];
     int32_t done;
@@ -189,7 +181,6 @@ static int warnings(journal *j, double large, double w, double noise) {
     assert_true(done);
     OK(mps_coupling_accept(c));
   }
-  mps_coupling_destroy(&c);
   mps_context_set_log(context, NULL, NULL, NULL);
   return j->count;
 }
@@ -208,7 +199,7 @@ TEST(a_step_too_long_for_what_swings_is_warned_of) {
 }
 
 TEST(bad_input_is_refused) {
-  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 2);
+  scoped_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 2);
   double x[2] = {0.0, 0.0}, answer[2] = {1.0, NAN};
   int32_t done;
   FAILS(mps_coupling_next(c, x, x, &done), MPS_ERROR_STATE, "begin");
@@ -216,6 +207,5 @@ TEST(bad_input_is_refused) {
   FAILS(mps_coupling_next(c, answer, x, &done), MPS_ERROR_NUMERIC,
         "answer 1 at repeat 1 of the coupling is nan");
   REFUSES(mps_coupling_begin(c, answer, x), "start value 1");
-  mps_coupling_destroy(&c);
   mps_coupling_destroy(&c);
 }

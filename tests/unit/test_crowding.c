@@ -7,15 +7,13 @@ static mps_context *context;
 static char warning[512];
 
 static void listen(void *user, int32_t level, const char *text) {
-  (void)user;
   if (level == MPS_CONTEXT_LOG_WARNING && strstr(text, "filled above"))
     snprintf(warning, sizeof warning, "%s", text);
 }
 
 static mps_particles *empty(int32_t dim, double spacing) {
   DEF(particles, def, .dim = dim, .spacing = spacing);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE_KEPT(particles, set, create, context, &def);
   return set;
 }
 
@@ -39,11 +37,10 @@ static void add_cloud(mps_particles *set, int side, double at, double jitter) {
 }
 
 static mps_status solve_mpm(mps_particles *set, mps_mpm **out) {
-  scoped_material *law = NULL;
   DEF(mpm, def, .cell = 2.0 * mps_particles_spacing(set));
   if (mps_particles_dim(set) == 3) def.geometry = MPS_MPM_GEOMETRY_SPACE;
   OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
+  MAKE(material, law, create_linear_elastic, context, 1e6, 0.3);
   warning[0] = '\0';
   return mps_mpm_create(context, set, law, &def, out);
 }
@@ -58,9 +55,7 @@ TEST(one_place_is_refused_by_all) {
   mps_elastic *elastic = NULL;
   add_cloud(set, 10, 0.0, 0.0);
   OK(mps_particles_append(set, 1, again));
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  OK(mps_particles_set(set, "damping", 0, 0.0));
+  SET_FIELDS(set, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0}, {"damping", 0.0});
   REFUSES(solve_mpm(set, &mpm), text);
   assert_true(strncmp(mps_context_error(context)->message, "particles", 9) == 0);
   mps_fluid_def water = mps_fluid_defaults();
@@ -77,15 +72,13 @@ TEST(one_place_is_refused_by_all) {
 TEST(clouds_that_overlap_are_warned_of) {
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int way = 0; way < 3; way++) { /* half a spacing apart, a little, a corner of each */
-      mps_particles *set = empty(dim, 0.05);
-      mps_mpm *mpm = NULL;
+      scoped_particles *set = empty(dim, 0.05);
+      scoped_mpm *mpm = NULL;
       const int side = dim == 3 ? 8 : 20;
       add_cloud(set, side, 0.0, 0.0);
       add_cloud(set, side, way == 0 ? 0.025 : way == 1 ? 1e-4 : 0.51 * 0.05 * side, 0.0);
       OK(solve_mpm(set, &mpm));
       if (!warning[0]) fail_msg("no warning in %dD of clouds %d", (int)dim, way);
-      mps_mpm_destroy(&mpm);
-      mps_particles_destroy(&set);
     }
 }
 
@@ -144,7 +137,6 @@ static int make(void **state) {
 }
 
 static int drop(void **state) {
-  (void)state;
   mps_context_destroy(&context);
   return 0;
 }

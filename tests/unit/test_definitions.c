@@ -15,11 +15,7 @@
 
 /* A square of 4 x 4 particles with every property that a solver may read. */
 static mps_particles *square(void) {
-  DEF(particles, def, .spacing = 0.5);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 2.0};
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  mps_particles *set = box_of(context, 0.5, AT(0.0, 0.0), AT(2.0, 2.0));
   static const struct {
     const char *name;
     double value;
@@ -48,9 +44,8 @@ static mps_status use_particles(const void *def) {
 
 static void need_neighbours(void *def) { ((mps_neighbours_def *)def)->radius = 0.1; }
 static mps_status use_neighbours(const void *def) {
-  mps_neighbours *made = NULL;
+  scoped_neighbours *made = NULL;
   const mps_status status = mps_neighbours_create(context, def, &made);
-  mps_neighbours_destroy(&made);
   return status;
 }
 
@@ -107,12 +102,11 @@ USE_MATERIAL(cyclic_sand)
 
 static mps_status use_consolidation(const void *def) {
   scoped_particles *set = square();
-  scoped_material *clay = NULL;
   mps_material_cam_clay_def law = mps_material_cam_clay_defaults();
   need_cam_clay(&law);
   OK(mps_particles_add_field(set, "stress", 0));
   for (int c = 0; c < 3; c++) OK(mps_particles_set(set, "stress", c, -1e4));
-  OK(mps_material_create_cam_clay(context, &law, &clay));
+  MAKE(material, clay, create_cam_clay, context, &law);
   return mps_particles_set_consolidation(set, clay, def);
 }
 
@@ -124,19 +118,16 @@ static mps_status use_body(const void *def) {
 static void need_mpm(void *def) { ((mps_mpm_def *)def)->cell = 1.0; }
 static mps_status use_mpm(const void *def) {
   scoped_particles *set = square();
-  scoped_material *material = NULL;
   scoped_mpm *made = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
   return mps_mpm_create(context, set, material, def, &made);
 }
 
 static mps_status use_mpm_settle(const void *def) {
   scoped_particles *set = square();
-  scoped_material *material = NULL;
   DEF(mpm, solver, .cell = 1.0);
-  scoped_mpm *made = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
-  OK(mps_mpm_create(context, set, material, &solver, &made));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
+  MAKE(mpm, made, create, context, set, material, &solver);
   return mps_mpm_settle(made, def, NULL);
 }
 
@@ -146,12 +137,10 @@ typedef enum wet { WATER, FACES } wet;
 /* Of a solver with water where the definition is not that of the water itself. */
 static mps_status use_water(const void *def, wet what) {
   scoped_particles *set = square();
-  scoped_material *material = NULL;
   DEF(mpm, solver, .cell = 1.0);
   DEF(pore_water, water, .porosity = 0.4);
-  scoped_mpm *made = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
-  OK(mps_mpm_create(context, set, material, &solver, &made));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
+  MAKE(mpm, made, create, context, set, material, &solver);
   if (what != WATER) OK(mps_mpm_add_pore_water(made, &water));
   return what == WATER ? mps_mpm_add_pore_water(made, def) : mps_mpm_add_pore_face(made, def, NULL);
 }
@@ -193,9 +182,8 @@ static mps_status use_domain(const void *def) {
 
 static void need_coupling(void *def) { ((mps_coupling_def *)def)->size = 3; }
 static mps_status use_coupling(const void *def) {
-  mps_coupling *made = NULL;
+  scoped_coupling *made = NULL;
   const mps_status status = mps_coupling_create(context, def, &made);
-  mps_coupling_destroy(&made);
   return status;
 }
 
@@ -204,9 +192,8 @@ static void need_waves(void *def) {
   d->depth = 0.5, d->height = 0.03, d->period = 1.4;
 }
 static mps_status use_waves(const void *def) {
-  mps_waves *made = NULL;
+  scoped_waves *made = NULL;
   const mps_status status = mps_waves_create(context, def, &made);
-  mps_waves_destroy(&made);
   return status;
 }
 
@@ -214,9 +201,8 @@ static void need_absorber(void *def) {
   ((mps_absorber_def *)def)->depth = 0.5, ((mps_absorber_def *)def)->period = 1.4;
 }
 static mps_status use_absorber(const void *def) {
-  mps_absorber *made = NULL;
+  scoped_absorber *made = NULL;
   const mps_status status = mps_absorber_create(context, def, &made);
-  mps_absorber_destroy(&made);
   return status;
 }
 
@@ -270,8 +256,7 @@ static mps_status use_overtopping(const void *def) {
 }
 
 static mps_status use_body_motion(const void *def) {
-  scoped_body *body = NULL;
-  OK(mps_body_create_disc(context, NULL, 1.0, &body));
+  MAKE(body, body, create_disc, context, NULL, 1.0);
   return mps_body_set_motion(body, def);
 }
 
@@ -293,11 +278,9 @@ static mps_status use_recorder(const void *def) {
 
 static mps_mpm *make_mpm(void) {
   scoped_particles *set = square();
-  scoped_material *material = NULL;
-  mps_mpm *made = NULL;
   DEF(mpm, def, .cell = 1.0);
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
-  OK(mps_mpm_create(context, set, material, &def, &made));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
+  MAKE_KEPT(mpm, made, create, context, set, material, &def);
   return made;
 }
 
@@ -305,9 +288,8 @@ static const int64_t first_id[1] = {0};
 
 static mps_status use_contact(const void *def) {
   DEF(body, place, .position[1] = 20.0);
-  scoped_body *body = NULL;
   scoped_mpm *mpm = make_mpm();
-  OK(mps_body_create_disc(context, &place, 5.0, &body));
+  MAKE(body, body, create_disc, context, &place, 5.0);
   return mps_mpm_add_contact(mpm, body, def, NULL);
 }
 
@@ -337,8 +319,7 @@ static mps_status use_mpm_load(const void *def) {
 
 static mps_dynamics *make_dynamics(void) {
   scoped_particles *set = square();
-  mps_dynamics *made = NULL;
-  OK(mps_dynamics_create(context, set, NULL, &made));
+  MAKE_KEPT(dynamics, made, create, context, set, NULL);
   return made;
 }
 
@@ -376,8 +357,7 @@ static mps_status use_dynamics_predict(const void *def) {
 
 static mps_elastic *make_elastic(void) {
   scoped_particles *set = square();
-  mps_elastic *made = NULL;
-  OK(mps_elastic_create(context, set, NULL, &made));
+  MAKE_KEPT(elastic, made, create, context, set, NULL);
   return made;
 }
 
@@ -416,16 +396,11 @@ static void need_fluid_boundary(void *def) {
 }
 static mps_status use_fluid_boundary(const void *def) {
   scoped_particles *set = square();
-  scoped_fluid *fluid = NULL;
-  OK(mps_fluid_create(context, set, NULL, &fluid));
+  MAKE(fluid, fluid, create, context, set, NULL);
   return mps_fluid_add_boundary(fluid, def, NULL);
 }
 
-static mps_status no_law(void *user, const mps_material_block *block) {
-  (void)user;
-  (void)block;
-  return MPS_OK;
-}
+static mps_status no_law(void *user, const mps_material_block *block) { return MPS_OK; }
 static void need_user_law(void *def) {
   mps_material_user_def *d = def;
   d->update = no_law;
@@ -475,8 +450,7 @@ static void need_block(void *def) {
   for (int c = 0; c < 6; c++) b->stress[c] = zero + 2 + c;
 }
 static mps_status use_block(const void *def) {
-  scoped_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
   return mps_material_update(context, material, def);
 }
 
@@ -506,19 +480,16 @@ static mps_status use_record(const void *def) {
 
 static mps_status use_fluid_contact(const void *def) {
   scoped_particles *set = square();
-  scoped_fluid *fluid = NULL;
-  scoped_body *box = NULL;
   DEF(body, at, .position[0] = 1.0, .position[1] = 4.0);
-  OK(mps_fluid_create(context, set, NULL, &fluid));
-  OK(mps_body_create_box(context, &at, 1.0, 1.0, &box));
+  MAKE(fluid, fluid, create, context, set, NULL);
+  MAKE(body, box, create_box, context, &at, 1.0, 1.0);
   return mps_fluid_add_contact(fluid, box, def, NULL);
 }
 
 static void need_fluid_load(void *def) { ((mps_fluid_load_def *)def)->all = 1; }
 static mps_status use_fluid_load(const void *def) {
   scoped_particles *set = square();
-  scoped_fluid *fluid = NULL;
-  OK(mps_fluid_create(context, set, NULL, &fluid));
+  MAKE(fluid, fluid, create, context, set, NULL);
   return mps_fluid_add_load(fluid, def, NULL);
 }
 
@@ -531,19 +502,14 @@ static void need_fluid_rock(void *def) {
 
 static mps_status use_fluid_rock(const void *def) {
   scoped_particles *set = square();
-  scoped_fluid *fluid = NULL;
-  OK(mps_fluid_create(context, set, NULL, &fluid));
+  MAKE(fluid, fluid, create, context, set, NULL);
   return mps_fluid_add_rock(fluid, def, NULL);
 }
 
-static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) {
-  (void)user, (void)matrix;
-  return MPS_OK;
-}
+static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) { return MPS_OK; }
 
 static mps_status no_solution(void *user, const double *b, double tolerance, double *x,
                               mps_linear_result *result) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)result;
   return MPS_OK;
 }
 
@@ -554,8 +520,7 @@ static void need_linear_solver(void *def) {
 
 static mps_status use_linear_solver(const void *def) {
   scoped_particles *set = square();
-  scoped_fluid *fluid = NULL;
-  OK(mps_fluid_create(context, set, NULL, &fluid));
+  MAKE(fluid, fluid, create, context, set, NULL);
   return mps_solver_set_linear_solver(mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE, def);
 }
 
@@ -1052,9 +1017,8 @@ TEST(results_stay_within_the_callers_struct) {
  * the size that comes with it is the program's. */
 TEST(definitions_come_back_with_the_callers_size) {
   scoped_particles *set = square();
-  mps_fluid *fluid = NULL;
-  mps_dynamics *dynamics = NULL;
-  scoped_material *material = NULL;
+  scoped_fluid *fluid = NULL;
+  scoped_dynamics *dynamics = NULL;
   scoped_mpm *mpm = NULL;
   const uint32_t size = 16;
   union {
@@ -1073,9 +1037,8 @@ TEST(definitions_come_back_with_the_callers_size) {
   OK(mps_solver_get_def(mps_dynamics_solver(dynamics), MPS_DEF_DYNAMICS, &part.dynamics, size));
   assert_int_equal(part.size, size);
   mps_dynamics_destroy(&dynamics);
-  DEF(mpm, def, .cell = 1.0);
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
-  OK(mps_mpm_create(context, set, material, &def, &mpm));
+  MAKE(material, material, create_linear_elastic, context, 1e7, 0.3);
+  USING(mpm, mps_mpm_create(context, set, material, &given, &mpm), .cell = 1.0);
   OK(mps_solver_get_def(mps_mpm_solver(mpm), MPS_DEF_MPM, &part.mpm, size));
   assert_int_equal(part.size, size);
 }

@@ -193,8 +193,7 @@ TEST(test_errors_are_shared) {
 static mps_status make_share(mps_context *own, int32_t rank, int32_t size, mps_particles **out) {
   DEF(particles, def, .spacing = 0.5);
   mps_status status = mps_particles_create(own, &def, out);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 1.5};
-  if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_fill_box(*out, AT(0.0, 0.0), AT(2.0, 1.5), NULL);
   if (status == MPS_OK) status = mps_particles_set(*out, "density", 0, 1000.0 + rank);
   int64_t gone[12], count = 0;
   for (int64_t id = 1; id < 12; id++)

@@ -10,8 +10,7 @@ static const soil_layer damped = {1e9, 1500.0, 100.0, 200.0, 0.1};
 
 static mps_dynamics *solver(mps_particles *set, int integrator, double dt) {
   DEF(dynamics, def, .integrator = integrator, .dt = dt);
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, set, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, set, &def);
   return dynamics;
 }
 
@@ -20,8 +19,8 @@ static double value(mps_particles *set, const char *field, int64_t id, int compo
 }
 
 static mps_signal *sine(double phase) {
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3.0, 0.01, phase, &signal));
+  MAKE_KEPT(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3.0, 0.01,
+            phase);
   return signal;
 }
 
@@ -67,9 +66,8 @@ TEST(bad_boundaries_are_refused) {
     DEF(dynamics_boundary, def, .ids = ids, .id_count = 1, .kind = cases[k].kind,
         .axis = cases[k].normal, .dofs = cases[k].dofs, .density = cases[k].density,
         .shear_velocity = cases[k].vs, .pressure_velocity = cases[k].vp,
-        .factor[0] = cases[k].factor);
-    def.lower[0] = def.lower[1] = cases[k].lower;
-    def.upper[0] = def.upper[1] = cases[k].upper;
+        .factor[0] = cases[k].factor, .lower[0] = def.lower[1] = cases[k].lower,
+        .upper[0] = def.upper[1] = cases[k].upper);
     REFUSES(mps_dynamics_add_boundary(d, &def, &number), cases[k].text);
   }
   DEF(dynamics_boundary, def, .dofs = MPS_DOF_X);
@@ -106,8 +104,7 @@ TEST(bad_boundaries_are_refused) {
 
 TEST(bad_columns_are_refused) {
   DEF(particles, def, .spacing = 1.0);
-  scoped_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE(particles, set, create, context, &def);
   REFUSES(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 2), "0 particles");
   mps_particles_destroy(&set);
   def.dim = 3;
@@ -137,13 +134,9 @@ TEST(what_a_support_bears_is_no_divergence) {
   for (int integrator = 0; integrator < 3; integrator++) {
     scoped_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
     DEF(dynamics, def, .integrator = integrator, .dt = 1e-3, .divergence = 1.0);
-    scoped_dynamics *d = NULL;
-    mps_edit u;
     OK(mps_particles_add_field(set, "displacement", 0));
-    OK(mps_particles_edit(set, "displacement", &u));
-    *mps_edit_f64(&u, 5, 0) = 0.05; /* some 1e3 m/s2 */
-    OK(mps_particles_commit(set, &u));
-    OK(mps_dynamics_create(context, set, &def, &d));
+    EDIT(u, set, "displacement") *mps_edit_f64(&u, 5, 0) = 0.05; /* some 1e3 m/s2 */
+    MAKE(dynamics, d, create, context, set, &def);
     soil_hold(set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
     OK(mps_dynamics_step(d, 10));
     NEAR(value(set, "acceleration", 5, 0), 0.0, 0.0);
@@ -156,8 +149,7 @@ TEST(a_held_freedom_stays_where_it_is) {
     const int64_t ids[3] = {3, 6, 9};
     OK(mps_particles_set(set, "velocity", 0, 0.2));
     OK(mps_particles_set(set, "velocity", 1, -0.1));
-    OK(mps_particles_set(set, "spin", 0, 0.3));
-    OK(mps_particles_set(set, "displacement", 0, 0.05));
+    SET_FIELDS(set, {"spin", 0.3}, {"displacement", 0.05});
     scoped_dynamics *d = solver(set, integrator, 1e-3);
     OK(soil_add_held(d, MPS_DOF_X, 1, &ids[0]));
     OK(soil_add_held(d, MPS_DOF_Y, 1, &ids[1]));
@@ -221,11 +213,11 @@ TEST(a_list_bears_what_it_holds_once) {
     scoped_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &soil);
     scoped_dynamics *d = solver(set, integrator, 1e-3);
     DEF(dynamics_load, load, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -g);
-    mps_dynamics_boundary_def list = mps_dynamics_boundary_defaults();
     int32_t number, others;
     mps_reaction r, rest;
     OK(mps_dynamics_add_load(d, &load, &number));
-    list.lower[0] = list.lower[1] = -INFINITY, list.upper[0] = list.upper[1] = INFINITY;
+    DEF(dynamics_boundary, list, .lower[0] = list.lower[1] = -INFINITY,
+        .upper[0] = list.upper[1] = INFINITY);
     OK(mps_dynamics_add_boundary(d, &list, &others));
     list = mps_dynamics_boundary_defaults(), list.ids = ids, list.id_count = 7;
     OK(mps_dynamics_add_boundary(d, &list, &number)); /* prevails */
@@ -293,22 +285,16 @@ TEST(dashpots_on_one_particle) {
  * two viscous ends; which part of the energy comes back? */
 static double reflected(int wave, int integrator, double width) {
   const double height = 100.0;
-  mps_particles *set = soil_particles(context, 1.0, 3.0, height, 1, &soil);
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *d = NULL;
+  scoped_particles *set = soil_particles(context, 1.0, 3.0, height, 1, &soil);
   mps_totals first, last;
-  mps_view x;
-  mps_edit v;
   OK(mps_particles_add_field(set, "velocity", 0));
-  OK(mps_particles_view(set, "position", &x));
-  OK(mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, wave) =
-        1e-3 * exp(-pow((*mps_view_f64(&x, k, 1) - 0.5 * height) / width, 2));
-  OK(mps_particles_commit(set, &v));
-  def.integrator = integrator;
-  def.period_x = 3.0;
-  OK(mps_dynamics_create(context, set, &def, &d));
+  mps_view x = view_field(set, "position");
+  EDIT(v, set, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, wave) =
+          1e-3 * exp(-pow((*mps_view_f64(&x, k, 1) - 0.5 * height) / width, 2));
+  DEF(dynamics, def, .integrator = integrator, .period_x = 3.0);
+  MAKE(dynamics, d, create, context, set, &def);
   for (int end = 0; end < 2; end++) {
     int64_t count;
     int64_t *ids =
@@ -320,8 +306,6 @@ static double reflected(int wave, int integrator, double width) {
   OK(mps_dynamics_get_totals(d, &first));
   OK(mps_dynamics_run(d, 1.2, 1000, NULL, NULL));
   OK(mps_dynamics_get_totals(d, &last));
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
   return (last.kinetic + last.strain) / (first.kinetic + first.strain);
 }
 
@@ -343,11 +327,10 @@ TEST(waves_leave_through_viscous_ends) {
 TEST(a_period_closes_the_body) {
   for (int w = 2; w <= 5; w++) { /* 2: each neighbour from both sides */
     const int h = 7;
-    mps_particles *set = soil_particles(context, 1.0, w, h, 1, &soil);
+    scoped_particles *set = soil_particles(context, 1.0, w, h, 1, &soil);
     DEF(dynamics, def, .period_x = w, .dt = 1e-3);
-    mps_dynamics *d = NULL;
-    mps_signal *signal = sine(0.0);
-    OK(mps_dynamics_create(context, set, &def, &d));
+    scoped_signal *signal = sine(0.0);
+    MAKE(dynamics, d, create, context, set, &def);
     assert_int_equal(d->pairs, w * h + 3 * w * (h - 1));
     int64_t count;
     int64_t *ids = soil_select(set, 0.0, 0.0, w, 1.0, &count);
@@ -359,9 +342,6 @@ TEST(a_period_closes_the_body) {
       NEAR(value(set, "rotation", id, 0), value(set, "rotation", id / w * w, 0), 1e-14);
     }
     assert_true(fabs(value(set, "displacement", w * h - 1, 0)) > 1e-4);
-    mps_dynamics_destroy(&d);
-    mps_particles_destroy(&set);
-    mps_signal_destroy(&signal);
   }
 }
 
@@ -374,13 +354,12 @@ TEST(level_ground_moves_as_its_columns) {
     for (int wide = 0; wide < 2; wide++) {
       double periodic[12][3];
       for (int run = 0; run < 2; run++) { /* 0: periodic, 1: columns */
-        mps_particles *set = soil_particles(context, 1.0, 5.0, 12.0, 2, layers);
+        scoped_particles *set = soil_particles(context, 1.0, 5.0, 12.0, 2, layers);
         DEF(dynamics, def, .integrator = integrator, .dt = 5e-4, .radius_ratio = wide ? 2.3 : 1.5);
-        mps_dynamics *d = NULL;
         if (run == 0) def.period_x = 5.0;
         if (run == 1) OK(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 3));
         if (run == 1) OK(mps_dynamics_add_free_field(set, MPS_SIDE_X_UPPER, 2));
-        OK(mps_dynamics_create(context, set, &def, &d));
+        MAKE(dynamics, d, create, context, set, &def);
         int64_t count;
         int64_t *ids = soil_select(set, -9.0, 0.0, 20.0, 1.0, &count);
         OK(soil_add_driven(d, 0, signal, 1.0, count, ids));
@@ -395,8 +374,6 @@ TEST(level_ground_moves_as_its_columns) {
           for (int c = 0; c < 3; c++) NEAR(now[c], periodic[row][c], 1e-12);
         }
         assert_true(fabs(periodic[11][0]) > 1e-4);
-        mps_dynamics_destroy(&d);
-        mps_particles_destroy(&set);
       }
     }
 }
@@ -404,7 +381,6 @@ TEST(level_ground_moves_as_its_columns) {
 /* ---- shapes ---------------------------------------------------------------------------------- */
 
 static mps_status l_shape(void *user, const double *x, int32_t *inside) {
-  (void)user;
   *inside = x[0] < 5.0 || x[1] < 3.0;
   return MPS_OK;
 }
@@ -426,27 +402,21 @@ static mps_particles *shape(int which, bool turned) {
       const double x[2] = {fmod(k * 7.31, 23.0) + 0.31 * sin(k), floor(k / 20.0) + 0.3 * cos(k)};
       OK(mps_particles_append(upright, 1, x));
     }
-  mps_view x;
-  mps_edit v, w;
-  OK(mps_particles_view(upright, "position", &x));
+  mps_view x = view_field(upright, "position");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double at[2] = {*mps_view_f64(&x, k, turned), *mps_view_f64(&x, k, !turned)};
     OK(mps_particles_append(set, 1, at));
   }
-  OK(mps_particles_set(set, "density", 0, 1500.0));
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  OK(mps_particles_set(set, "spin", 0, 0.0));
+  SET_FIELDS(set, {"density", 1500.0}, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0},
+             {"spin", 0.0});
   OK(mps_particles_add_field(set, "velocity", 0));
-  OK(mps_particles_edit(set, "velocity", &v));
-  OK(mps_particles_edit(set, "spin", &w));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_edit_f64(&v, k, turned) = sin(0.3 * *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&v, k, !turned) = cos(0.2 * *mps_view_f64(&x, k, 0));
-    *mps_edit_f64(&w, k, 0) = (turned ? -1.0 : 1.0) * sin((double)k);
-  }
-  OK(mps_particles_commit(set, &w));
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "velocity")
+    EDIT(w, set, "spin")
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        *mps_edit_f64(&v, k, turned) = sin(0.3 * *mps_view_f64(&x, k, 1));
+        *mps_edit_f64(&v, k, !turned) = cos(0.2 * *mps_view_f64(&x, k, 0));
+        *mps_edit_f64(&w, k, 0) = (turned ? -1.0 : 1.0) * sin((double)k);
+      }
   mps_particles_destroy(&upright);
   return set;
 }

@@ -12,9 +12,8 @@ static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
 /* 6 x 6 particles of 1 m, at rest: 54 t a metre. */
 static mps_dynamics *block(mps_particles **set) {
   DEF(dynamics, def, .dt = DT);
-  mps_dynamics *dynamics = NULL;
   *set = soil_particles(context, 1.0, 6.0, 6.0, 1, &soil);
-  OK(mps_dynamics_create(context, *set, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *set, &def);
   return dynamics;
 }
 
@@ -75,14 +74,12 @@ TEST(a_changed_boundary_keeps_its_account) {
   mps_particles *set;
   mps_dynamics *dynamics = block(&set);
   DEF(dynamics_load, gravity, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[1] = -9.81);
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   int32_t load, number;
   mps_reaction r;
   const double mass = totals_of(dynamics).mass;
   OK(mps_dynamics_add_load(dynamics, &gravity, &load));
-  base.dofs = MPS_DOF_X | MPS_DOF_Y;
-  base.lower[0] = base.lower[1] = -INFINITY, base.upper[0] = INFINITY, base.upper[1] = 1.0;
-  base.lower[2] = base.upper[2] = 0.0;
+  DEF(dynamics_boundary, base, .dofs = MPS_DOF_X | MPS_DOF_Y, .lower[0] = base.lower[1] = -INFINITY,
+      .upper[0] = INFINITY, .upper[1] = 1.0, .lower[2] = base.upper[2] = 0.0);
   OK(mps_dynamics_add_boundary(dynamics, &base, &number));
   OK(mps_dynamics_step(dynamics, STEPS));
   OK(mps_dynamics_get_reaction(dynamics, number, &r));

@@ -17,14 +17,12 @@ static mps_particles *block(mps_context *own, double width, double height) {
 
 static mps_dynamics *solver_of(mps_particles *set, mps_material *material, mps_kernel *kernel) {
   DEF(dynamics, def, .dt = DT, .material = material, .kernel = kernel);
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, set, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, set, &def);
   return dynamics;
 }
 
 static double value_of(mps_particles *set, const char *name, int64_t id, int64_t component) {
-  mps_view v;
-  OK(mps_particles_view(set, name, &v));
+  mps_view v = view_field(set, name);
   return *mps_view_f64(&v, mps_particles_index(set, id), component);
 }
 
@@ -38,24 +36,20 @@ static mps_status write_one(mps_particles *set, const char *name, int64_t id, do
 
 /* A push that is not the same for any two particles. */
 static void push(mps_particles *set, double speed) {
-  mps_edit v;
   OK(mps_particles_add_field(set, "velocity", 0));
-  OK(mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = 0; k < v.view.shape[0]; k++) {
-    mps_view id;
-    OK(mps_particles_view(set, "id", &id));
-    const double i = (double)*mps_view_i64(&id, k, 0);
-    *mps_edit_f64(&v, k, 0) = speed * sin(0.7 * i);
-    *mps_edit_f64(&v, k, 1) = speed * cos(1.3 * i);
-  }
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++) {
+      mps_view id = view_field(set, "id");
+      const double i = (double)*mps_view_i64(&id, k, 0);
+      *mps_edit_f64(&v, k, 0) = speed * sin(0.7 * i);
+      *mps_edit_f64(&v, k, 1) = speed * cos(1.3 * i);
+    }
 }
 
 static void assert_same_motion(mps_particles *a, mps_particles *b, double tolerance) {
   static const char *const names[] = {"displacement", "velocity", "rotation", "spin"};
   assert_int_equal(mps_particles_count(a), mps_particles_count(b));
-  mps_view id;
-  OK(mps_particles_view(a, "id", &id));
+  mps_view id = view_field(a, "id");
   for (int64_t k = 0; k < mps_particles_count(a); k++)
     for (int f = 0; f < 4; f++)
       for (int c = 0; c < (f < 2 ? 2 : 1); c++)
@@ -74,8 +68,8 @@ TEST(a_material_is_what_its_fields_would_be) {
   OK(mps_material_get_moduli(rock, 1500.0, &m[1]));
   scoped_particles *by_law = block(context, 6, 6), *by_field = block(context, 6, 6);
   const int64_t ids[3] = {30, 4, 17};
-  OK(mps_particles_set(by_field, "shear_velocity", 0, m[0].shear_velocity));
-  OK(mps_particles_set(by_field, "pressure_velocity", 0, m[0].pressure_velocity));
+  SET_FIELDS(by_field, {"shear_velocity", m[0].shear_velocity},
+             {"pressure_velocity", m[0].pressure_velocity});
   for (int k = 0; k < 3; k++) {
     OK(write_one(by_field, "pressure_velocity", ids[k], m[1].pressure_velocity));
     OK(write_one(by_field, "shear_velocity", ids[k], m[1].shear_velocity));
@@ -129,9 +123,8 @@ TEST(materials_that_do_not_fit_are_refused) {
 /* Particles that the call does not concern may have values that the solver refuses: then the call
  * has written none. */
 TEST(a_refused_material_writes_no_velocities) {
-  scoped_material *stiff = NULL;
   scoped_particles *set = block(context, 4, 4);
-  OK(mps_material_create_linear_elastic(context, 8e7, 0.25, &stiff));
+  MAKE(material, stiff, create_linear_elastic, context, 8e7, 0.25);
   scoped_dynamics *d = solver_of(set, NULL, NULL);
   const double shear = value_of(set, "shear_velocity", 3, 0);
   const double pressure = value_of(set, "pressure_velocity", 3, 0);
@@ -150,9 +143,8 @@ TEST(totals_are_of_the_written_rotations) {
   for (int rotation = 0; rotation < 2; rotation++) {
     scoped_particles *set = block(context, 5, 5);
     DEF(dynamics, def, .dt = DT, .rotation = rotation);
-    scoped_dynamics *d = NULL;
     mps_totals written, begun;
-    OK(mps_dynamics_create(context, set, &def, &d));
+    MAKE(dynamics, d, create, context, set, &def);
     OK(mps_particles_set(set, "rotation", 0, 0.3));
     OK(mps_dynamics_get_totals(d, &written));
     OK(mps_dynamics_restart(d, 0.0));
@@ -164,9 +156,8 @@ TEST(totals_are_of_the_written_rotations) {
 
 /* What leads from one material to another is no work of the scheme: the budget stays closed. */
 TEST(a_material_changes_in_motion) {
-  scoped_material *stiff = NULL;
   scoped_particles *set = block(context, 6, 6);
-  OK(mps_material_create_linear_elastic(context, 8e7, 0.25, &stiff));
+  MAKE(material, stiff, create_linear_elastic, context, 8e7, 0.25);
   push(set, 1e-4);
   scoped_dynamics *d = solver_of(set, NULL, NULL);
   OK(mps_dynamics_step(d, 30));
@@ -185,9 +176,8 @@ TEST(a_material_changes_in_motion) {
 /* ---- weight functions ------------------------------------------------------------------------ */
 
 TEST(the_default_weight_is_that_of_a_handle) {
-  mps_kernel *w = NULL;
   scoped_particles *a = block(context, 5, 7), *b = block(context, 5, 7);
-  OK(mps_kernel_create(context, MPS_KERNEL_MPS, 1.5, &w));
+  MAKE_KEPT(kernel, w, create, context, MPS_KERNEL_MPS, 1.5);
   push(a, 1e-3);
   push(b, 1e-3);
   scoped_dynamics *plain = solver_of(a, NULL, NULL), *with = solver_of(b, NULL, w);
@@ -212,19 +202,15 @@ static const struct {
  * weight. */
 TEST(uniform_strain_is_exact_inside_for_every_weight) {
   for (int k = 0; k < WEIGHTS; k++) {
-    scoped_kernel *w = NULL;
-    OK(mps_kernel_create(context, weights[k].kind, weights[k].radius, &w));
+    MAKE(kernel, w, create, context, weights[k].kind, weights[k].radius);
     scoped_particles *set = block(context, 15, 15);
     scoped_dynamics *d = solver_of(set, NULL, w);
-    mps_view x;
-    mps_edit u;
-    OK(mps_particles_view(set, "reference", &x));
-    OK(mps_particles_edit(set, "displacement", &u));
-    for (int64_t i = 0; i < u.view.shape[0]; i++) {
-      *mps_edit_f64(&u, i, 0) = 1e-6 * *mps_view_f64(&x, i, 0);
-      *mps_edit_f64(&u, i, 1) = 3e-6 * *mps_view_f64(&x, i, 1);
-    }
-    OK(mps_particles_commit(set, &u));
+    mps_view x = view_field(set, "reference");
+    EDIT(u, set, "displacement")
+      for (int64_t i = 0; i < u.view.shape[0]; i++) {
+        *mps_edit_f64(&u, i, 0) = 1e-6 * *mps_view_f64(&x, i, 0);
+        *mps_edit_f64(&u, i, 1) = 3e-6 * *mps_view_f64(&x, i, 1);
+      }
     OK(mps_dynamics_refresh(d));
     const int64_t middle = 7 * 15 + 7;
     const double lambda = 1500.0 * (200.0 * 200.0 - 2.0 * 100.0 * 100.0);
@@ -239,8 +225,7 @@ TEST(the_quick_limit_holds_for_every_weight) {
   static const double size[3][2] = {{12, 3}, {9, 8}, {20, 2}};
   for (int k = 0; k < WEIGHTS; k++)
     for (int s = 0; s < 6; s++) {
-      scoped_kernel *w = NULL;
-      OK(mps_kernel_create(context, weights[k].kind, weights[k].radius, &w));
+      MAKE(kernel, w, create, context, weights[k].kind, weights[k].radius);
       scoped_particles *set = block(context, size[s % 3][0], size[s % 3][1]);
       if (s >= 3) OK(mps_particles_set(set, "pressure_velocity", 0, 900.0));
       scoped_dynamics *d = solver_of(set, NULL, w);
@@ -294,8 +279,7 @@ TEST(edited_ground_is_taken_up) {
 /* Stiffness-proportional damping is the rate of a force: a jump of the ground is no rate. */
 TEST(a_jump_of_the_ground_is_not_damped) {
   scoped_particles *set = block(context, 4, 4);
-  OK(mps_particles_set(set, "damping", 0, 0.05));
-  OK(mps_particles_set(set, "displacement", 0, 0.0));
+  SET_FIELDS(set, {"damping", 0.05}, {"displacement", 0.0});
   scoped_dynamics *d = solver_of(set, NULL, NULL);
   OK(write_one(set, "displacement", 5, 1e-5));
   OK(mps_dynamics_step(d, 1));
@@ -335,14 +319,13 @@ TEST(what_the_solver_relies_on_stays) {
   scoped_particles *set = block(context, 4, 4);
   scoped_dynamics *d = solver_of(set, NULL, NULL);
   scoped_snapshot *kept = NULL;
-  mps_edit v;
   OK(mps_dynamics_snapshot(d, &kept));
   const double x = value_of(set, "position", 5, 0);
-  OK(mps_particles_edit(set, "position", &v));
-  *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x + 0.1;
-  FAILS(mps_particles_commit(set, &v), MPS_ERROR_STATE, "write the former ones back");
-  *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x;
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "position") {
+    *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x + 0.1;
+    FAILS(mps_particles_commit(set, &v), MPS_ERROR_STATE, "write the former ones back");
+    *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x;
+  }
   OK(mps_dynamics_step(d, 1));
   OK(write_one(set, "reference", 5, 0.0));
   FAILS(mps_dynamics_step(d, 1), MPS_ERROR_STATE,
@@ -359,10 +342,8 @@ static mps_particles *hard_set(mps_context *own) {
   mps_particles *set = block(own, 3, 6);
   const double x[2] = {3.5, 0.5};
   OK(mps_particles_append(set, 1, x));
-  OK(mps_particles_set(set, "density", 0, 1500.0));
-  OK(mps_particles_set(set, "damping", 0, 0.05));
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  SET_FIELDS(set, {"density", 1500.0}, {"damping", 0.05}, {"shear_velocity", 100.0},
+             {"pressure_velocity", 200.0});
   OK(mps_dynamics_add_free_field(set, MPS_SIDE_X_LOWER, 3));
   return set;
 }
@@ -372,15 +353,14 @@ TEST(a_failed_creation_changes_nothing) {
     scoped_particles *set = hard_set(context);
     mps_dynamics_def def = mps_dynamics_defaults();
     mps_dynamics *d = NULL;
-    mps_edit x;
     OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &def.material));
-    OK(mps_particles_edit(set, "position", &x));
-    const int64_t last = mps_particles_count(set) - 1; /* of the column */
-    if (late)
-      *mps_edit_f64(&x, last, 1) += 0.5;
-    else
-      for (int c = 0; c < 2; c++) *mps_edit_f64(&x, 0, c) = *mps_view_f64(&x.view, 1, c);
-    OK(mps_particles_commit(set, &x));
+    EDIT(x, set, "position") {
+      const int64_t last = mps_particles_count(set) - 1; /* of the column */
+      if (late)
+        *mps_edit_f64(&x, last, 1) += 0.5;
+      else
+        for (int c = 0; c < 2; c++) *mps_edit_f64(&x, 0, c) = *mps_view_f64(&x.view, 1, c);
+    }
     const uint64_t before = seen_set(set);
     REFUSES(mps_dynamics_create(context, set, &def, &d),
             late ? "not a straight stack" : "particles 0 and 1 lie at the same point");
@@ -417,20 +397,17 @@ static void load_block(mps_dynamics *d, bool top) {
 static void copy_motion(mps_particles *from, mps_particles *to) {
   static const char *const names[] = {"displacement", "velocity", "rotation", "spin"};
   for (int f = 0; f < 4; f++) {
-    mps_view a, ref, at;
-    mps_edit b;
     OK(mps_particles_add_field(to, names[f], 0));
-    OK(mps_particles_view(from, names[f], &a));
-    OK(mps_particles_view(from, "reference", &ref));
-    OK(mps_particles_view(to, "reference", &at));
-    OK(mps_particles_edit(to, names[f], &b));
-    for (int64_t j = 0; j < b.view.shape[0]; j++)
-      for (int64_t i = 0; i < a.shape[0]; i++)
-        if (*mps_view_f64(&ref, i, 0) == *mps_view_f64(&at, j, 0) &&
-            *mps_view_f64(&ref, i, 1) == *mps_view_f64(&at, j, 1))
-          for (int64_t c = 0; c < b.view.shape[1]; c++)
-            *mps_edit_f64(&b, j, c) = *mps_view_f64(&a, i, c);
-    OK(mps_particles_commit(to, &b));
+    mps_view a = view_field(from, names[f]);
+    mps_view ref = view_field(from, "reference");
+    mps_view at = view_field(to, "reference");
+    EDIT(b, to, names[f])
+      for (int64_t j = 0; j < b.view.shape[0]; j++)
+        for (int64_t i = 0; i < a.shape[0]; i++)
+          if (*mps_view_f64(&ref, i, 0) == *mps_view_f64(&at, j, 0) &&
+              *mps_view_f64(&ref, i, 1) == *mps_view_f64(&at, j, 1))
+            for (int64_t c = 0; c < b.view.shape[1]; c++)
+              *mps_edit_f64(&b, j, c) = *mps_view_f64(&a, i, c);
   }
 }
 
@@ -458,9 +435,8 @@ TEST(an_excavation_is_a_new_solver_on_what_is_left) {
     OK(mps_dynamics_step(fresh, 40));
     OK(mps_dynamics_refresh(d));
   }
-  mps_view id, at;
-  OK(mps_particles_view(set, "id", &id));
-  OK(mps_particles_view(set, "position", &at));
+  mps_view id = view_field(set, "id");
+  mps_view at = view_field(set, "position");
   double most = 0.0;
   for (int64_t k = 0; k < at.shape[0]; k++) {
     const int64_t row = (int64_t)(value_of(set, "reference", *mps_view_i64(&id, k, 0), 1));

@@ -28,13 +28,9 @@ TEST(added_and_moved_particles_get_new_references) {
   mps_dynamics_destroy(&d);
   const double x[2] = {3.5, 0.5};
   OK(mps_particles_append(set, 1, x)); /* its reference is (0, 0) */
-  OK(mps_particles_set(set, "density", 0, 1500.0));
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  mps_edit at;
-  OK(mps_particles_edit(set, "position", &at));
-  *mps_edit_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
-  OK(mps_particles_commit(set, &at));
+  SET_FIELDS(set, {"density", 1500.0}, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0});
+  EDIT(at, set, "position")
+    *mps_edit_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
   d = soil_solver(context, set);
   NEAR(soil_value(set, "position", 9, 0), 3.5, 0.0);
   NEAR(soil_value(set, "position", 9, 1), 0.5, 0.0);
@@ -46,11 +42,9 @@ TEST(parts_may_go_in_any_order) {
   for (int order = 0; order < 24; order++) {
     mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil_plain);
-    mps_dynamics *d = NULL;
-    mps_signal *signal = NULL;
     const int64_t id = 0;
-    OK(mps_dynamics_create(own, set, NULL, &d));
-    OK(mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
+    MAKE_KEPT(dynamics, d, create, own, set, NULL);
+    MAKE_KEPT(signal, signal, create_ricker, own, 4.0, 0.25, 1.0);
     OK(soil_add_driven(d, 0, signal, 1.0, 1, &id));
     int left[4] = {0, 1, 2, 3};
     for (int k = 0, rest = order; k < 4; k++) {
@@ -74,10 +68,9 @@ static mps_status everything(mps_context *own, int integrator) {
   scoped_particles *set = NULL;
   scoped_dynamics *d = NULL;
   scoped_signal *signal = NULL, *factor = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
   const int64_t ids[3] = {0, 1, 2};
   mps_status status = mps_particles_create(own, &set_def, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_fill_box(set, AT(0.0, 0.0), AT(4.0, 4.0), NULL);
   if (status == MPS_OK) status = mps_particles_set(set, "density", 0, 1500.0);
   if (status == MPS_OK) status = mps_particles_set(set, "shear_velocity", 0, 100.0);
   if (status == MPS_OK) status = mps_particles_set(set, "pressure_velocity", 0, 200.0);
@@ -96,8 +89,7 @@ static mps_status everything(mps_context *own, int integrator) {
     status = mps_signal_create_sine(own, MPS_SIGNAL_QUANTITY_VALUE, 4.0, 1.0, 0.0, &factor);
   if (status == MPS_OK) status = soil_add_held(d, MPS_DOF_Y, 3, ids);
   if (status == MPS_OK) status = soil_add_driven(d, 0, signal, 1.0, 3, ids);
-  mps_dynamics_boundary_def viscous = mps_dynamics_boundary_defaults();
-  viscous.signal[0] = viscous.signal[1] = signal;
+  DEF(dynamics_boundary, viscous, .signal[0] = viscous.signal[1] = signal);
   if (status == MPS_OK) status = soil_add_viscous(d, &viscous, 3, ids);
   mps_dynamics_linear_limit limit;
   if (status == MPS_OK) status = mps_dynamics_find_limit(d, 1.0, &limit);
@@ -138,11 +130,9 @@ TEST(steps_allocate_nothing) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
   mps_particles *set = soil_particles(own, 1.0, 10.0, 20.0, 1, &soil_plain);
-  mps_dynamics *d = NULL;
-  mps_signal *signal = NULL;
   const int64_t ids[2] = {0, 199};
-  OK(mps_dynamics_create(own, set, NULL, &d));
-  OK(mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
+  MAKE_KEPT(dynamics, d, create, own, set, NULL);
+  MAKE_KEPT(signal, signal, create_ricker, own, 4.0, 0.25, 1.0);
   OK(soil_add_driven(d, 0, signal, 1.0, 1, &ids[0]));
   OK(soil_add_viscous(d, NULL, 1, &ids[1]));
   OK(mps_dynamics_step(d, 1)); /* finds dt */

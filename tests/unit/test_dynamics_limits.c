@@ -1,14 +1,12 @@
 /* test_dynamics_limits.c - the stability limit by linear theory and by stepping, against closed
  * forms, against runs just below and above it, and against the reference values of Yoshida.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "soil_column.h"
 #include "test_fixture.h"
 
-static const double pi = 3.14159265358979323846;
-
 static mps_dynamics *solver(mps_particles *set, const mps_dynamics_def *def) {
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, set, def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, set, def);
   return dynamics;
 }
 
@@ -43,8 +41,8 @@ TEST(a_large_lattice_spins_at_root_24) {
     NEAR(undamped.omega / omega, 1.0, 1e-4);
     NEAR(undamped.dt, 2.0 / undamped.omega, 1e-15);
     assert_true(undamped.residual < 1e-6 && undamped.iterations > 0);
-    const double h = 0.1, w = undamped.omega, alpha = 4.0 * pi * 14.0 / 15.0 * h;
-    const double b = h / (pi * 15.0) + alpha / (w * w);
+    const double h = 0.1, w = undamped.omega, alpha = 4.0 * PI * 14.0 / 15.0 * h;
+    const double b = h / (PI * 15.0) + alpha / (w * w);
     const mps_dynamics_linear_limit damped = limit_of(&def, 8, 300, 2.0, h);
     NEAR(damped.dt / (-b + sqrt(b * b + 4.0 / (w * w))), 1.0, 1e-9);
     NEAR(damped.omega / w, 1.0, 1e-9);
@@ -74,12 +72,9 @@ TEST(the_predicted_step_suits_thin_strips) {
     for (int v = 0; v < 5; v++)
       for (int thick = 1; thick <= 4; thick++) {
         mps_dynamics_def def = mps_dynamics_defaults();
-        mps_dynamics_predict_def question = mps_dynamics_predict_defaults();
         mps_dynamics_prediction predicted;
-        question.radius_ratio = def.radius_ratio = reach[r];
-        question.spacing = 0.5;
-        question.shear_velocity = 120.0;
-        question.pressure_velocity = 120.0 * ratio[v];
+        DEF(dynamics_predict, question, .radius_ratio = def.radius_ratio = reach[r], .spacing = 0.5,
+            .shear_velocity = 120.0, .pressure_velocity = 120.0 * ratio[v]);
         OK(mps_dynamics_predict(context, &question, &predicted));
         const double limit = limit_of(&def, thick, 20, ratio[v], 0.0).dt;
         if (!(predicted.dt <= limit * (1.0 + 1e-6) && predicted.dt > 0.3 * limit))
@@ -94,7 +89,7 @@ TEST(without_forces_only_alpha_limits) {
     const mps_dynamics_linear_limit free_one = limit_of(&def, 1, 1, 2.0, 0.0);
     assert_true(isinf(free_one.dt) && free_one.dt > 0.0);
     NEAR(free_one.omega, 0.0, 0.0);
-    const double alpha = 4.0 * pi * 14.0 / 15.0 * 0.3;
+    const double alpha = 4.0 * PI * 14.0 / 15.0 * 0.3;
     NEAR(limit_of(&def, 1, 1, 2.0, 0.3).dt, 2.0 / alpha, 1e-14);
     const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
     scoped_particles *set = soil_particles(context, 0.5, 2.0, 2.0, 1, &soil);
@@ -117,11 +112,6 @@ TEST(boundaries_change_the_limit) {
 
 /* ---- linear theory against runs -------------------------------------------------------------- */
 
-static double random_part(uint64_t *seed) { /* in [-1, 1) */
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
-
 /* 8 x 8 particles of two materials in random places, some moved off the lattice, each with its own
  * damping if `uneven`; at rest but for displacements of 1e-20 m and rotations of 1e-20. */
 static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) {
@@ -138,16 +128,16 @@ static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) 
   OK(mps_particles_edit(set, "pressure_velocity", &vp));
   OK(mps_particles_edit(set, "damping", &h));
   for (int64_t k = 0; k < x.view.shape[0]; k++) {
-    if (random_part(&seed) > 0.3) {
+    if (noise(&seed) > 0.3) {
       *mps_edit_f64(&rho, k, 0) = 2000.0;
       *mps_edit_f64(&vs, k, 0) = 170.0;
       *mps_edit_f64(&vp, k, 0) = 600.0;
     }
-    if (uneven) *mps_edit_f64(&h, k, 0) *= 1.0 + random_part(&seed);
-    *mps_edit_f64(&th, k, 0) = 1e-20 * random_part(&seed);
+    if (uneven) *mps_edit_f64(&h, k, 0) *= 1.0 + noise(&seed);
+    *mps_edit_f64(&th, k, 0) = 1e-20 * noise(&seed);
     for (int c = 0; c < 2; c++) {
-      if (random_part(&seed) > 0.5) *mps_edit_f64(&x, k, c) += 0.2 * random_part(&seed);
-      *mps_edit_f64(&u, k, c) = 1e-20 * random_part(&seed);
+      if (noise(&seed) > 0.5) *mps_edit_f64(&x, k, c) += 0.2 * noise(&seed);
+      *mps_edit_f64(&u, k, c) = 1e-20 * noise(&seed);
       *mps_edit_f64(&x, k, c) += *mps_view_f64(&u.view, k, c);
     }
   }
@@ -165,25 +155,22 @@ static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) 
 static double growth(const mps_dynamics_def *user_def, uint64_t seed, double damping, bool uneven,
                      double duration, double factor, double *dt, int64_t steps) {
   mps_dynamics_def def = *user_def;
-  mps_particles *set = two_materials(seed, damping, uneven);
+  scoped_particles *set = two_materials(seed, damping, uneven);
   def.dt = 1.0;
   def.divergence = 1e6;
-  mps_dynamics *d = solver(set, &def);
+  scoped_dynamics *d = solver(set, &def);
   *dt = linear(d, duration).dt;
   OK(mps_dynamics_set_dt(d, factor * *dt));
   if (duration > 0.0) steps = (int64_t)(duration / (factor * *dt) + 0.5);
-  mps_view u, th;
   double most = 0.0;
   const mps_status status = mps_dynamics_step(d, steps);
   assert_true(status == MPS_OK || status == MPS_ERROR_DIVERGED);
-  OK(mps_particles_view(set, "displacement", &u));
-  OK(mps_particles_view(set, "rotation", &th));
+  mps_view u = view_field(set, "displacement");
+  mps_view th = view_field(set, "rotation");
   for (int64_t k = 0; k < u.shape[0]; k++) {
     most = fmax(most, fabs(*mps_view_f64(&th, k, 0)));
     for (int c = 0; c < 2; c++) most = fmax(most, fabs(*mps_view_f64(&u, k, c)));
   }
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
   return status == MPS_OK ? most / 1e-20 : INFINITY;
 }
 

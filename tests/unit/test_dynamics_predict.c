@@ -18,13 +18,12 @@ static mps_dynamics_prediction predict(const mps_dynamics_predict_def *def) {
 }
 
 TEST(prediction_by_linear_theory) {
-  const double pi = 3.14159265358979323846;
   for (double h = 0.0; h < 0.5; h += 0.07) {
     const mps_dynamics_predict_def def = ground(0.4, 150.0, 330.0, h);
     const mps_dynamics_prediction p = predict(&def);
     const double omega = sqrt(24.0) * 150.0 / 0.8; /* the spin mode */
     NEAR(p.omega / omega, 1.0, 1e-12);
-    const double b = h / (pi * 15.0) + 4.0 * pi * 14.0 / 15.0 * h / (omega * omega);
+    const double b = h / (PI * 15.0) + 4.0 * PI * 14.0 / 15.0 * h / (omega * omega);
     NEAR(p.dt / (-b + sqrt(b * b + 4.0 / (omega * omega))), 1.0, 1e-10);
     if (h == 0.0) NEAR(p.dt, 2.0 / omega, 1e-12);
   }

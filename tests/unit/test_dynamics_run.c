@@ -64,25 +64,19 @@ static mps_dynamics *shaken(mps_context *own, const mps_dynamics_def *def, doubl
   soil_layer damped = soil;
   damped.damping = h;
   *set = soil_particles(own, 1.0, 6.0, 6.0, 1, &damped);
-  mps_view x;
-  mps_edit v, w, ratio;
-  OK(mps_particles_set(*set, "velocity", 0, 0.0));
-  OK(mps_particles_set(*set, "spin", 0, 0.0));
-  OK(mps_particles_edit(*set, "velocity", &v));
-  OK(mps_particles_view(*set, "position", &x));
-  OK(mps_particles_edit(*set, "spin", &w));
-  OK(mps_particles_edit(*set, "damping", &ratio));
-  for (int64_t k = 0; k < v.view.shape[0]; k++) {
-    *mps_edit_f64(&v, k, 0) = 1e-3 * sin(1.0 + *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&v, k, 1) = 1e-3 * cos(2.0 * *mps_view_f64(&x, k, 0));
-    *mps_edit_f64(&w, k, 0) = 1e-3 * sin(3.0 * *mps_view_f64(&x, k, 0));
-    *mps_edit_f64(&ratio, k, 0) *= 1.0 + 0.5 * sin((double)k);
+  SET_FIELDS(*set, {"velocity", 0.0}, {"spin", 0.0});
+  EDIT(v, *set, "velocity") {
+    mps_view x = view_field(*set, "position");
+    EDIT(w, *set, "spin")
+      EDIT(ratio, *set, "damping")
+        for (int64_t k = 0; k < v.view.shape[0]; k++) {
+          *mps_edit_f64(&v, k, 0) = 1e-3 * sin(1.0 + *mps_view_f64(&x, k, 1));
+          *mps_edit_f64(&v, k, 1) = 1e-3 * cos(2.0 * *mps_view_f64(&x, k, 0));
+          *mps_edit_f64(&w, k, 0) = 1e-3 * sin(3.0 * *mps_view_f64(&x, k, 0));
+          *mps_edit_f64(&ratio, k, 0) *= 1.0 + 0.5 * sin((double)k);
+        }
   }
-  OK(mps_particles_commit(*set, &ratio));
-  OK(mps_particles_commit(*set, &w));
-  OK(mps_particles_commit(*set, &v));
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(own, *set, def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, own, *set, def);
   return dynamics;
 }
 
@@ -190,7 +184,7 @@ static mps_status meddle(void *user, mps_dynamics *dynamics) {
   const mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
   const mps_dynamics_load_def load = mps_dynamics_load_defaults();
   mps_dynamics *same = dynamics;
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   int32_t number;
   mps_dynamics_destroy(&same);
   assert_ptr_equal(same, dynamics); /* does nothing */
@@ -206,7 +200,6 @@ static mps_status meddle(void *user, mps_dynamics *dynamics) {
   assert_int_equal(mps_dynamics_add_load(dynamics, &load, &number), MPS_ERROR_STATE);
   assert_int_equal(mps_dynamics_snapshot(dynamics, &snapshot), MPS_OK); /* reading is free */
   assert_int_equal(mps_dynamics_rollback(dynamics, snapshot), MPS_ERROR_STATE);
-  mps_snapshot_destroy(&snapshot);
   (*tries)++;
   return MPS_OK;
 }
@@ -315,12 +308,11 @@ TEST(a_rollback_repeats_a_run_bit_for_bit) {
     for (int64_t at = 0; at <= 40; at += 40) {
       const mps_dynamics_def def = def_of(integrator, 1e-3 / 3.0);
       const int64_t base[2] = {0, 35};
-      scoped_signal *sine = NULL;
       scoped_particles *set = NULL;
       scoped_snapshot *snapshot = NULL;
       mps_reaction first, again;
       double one[36], two[36];
-      OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3.0, 0.01, 0.3, &sine));
+      MAKE(signal, sine, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3.0, 0.01, 0.3);
       scoped_dynamics *d = shaken(context, &def, 0.1, &set);
       OK(soil_add_driven(d, 0, sine, 1.0, 1, &base[0]));
       OK(soil_add_viscous(d, NULL, 1, &base[1]));
@@ -464,16 +456,12 @@ TEST(the_warning_is_right_off_a_lattice) {
   hooks h;
   mps_context *own = hooked(&h);
   DEF(particles, set_def, .spacing = 1.0);
-  mps_particles *set = NULL;
-  mps_dynamics *d = NULL;
   mps_dynamics_linear_limit limit;
   const double x[8] = {0.0, 0.0, 0.2, 0.0, 0.0, 0.2, 1.0, 1.0};
-  OK(mps_particles_create(own, &set_def, &set));
+  MAKE_KEPT(particles, set, create, own, &set_def);
   OK(mps_particles_append(set, 4, x));
-  OK(mps_particles_set(set, "density", 0, 1500.0));
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  OK(mps_dynamics_create(own, set, NULL, &d));
+  SET_FIELDS(set, {"density", 1500.0}, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0});
+  MAKE_KEPT(dynamics, d, create, own, set, NULL);
   OK(mps_dynamics_find_limit(d, 0.0, &limit));
   assert_true(limit.dt < 0.1 * DT);
   OK(mps_dynamics_set_dt(d, DT));
@@ -487,20 +475,13 @@ TEST(a_close_pair_is_named) {
   for (int close = 0; close < 2; close++) {
     hooks h;
     mps_context *own = hooked(&h);
-    DEF(particles, set_def, .spacing = 1.0);
-    mps_particles *set = NULL;
-    mps_dynamics *d = NULL;
-    const double lo[2] = {0.0, 0.0}, hi[2] = {6.0, 6.0};
     const double x[2] = {2.5 + (close ? 0.01 : 0.5), close ? 2.5 : 3.0};
-    OK(mps_particles_create(own, &set_def, &set));
-    OK(mps_particles_fill_box(set, lo, hi, NULL));
+    mps_particles *set = box_of(own, 1.0, AT(0.0, 0.0), AT(6.0, 6.0));
     const double near[2] = {2.5, 2.5};
     const int64_t id = mps_particles_nearest(set, near);
     OK(mps_particles_append(set, 1, x));
-    OK(mps_particles_set(set, "density", 0, 1500.0));
-    OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-    OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-    OK(mps_dynamics_create(own, set, NULL, &d));
+    SET_FIELDS(set, {"density", 1500.0}, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0});
+    MAKE_KEPT(dynamics, d, create, own, set, NULL);
     OK(mps_dynamics_step(d, 1));
     OK(mps_dynamics_step(d, 1));
     assert_int_equal(h.warnings, close); /* once */
@@ -532,9 +513,8 @@ TEST(divergence_names_step_time_and_particle) {
     assert_true(error->particle >= 0 && error->particle < 36);
     FAILS(mps_dynamics_step(d, 1), MPS_ERROR_DIVERGED, text); /* again */
     assert_int_equal(mps_dynamics_steps(d), steps);
-    mps_snapshot *snapshot = NULL;
+    scoped_snapshot *snapshot = NULL;
     OK(mps_dynamics_snapshot(d, &snapshot));
-    mps_snapshot_destroy(&snapshot);
     const char *const fields[] = {"displacement", "rotation", "velocity", "spin"};
     for (int f = 0; f < 4; f++) OK(mps_particles_set(set, fields[f], 0, 0.0));
     OK(mps_particles_set(set, "displacement", 1, 0.0));

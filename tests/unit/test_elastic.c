@@ -32,14 +32,12 @@ static void clamp(test_body *b) {
 static void refuse_points(mps_context *context, int64_t count, const double *x, const char *why) {
   scoped_test_body b = test_body_begin(context, 2, 0.5);
   OK(mps_particles_append(b.particles, count, x));
-  OK(mps_particles_set(b.particles, "young", 0, 1.0));
-  OK(mps_particles_set(b.particles, "poisson", 0, 0.3));
+  SET_FIELDS(b.particles, {"young", 1.0}, {"poisson", 0.3});
   REFUSES(mps_elastic_create(context, b.particles, NULL, &b.elastic), why);
   assert_null(b.elastic);
 }
 
-TEST(bodies_that_cannot_be_solved_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(bodies_that_cannot_be_solved_are_refused) {
   const double off[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.51};
   refuse_points(context, 4, off, "particle 3 is off the lattice");
   const double twice[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5, 0.5, 0};
@@ -61,8 +59,7 @@ TEST(bodies_that_cannot_be_solved_are_refused) {
         "no field 'young'");
 }
 
-TEST(impossible_materials_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(impossible_materials_are_refused) {
   scoped_test_body b = square(context, 3, NULL);
   double *young = mpsi_particles_column(b.particles, "young", 0); /* past the set's own check */
   double *poisson = mpsi_particles_column(b.particles, "poisson", 0);
@@ -92,8 +89,7 @@ TEST(impossible_materials_are_refused) {
   OK(mps_elastic_solve(b.elastic));
 }
 
-TEST(bad_definitions_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(bad_definitions_are_refused) {
   scoped_test_body b = square(context, 3, NULL);
   mps_elastic *e = NULL;
   assert_int_equal(mps_elastic_create(NULL, b.particles, NULL, &e), MPS_ERROR_ARGUMENT);
@@ -111,8 +107,7 @@ TEST(bad_definitions_are_refused) {
 
 /* ---- refused calls --------------------------------------------------------------------------- */
 
-TEST(bad_supports_and_loads_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(bad_supports_and_loads_are_refused) {
   scoped_test_body b = square(context, 3, NULL);
   mps_elastic *e = b.elastic;
   const int64_t good[2] = {0, 1}, bad[2] = {0, 9}, facet_bad[1] = {12};
@@ -152,8 +147,7 @@ TEST(bad_supports_and_loads_are_refused) {
 #undef REFUSE
 }
 
-TEST(free_rigid_motions_are_named) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(free_rigid_motions_are_named) {
   scoped_test_body b = square(context, 4, NULL);
   mps_elastic *e = b.elastic;
 #define REFUSE(why) FAILS(mps_elastic_solve(e), MPS_ERROR_STATE, why)
@@ -199,8 +193,7 @@ TEST(free_rigid_motions_are_named) {
 
 /* ---- solvers --------------------------------------------------------------------------------- */
 
-TEST(solvers_and_orderings_agree) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(solvers_and_orderings_agree) {
   const struct {
     int32_t solver, ordering;
     double limit;
@@ -243,8 +236,7 @@ TEST(solvers_and_orderings_agree) {
 }
 
 /* Negative shear moduli, which no field can give: set inside the solver. */
-TEST(a_matrix_that_is_not_positive_definite_is_diagnosed) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_matrix_that_is_not_positive_definite_is_diagnosed) {
   scoped_test_body b = square(context, 8, NULL);
   for (int64_t i = 40; i < b.n; i++) b.elastic->mu[i] = -1.0;
   mpsi_elastic_measure(b.elastic);
@@ -257,8 +249,7 @@ TEST(a_matrix_that_is_not_positive_definite_is_diagnosed) {
   OK(mps_elastic_solve(b.elastic));
 }
 
-TEST(what_can_be_kept_is_kept) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(what_can_be_kept_is_kept) {
   scoped_test_body b = square(context, 12, NULL);
   mps_elastic_report report;
   mps_elastic_estimate estimate;
@@ -296,8 +287,7 @@ TEST(what_can_be_kept_is_kept) {
   assert_int_equal(report.analyses, 2);
 }
 
-TEST(many_load_cases_superpose) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(many_load_cases_superpose) {
   scoped_test_body b = square(context, 6, NULL);
   clamp(&b);
   const int64_t cases = 37, all = b.n * 3;
@@ -310,13 +300,9 @@ TEST(many_load_cases_superpose) {
   OK(mps_elastic_solve_cases(b.elastic, cases, loads, u));
   for (int64_t k = 0; k < cases; k += 6) {
     int64_t ids[36];
-    mps_elastic_load_def def = mps_elastic_load_defaults();
     for (int64_t i = 0; i < b.n; i++) ids[i] = i;
-    def.kind = MPS_ELASTIC_LOAD_FORCE;
-    def.ids = ids;
-    def.id_count = b.n;
-    def.values = loads + k * all;
-    OK(mps_elastic_set_load(b.elastic, 0, &def));
+    USING(elastic_load, mps_elastic_set_load(b.elastic, 0, &given), .kind = MPS_ELASTIC_LOAD_FORCE,
+          .ids = ids, .id_count = b.n, .values = loads + k * all);
     OK(mps_elastic_solve(b.elastic));
     for (int64_t i = 0; i < all; i++)
       NEAR(u[k * all + i],
@@ -326,8 +312,7 @@ TEST(many_load_cases_superpose) {
   free(u);
 }
 
-TEST(a_body_that_is_held_everywhere_has_no_unknowns) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_body_that_is_held_everywhere_has_no_unknowns) {
   scoped_test_body b = square(context, 2, NULL);
   const int64_t ids[4] = {0, 1, 2, 3};
   const double load[2] = {1.0, -2.0};
@@ -343,8 +328,7 @@ TEST(a_body_that_is_held_everywhere_has_no_unknowns) {
 /* Lists in disorder that name particles twice: held ones stay, driven ones are where they are
  * driven to, and their reactions balance one another and the load; one particle alone is a list
  * too. */
-TEST(lists_hold_and_drive_exactly) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(lists_hold_and_drive_exactly) {
   scoped_test_body b = square(context, 4, NULL);
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults(), driven = held;
   const int64_t below[6] = {3, 0, 1, 3, 2, 0}, above[1] = {14};
@@ -393,9 +377,8 @@ static mps_status make(mps_context *context, int solver) {
   DEF(particles, def, .spacing = 1.0);
   scoped_particles *particles = NULL;
   scoped_elastic *elastic = NULL;
-  const double lo[2] = {0, 0}, hi[2] = {4, 4};
   mps_status status = mps_particles_create(context, &def, &particles);
-  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, AT(0, 0), AT(4, 4), NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "young", 0, 1.0);
   if (status == MPS_OK) status = mps_particles_set(particles, "poisson", 0, 0.3);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1.0);
@@ -412,10 +395,9 @@ TEST(a_step_of_a_motion_allocates_nothing) {
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
   test_body b = square(context, 8, NULL);
-  DEF(elastic_motion, def, .dt = 0.1);
   OK(mps_particles_set(b.particles, "density", 0, 1.0));
   clamp(&b);
-  OK(mps_elastic_start(b.elastic, &def));
+  USING(elastic_motion, mps_elastic_start(b.elastic, &given), .dt = 0.1);
   OK(mps_elastic_step(b.elastic, 1));
   const int64_t before = allocator.calls;
   OK(mps_elastic_step(b.elastic, 10));
@@ -502,8 +484,7 @@ TEST(failures_inside_cholmod_are_reported_and_leak_nothing) {
 
 /* METIS, which would print and take memory from elsewhere, is not called where the memory that it
  * may need is not available: 0.3 MB for this graph, more than anything else here takes at once. */
-TEST(without_memory_for_metis_the_ordering_is_amd) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(without_memory_for_metis_the_ordering_is_amd) {
   int32_t chosen[2];
   use_suite_hooks();
   for (int k = 0; k < 2; k++) {
@@ -522,8 +503,7 @@ TEST(without_memory_for_metis_the_ordering_is_amd) {
   assert_int_equal(chosen[1], MPS_ELASTIC_ORDERING_AMD);
 }
 
-TEST(the_particles_outlive_their_owner_and_may_be_used_by_two_solvers) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_particles_outlive_their_owner_and_may_be_used_by_two_solvers) {
   test_body b = square(context, 4, NULL);
   scoped_elastic *second = NULL;
   mps_elastic_def def = mps_elastic_defaults();

@@ -69,8 +69,7 @@ TEST(a_set_of_another_context_is_refused) {
   assert_null(mps_elastic_context(NULL));
 }
 
-TEST(blas_has_the_threads_of_the_context_while_it_works) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(blas_has_the_threads_of_the_context_while_it_works) {
   scoped_test_body b = square(context, 12);
   blas_threads = blas_least = 7;
   OK(mps_elastic_solve(b.elastic));

@@ -17,28 +17,22 @@ typedef struct beam {
 
 /* A block that moves; its lowest row is held. */
 static beam make(double stiffness_damping) {
-  DEF(particles, def, .spacing = 0.1);
   mps_elastic_def solver = mps_elastic_defaults();
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   const double lo[2] = {0.0, 0.0}, hi[2] = {0.1 * SIDE, 0.1 * SIDE}, force[2] = {300.0, -500.0};
   beam b = {.set = NULL};
-  mps_edit v;
-  OK(mps_particles_create(context, &def, &b.set));
+  USING(particles, mps_particles_create(context, &given, &b.set), .spacing = 0.1);
   OK(mps_particles_fill_box(b.set, lo, hi, NULL));
-  OK(mps_particles_set(b.set, "density", 0, 1000.0));
-  OK(mps_particles_set(b.set, "young", 0, 1e6));
-  OK(mps_particles_set(b.set, "poisson", 0, 0.3));
+  SET_FIELDS(b.set, {"density", 1000.0}, {"young", 1e6}, {"poisson", 0.3});
   OK(mps_particles_add_field(b.set, "velocity", 0));
-  OK(mps_particles_edit(b.set, "velocity", &v));
-  for (int64_t k = 0; k < v.view.shape[0]; k++)
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&v, k, c) = 0.3 * sin(1.0 + (double)(3 * k + 7 * c));
-  OK(mps_particles_commit(b.set, &v));
+  EDIT(v, b.set, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++)
+      for (int c = 0; c < 2; c++)
+        *mps_edit_f64(&v, k, c) = 0.3 * sin(1.0 + (double)(3 * k + 7 * c));
   OK(mps_elastic_create(context, b.set, &solver, &b.e));
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
   OK(mps_elastic_add_boundary(b.e, &foot, &b.foot));
   OK(test_body_force(b.e, force));
-  motion.dt = 2e-3;
+  DEF(elastic_motion, motion, .dt = 2e-3);
   motion.rho_inf = 1.0; /* average acceleration */
   motion.stiffness_damping = stiffness_damping;
   OK(mps_elastic_start(b.e, &motion));
@@ -69,10 +63,9 @@ static void assert_closes(const beam *b, int64_t steps) {
 }
 
 static void other_material(const beam *b) {
-  scoped_material *soft = NULL;
   int64_t ids[10];
   for (int k = 0; k < 10; k++) ids[k] = 5 + k;
-  OK(mps_material_create_linear_elastic(context, 3e5, 0.1, &soft));
+  MAKE(material, soft, create_linear_elastic, context, 3e5, 0.1);
   OK(mps_elastic_set_material(b->e, soft, ids, 10));
 }
 
@@ -111,18 +104,16 @@ TEST(the_budget_closes_after_another_boundary) {
  */
 TEST(what_is_set_free_falls_at_once) {
   SCOPED(drop) beam b = make(0.0);
-  mps_elastic_boundary_def all = mps_elastic_boundary_defaults();
   int32_t number;
-  mps_view u, a, x;
   const double dt = 2e-3, body[2] = {300.0 / 1000.0, -500.0 / 1000.0};
-  all.lower[0] = all.lower[1] = -1.0, all.upper[0] = all.upper[1] = 9.0;
+  DEF(elastic_boundary, all, .lower[0] = all.lower[1] = -1.0, .upper[0] = all.upper[1] = 9.0);
   OK(mps_elastic_add_boundary(b.e, &all, &number)); /* at its place of origin */
   OK(mps_elastic_step(b.e, 3));
   OK(mps_elastic_remove_boundary(b.e, number));
   OK(mps_elastic_step(b.e, 1));
-  OK(mps_particles_view(b.set, "displacement", &u));
-  OK(mps_particles_view(b.set, "acceleration", &a));
-  OK(mps_particles_view(b.set, "position", &x));
+  mps_view u = view_field(b.set, "displacement");
+  mps_view a = view_field(b.set, "acceleration");
+  mps_view x = view_field(b.set, "position");
   for (int64_t k = 0; k < u.shape[0]; k++)
     for (int c = 0; c < 2 && *mps_view_f64(&x, k, 1) > 0.1; c++)
       NEAR(*mps_view_f64(&u, k, c), 0.25 * dt * dt * (body[c] + *mps_view_f64(&a, k, c)), 1e-15);
@@ -133,7 +124,6 @@ TEST(a_second_start_has_the_present_densities) {
   beam x = make(0.0), y = make(0.0);
   DEF(elastic_motion, motion, .dt = 2e-3, .rho_inf = 1.0);
   double omega[2];
-  mps_view u, w;
   OK(mps_particles_set(x.set, "density", 0, 4000.0));
   OK(mps_elastic_modes(x.e, 2, omega, NULL)); /* of the new ones; the motion continues as it was */
   OK(mps_elastic_step(x.e, 3));
@@ -148,8 +138,8 @@ TEST(a_second_start_has_the_present_densities) {
   OK(mps_elastic_step(x.e, 5));
   OK(mps_elastic_step(y.e, 5));
   NEAR(totals_of(&x).mass, 4000.0 * 0.25, 1e-9);
-  OK(mps_particles_view(x.set, "displacement", &u));
-  OK(mps_particles_view(y.set, "displacement", &w));
+  mps_view u = view_field(x.set, "displacement");
+  mps_view w = view_field(y.set, "displacement");
   for (int64_t k = 0; k < u.shape[0]; k++)
     for (int c = 0; c < 2; c++) NEAR(*mps_view_f64(&u, k, c), *mps_view_f64(&w, k, c), 1e-12);
   drop(&x), drop(&y);
@@ -179,11 +169,10 @@ TEST(a_solution_weighs_the_present_densities) {
 /* A rollback over a change: as if it had not been, bit for bit, and then as after it again. */
 TEST(a_rollback_over_a_change_leads_to_the_same) {
   SCOPED(drop) beam b = make(1e-3);
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   scoped_snapshot *snapshot = NULL;
   mps_totals first, second;
   int32_t number;
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
   OK(mps_elastic_add_boundary(b.e, &foot, &number));
   foot.dofs = MPS_DOF_Y, foot.lower[1] = 0.4, foot.upper[1] = 9.0;
   OK(mps_elastic_set_boundary(b.e, b.foot, &foot));
@@ -205,16 +194,14 @@ TEST(a_rollback_over_a_cut_is_refused) {
     static const char path[] = "test_elastic_change.h5";
     beam b = make(0.0);
     mps_snapshot *snapshot = NULL;
-    mps_elastic_motion_def motion = mps_elastic_motion_defaults();
     int64_t ids[SIDE];
     const int64_t last = SIDE * SIDE - 1;
     for (int k = 0; k < SIDE; k++) ids[k] = k;
-    motion.dt = 1e-3;
     OK(mps_elastic_snapshot(b.e, &snapshot));
     OK(mps_elastic_save(b.e, path, NULL));
     if (removed) OK(mps_particles_remove(b.set, &last, 1));
     OK(mps_elastic_cut(b.e, MPS_SIDE_Y_LOWER, ids, SIDE));
-    OK(mps_elastic_start(b.e, &motion));
+    USING(elastic_motion, mps_elastic_start(b.e, &given), .dt = 1e-3);
     OK(mps_elastic_step(b.e, 2));
     const mps_totals before = totals_of(&b);
     FAILS(mps_elastic_rollback(b.e, snapshot), MPS_ERROR_STATE, "particle 0 is cut on other sides");

@@ -10,29 +10,19 @@ static void swing(mps_context *own, double contrast, double *missing, double *sc
                   double *largest) {
   static const double lo[2] = {0.0, 0.0}, hi[2] = {0.6, 0.6}, row[2] = {0.6, 0.1};
   static const int64_t hard[8] = {14, 15, 16, 17, 20, 21, 22, 23};
-  DEF(particles, def, .spacing = 0.1);
-  mps_elastic_boundary_def bottom = mps_elastic_boundary_defaults();
-  mps_elastic_load_def load = mps_elastic_load_defaults();
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  scoped_particles *set = NULL;
-  scoped_material *other = NULL;
-  scoped_elastic *e = NULL;
   mps_totals t;
   int64_t held[36];
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "young", 0, 1e6));
-  OK(mps_particles_set(set, "poisson", 0, 0.3));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_material_create_linear_elastic(own, 1e6 * contrast, 0.3, &other));
-  OK(mps_elastic_create(own, set, NULL, &e));
-  bottom.ids = held;
+  scoped_particles *set = box_of(own, 0.1, lo, hi);
+  SET_FIELDS(set, {"young", 1e6}, {"poisson", 0.3}, {"density", 1000.0});
+  MAKE(material, other, create_linear_elastic, own, 1e6 * contrast, 0.3);
+  MAKE(elastic, e, create, own, set, NULL);
+  DEF(elastic_boundary, bottom, .ids = held);
   OK(mps_particles_select_box(set, lo, row, 36, &bottom.id_count, held));
   OK(mps_elastic_add_boundary(e, &bottom, NULL));
   OK(mps_elastic_set_material(e, other, hard, 8));
-  load.kind = MPS_ELASTIC_LOAD_VOLUME, load.all = 1;
-  load.force[0] = 50.0, load.force[1] = -20.0;
-  OK(mps_elastic_add_load(e, &load, NULL));
+  USING(elastic_load, mps_elastic_add_load(e, &given, NULL), .kind = MPS_ELASTIC_LOAD_VOLUME,
+        .all = 1, .force[0] = 50.0, .force[1] = -20.0);
   motion.dt = 1e-3;
   motion.rho_inf = 1.0;
   OK(mps_elastic_start(e, &motion));

@@ -10,21 +10,17 @@
 /* A block of columns x rows cells of 0.5 m; `bare`: no field says what it is made of. */
 static mps_particles *block(mps_context *own, int dim, int columns, int rows, bool bare) {
   DEF(particles, def, .spacing = 0.5, .dim = dim);
-  mps_particles *set = NULL;
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.5 * columns, 0.5 * rows, 1.0};
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  MAKE_KEPT(particles, set, create, own, &def);
+  OK(mps_particles_fill_box(set, AT(0.0, 0.0, 0.0), AT(0.5 * columns, 0.5 * rows, 1.0), NULL));
   OK(mps_particles_set(set, "density", 0, 2000.0));
   if (bare) return set;
-  OK(mps_particles_set(set, "young", 0, 1e7));
-  OK(mps_particles_set(set, "poisson", 0, 0.25));
+  SET_FIELDS(set, {"young", 1e7}, {"poisson", 0.25});
   return set;
 }
 
 static mps_elastic *solver_of(mps_particles *set, mps_material *material, mps_kernel *kernel) {
   DEF(elastic, def, .material = material, .kernel = kernel);
-  mps_elastic *e = NULL;
-  OK(mps_elastic_create(context, set, &def, &e));
+  MAKE_KEPT(elastic, e, create, context, set, &def);
   return e;
 }
 
@@ -60,8 +56,7 @@ static void load(mps_elastic *e) {
 }
 
 static double value_of(mps_particles *set, const char *name, int64_t at, int64_t c) {
-  mps_view v;
-  OK(mps_particles_view(set, name, &v));
+  mps_view v = view_field(set, name);
   return *mps_view_f64(&v, at, c);
 }
 
@@ -99,15 +94,12 @@ TEST(a_material_is_what_its_fields_would_be) {
   mps_material_destroy(&clay); /* the solver has its share */
   int64_t *ids = between(by_law, 1, 0.0, 1.0, &count);
   OK(mps_elastic_set_material(a, rock, ids, count));
-  mps_edit young, poisson;
-  OK(mps_particles_edit(by_field, "young", &young));
-  OK(mps_particles_edit(by_field, "poisson", &poisson));
-  for (int64_t k = 0; k < count; k++) {
-    *mps_edit_f64(&young, mps_particles_index(by_field, ids[k]), 0) = 9e7;
-    *mps_edit_f64(&poisson, mps_particles_index(by_field, ids[k]), 0) = 0.1;
-  }
-  OK(mps_particles_commit(by_field, &young));
-  OK(mps_particles_commit(by_field, &poisson));
+  EDIT(young, by_field, "young")
+    EDIT(poisson, by_field, "poisson")
+      for (int64_t k = 0; k < count; k++) {
+        *mps_edit_f64(&young, mps_particles_index(by_field, ids[k]), 0) = 9e7;
+        *mps_edit_f64(&poisson, mps_particles_index(by_field, ids[k]), 0) = 0.1;
+      }
   scoped_elastic *b = solver_of(by_field, NULL, NULL);
   load(a);
   load(b);
@@ -146,11 +138,9 @@ TEST(materials_that_do_not_fit_are_refused) {
 /* ---- weight functions ------------------------------------------------------------------------ */
 
 TEST(the_default_weight_is_that_of_a_handle) {
-  mps_kernel *w = NULL;
-  OK(mps_kernel_create(context, MPS_KERNEL_MPS, 0.75, &w));
+  MAKE(kernel, w, create, context, MPS_KERNEL_MPS, 0.75);
   scoped_particles *a = block(context, 2, 7, 5, false), *b = block(context, 2, 7, 5, false);
   scoped_elastic *plain = solver_of(a, NULL, NULL), *with = solver_of(b, NULL, w);
-  mps_kernel_destroy(&w);
   load(plain);
   load(with);
   OK(mps_elastic_solve(plain));
@@ -169,9 +159,8 @@ TEST(uniform_stress_is_exact_for_every_weight) {
                  {MPS_KERNEL_SPLINE3, 2.0},
                  {MPS_KERNEL_SPLINE3, 3.3}};
   for (size_t k = 0; k < sizeof weights / sizeof *weights; k++) {
-    scoped_kernel *w = NULL;
     int64_t facets[64], count;
-    OK(mps_kernel_create(context, weights[k].kind, 0.5 * weights[k].radius, &w));
+    MAKE(kernel, w, create, context, weights[k].kind, 0.5 * weights[k].radius);
     scoped_particles *set = block(context, 2, 9, 4, false);
     scoped_elastic *e = solver_of(set, NULL, w);
     int64_t *left = between(set, 0, 0.0, 0.5, &count), corner[1];
@@ -204,10 +193,9 @@ TEST(uniform_stress_is_exact_for_every_weight) {
 TEST(an_excavation_is_a_new_solver_on_what_is_left) {
   for (int what = 0; what < 4; what++) {
     const int dim = what % 2 ? 3 : 2;
-    mps_material *rock = NULL;
     int64_t count, of_rock;
-    OK(mps_material_create_linear_elastic(context, 8e7, 0.2, &rock));
-    mps_particles *set = block(context, dim, 6, 6, false);
+    MAKE(material, rock, create_linear_elastic, context, 8e7, 0.2);
+    scoped_particles *set = block(context, dim, 6, 6, false);
     int64_t *top = between(set, 1, what < 2 ? 2.6 : 1.6, 3.0, &count), kept = 0;
     for (int64_t k = 0; k < count && what >= 2; k++) /* a corner */
       if (value_of(set, "position", mps_particles_index(set, top[k]), 0) > 1.0)
@@ -223,7 +211,7 @@ TEST(an_excavation_is_a_new_solver_on_what_is_left) {
     assert_int_equal(mps_particles_count(set), n - count);
     OK(mps_elastic_solve(e));
     /* the same body from the start; its left side has the remaining pressure */
-    mps_particles *rest = block(context, dim, 6, 6, false);
+    scoped_particles *rest = block(context, dim, 6, 6, false);
     OK(mps_particles_remove(rest, top, count));
     fresh = solver_of(rest, NULL, NULL);
     OK(mps_elastic_set_material(fresh, rock, low, of_rock));
@@ -243,9 +231,6 @@ TEST(an_excavation_is_a_new_solver_on_what_is_left) {
     }
     mps_elastic_destroy(&e);
     mps_elastic_destroy(&fresh);
-    mps_particles_destroy(&set);
-    mps_particles_destroy(&rest);
-    mps_material_destroy(&rock);
     free(top);
     free(low);
   }
@@ -293,20 +278,17 @@ static outcome outcome_of(mps_elastic *e) {
  * and without a motion begun anew in between. */
 TEST(a_rollback_brings_back_what_was_dug_away) {
   for (int dim = 2; dim <= 3; dim++) {
-    mps_particles *set = block(context, dim, 6, 6, false);
-    mps_elastic *e = solver_of(set, NULL, NULL);
-    mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+    scoped_particles *set = block(context, dim, 6, 6, false);
+    scoped_elastic *e = solver_of(set, NULL, NULL);
     mps_snapshot *whole = NULL, *dug = NULL;
-    mps_material *rock = NULL;
     int64_t count, of_rock, kept = 0;
-    OK(mps_material_create_linear_elastic(context, 8e7, 0.2, &rock));
+    MAKE(material, rock, create_linear_elastic, context, 8e7, 0.2);
     int64_t *low = between(set, 1, 0.0, 1.0, &of_rock), *side = between(set, 0, 0.0, 1.0, &count);
     OK(mps_elastic_set_material(e, rock, low, of_rock));
     for (int64_t k = 0; k < count; k++) /* a corner at the foot: held, loaded, of rock */
       if (value_of(set, "position", mps_particles_index(set, side[k]), 1) < 1.0)
         side[kept++] = side[k];
-    motion.dt = 1e-3;
-    motion.stiffness_damping = 1e-4;
+    DEF(elastic_motion, motion, .dt = 1e-3, .stiffness_damping = 1e-4);
     load(e);
     OK(mps_elastic_start(e, &motion));
     OK(mps_elastic_step(e, 3));
@@ -332,9 +314,6 @@ TEST(a_rollback_brings_back_what_was_dug_away) {
     assert_true(first.foot.count > second.foot.count);
     mps_snapshot_destroy(&whole);
     mps_snapshot_destroy(&dug);
-    mps_elastic_destroy(&e);
-    mps_particles_destroy(&set);
-    mps_material_destroy(&rock);
     free(low);
     free(side);
   }

@@ -6,10 +6,7 @@
 
 static mps_context *own;
 
-static bool stiff(double x, double y) {
-  (void)y;
-  return x > 1.0;
-}
+static bool stiff(double x, double y) { return x > 1.0; }
 
 /* An L of two materials, held below, with a roller at an angle. */
 static test_body ell(int dim) {
@@ -48,10 +45,9 @@ TEST(another_solver_gives_the_same_displacements) {
     assert_int_equal(report.matrix_nonzeros, p.start[p.rows]);
     assert_true(report.iterations > 10 && report.residual < 1e-10);
     /* Motions: two steps, two matrices. Then the library's own again. */
-    mps_elastic_motion_def motion = mps_elastic_motion_defaults();
     test_body *both[2] = {&alone, &other};
     const double pull[3] = {0.5, 0.2, -0.3}; /* beside the first */
-    motion.dt = 0.2;
+    DEF(elastic_motion, motion, .dt = 0.2);
     for (int k = 0; k < 2; k++) {
       OK(test_body_force(both[k]->elastic, pull));
       OK(mps_particles_set(both[k]->particles, "density", 0, 2.0));
@@ -92,13 +88,11 @@ TEST(the_matrix_has_rigid_motions) {
 }
 
 static int make_own(void **state) {
-  (void)state;
   own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   return 0;
 }
 
 static int drop_own(void **state) {
-  (void)state;
   mps_context_destroy(&own);
   return 0;
 }

@@ -28,8 +28,7 @@ static test_body clamped(mps_context *context, const mps_elastic_def *def) {
 }
 
 static void start(test_body *b, double dt) {
-  DEF(elastic_motion, def, .dt = dt, .stiffness_damping = 0.01);
-  OK(mps_elastic_start(b->elastic, &def));
+  USING(elastic_motion, mps_elastic_start(b->elastic, &given), .dt = dt, .stiffness_damping = 0.01);
 }
 
 /* Everything that a caller sees, as bytes to compare. */
@@ -62,8 +61,7 @@ static void assert_same(test_body *b, double *before) {
 /* ---- whole or not at all --------------------------------------------------------------------- */
 
 /* Each retry of a step whose CG does not converge added energy. */
-TEST(a_step_that_fails_has_not_happened) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_step_that_fails_has_not_happened) {
   DEF(elastic, def, .solver = MPS_ELASTIC_SOLVER_CG, .iterations = 12, .tolerance = 1e-8);
   scoped_test_body b = clamped(context, &def), twin = clamped(context, &def);
   start(&b, 0.02);
@@ -111,8 +109,7 @@ TEST(a_cancelled_step_leaves_whole_ones) {
 /* ---- implicit coupling ----------------------------------------------------------------------- */
 
 /* A step is tried with three loads, as a coupling iterates; the last try counts. */
-TEST(a_step_can_be_repeated_with_other_loads) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_step_can_be_repeated_with_other_loads) {
   scoped_test_body b = clamped(context, NULL), twin = clamped(context, NULL);
   scoped_snapshot *snapshot = NULL;
   DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_PRESSURE);
@@ -191,8 +188,7 @@ static mps_status look(void *user, mps_elastic *e) {
   return ++c->calls == c->stop_at ? MPS_ERROR_IO : MPS_OK;
 }
 
-TEST(a_run_ends_where_it_was_told) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_run_ends_where_it_was_told) {
   scoped_test_body b = clamped(context, NULL);
   caller c = {.body = &b};
   FAILS(mps_elastic_run(b.elastic, 1.0, 1, NULL, NULL), MPS_ERROR_STATE, "mps_elastic_start");
@@ -212,16 +208,13 @@ TEST(a_run_ends_where_it_was_told) {
 
 /* ---- numbers and lists ----------------------------------------------------------------------- */
 
-TEST(numbers_are_the_lowest_free_ones) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(numbers_are_the_lowest_free_ones) {
   scoped_test_body b = clamped(context, NULL);
   const int64_t id = 20;
   int32_t number = -1;
   mps_reaction r;
-  mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
   DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_VOLUME, .all = 1);
-  held.ids = &id;
-  held.id_count = 1;
+  DEF(elastic_boundary, held, .ids = &id, .id_count = 1);
   for (int32_t k = 1; k < 12; k++) {
     OK(mps_elastic_add_boundary(b.elastic, &held, &number));
     assert_int_equal(number, k);
@@ -241,16 +234,13 @@ TEST(numbers_are_the_lowest_free_ones) {
 }
 
 /* The field `external_force` does what a load on particles does; the boundaries hold it. */
-TEST(external_forces_act_as_loads) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(external_forces_act_as_loads) {
   scoped_test_body b = clamped(context, NULL), twin = clamped(context, NULL);
   const int64_t id = 50;
   const double force[2] = {0.3, -0.7};
   OK(mps_particles_add_field(b.particles, "external_force", 0));
-  mps_edit f;
-  OK(mps_particles_edit(b.particles, "external_force", &f));
-  for (int c = 0; c < 2; c++) *mps_edit_f64(&f, id, c) = force[c];
-  OK(mps_particles_commit(b.particles, &f));
+  EDIT(f, b.particles, "external_force")
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&f, id, c) = force[c];
   OK(test_forces(twin.elastic, 1, &id, force));
   OK(mps_elastic_solve(b.elastic));
   OK(mps_elastic_solve(twin.elastic));
@@ -270,17 +260,14 @@ TEST(external_forces_act_as_loads) {
 }
 
 /* Sums and squares of what is larger are infinite: neither a start nor a step may hand them out. */
-TEST(loads_and_motions_beyond_numbers_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(loads_and_motions_beyond_numbers_are_refused) {
   scoped_test_body b = clamped(context, NULL);
   DEF(elastic_motion, def, .dt = 0.02);
-  mps_elastic_load_def load = mps_elastic_load_defaults();
   int32_t number = -1;
   int64_t size;
   start(&b, def.dt);
   OK(mps_elastic_step(b.elastic, 2));
-  load.kind = MPS_ELASTIC_LOAD_BODY, load.all = 1;
-  load.force[0] = 1.7e308;
+  DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_BODY, .all = 1, .force[0] = 1.7e308);
   OK(mps_elastic_add_load(b.elastic, &load, &number));
   double *before = picture(&b, &size);
   FAILS(mps_elastic_step(b.elastic, 1), MPS_ERROR_NUMERIC, "N along x, allowed is up to 1e+150 N");
@@ -298,8 +285,7 @@ TEST(loads_and_motions_beyond_numbers_are_refused) {
 }
 
 /* A bar in tension: facets move as the linear field says. */
-TEST(facets_come_as_arrays) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(facets_come_as_arrays) {
   scoped_test_body b = test_body_begin(context, 2, 0.5);
   test_body_box(&b, 0, 0, 0, 4, 2, 0);
   DEF(elastic, def, .measure = 3.0);

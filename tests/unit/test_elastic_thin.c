@@ -17,19 +17,16 @@ static int warnings(journal *j, double bending, int boxes, const int cells[][3])
   mps_context *own = journal_context(j, NULL);
   DEF(particles, def, .spacing = 0.1, .dim = cells[0][2] ? 3 : 2);
   DEF(elastic, method, .bending = bending);
-  mps_particles *set = NULL;
-  mps_elastic *e = NULL;
   double lo[3] = {0.0, 0.0, 0.0};
-  OK(mps_particles_create(own, &def, &set));
+  MAKE_KEPT(particles, set, create, own, &def);
   for (int k = 0; k < boxes; k++) {
     double hi[3];
     for (int c = 0; c < 3; c++) hi[c] = lo[c] + 0.1 * cells[k][c];
     OK(mps_particles_fill_box(set, lo, hi, NULL));
     lo[0] = hi[0];
   }
-  OK(mps_particles_set(set, "young", 0, 1e6));
-  OK(mps_particles_set(set, "poisson", 0, 0.3));
-  OK(mps_elastic_create(own, set, &method, &e));
+  SET_FIELDS(set, {"young", 1e6}, {"poisson", 0.3});
+  MAKE_KEPT(elastic, e, create, own, set, &method);
   hold_lowest(e, 1);
   for (int k = 0; k < 2; k++) OK(mps_elastic_solve(e));
   mps_elastic_destroy(&e);
@@ -64,15 +61,9 @@ TEST(other_bodies_are_not) {
 TEST(a_disc_is_not_slender) {
   journal j = {0};
   scoped_context *own = journal_context(&j, NULL);
-  DEF(particles, def, .spacing = 0.1);
-  scoped_particles *set = NULL;
-  scoped_elastic *e = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
   int64_t out[1600], count = 0;
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "young", 0, 1e6));
-  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  scoped_particles *set = box_of(own, 0.1, AT(0.0, 0.0), AT(4.0, 4.0));
+  SET_FIELDS(set, {"young", 1e6}, {"poisson", 0.3});
   for (int64_t k = 0; k < 1600; k++) {
     const double x = 0.1 * (double)(k % 40) - 1.95, y = 0.1 * (double)(k / 40) - 1.95;
     if (x * x + y * y > 4.0) {
@@ -81,7 +72,7 @@ TEST(a_disc_is_not_slender) {
     }
   }
   OK(mps_particles_remove(set, out, count));
-  OK(mps_elastic_create(own, set, NULL, &e));
+  MAKE(elastic, e, create, own, set, NULL);
   hold_lowest(e, 1);
   OK(mps_elastic_solve(e));
   assert_int_equal(j.count, 0);

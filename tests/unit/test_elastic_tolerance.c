@@ -15,25 +15,18 @@ typedef struct budget {
 static mps_elastic *make(mps_particles **set, int32_t solver, double tolerance, double dt,
                          double stiffness_damping) {
   static const double lo[2] = {0.0, 0.0}, hi[2] = {1.2, 0.4}, end[2] = {0.1, 0.4};
-  DEF(particles, def, .spacing = SPACING);
-  mps_elastic_def how = mps_elastic_defaults();
   mps_elastic_boundary_def left = mps_elastic_boundary_defaults();
-  mps_elastic_load_def load = mps_elastic_load_defaults();
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  mps_elastic *e = NULL;
-  OK(mps_particles_create(context, &def, set));
+  USING(particles, mps_particles_create(context, &given, set), .spacing = SPACING);
   OK(mps_particles_fill_box(*set, lo, hi, NULL));
-  OK(mps_particles_set(*set, "young", 0, YOUNG));
-  OK(mps_particles_set(*set, "poisson", 0, 0.3));
-  OK(mps_particles_set(*set, "density", 0, DENSITY));
-  how.solver = solver, how.tolerance = tolerance;
-  OK(mps_elastic_create(context, *set, &how, &e));
+  SET_FIELDS(*set, {"young", YOUNG}, {"poisson", 0.3}, {"density", DENSITY});
+  DEF(elastic, how, .solver = solver, .tolerance = tolerance);
+  MAKE_KEPT(elastic, e, create, context, *set, &how);
   for (int c = 0; c < 2; c++) left.lower[c] = lo[c], left.upper[c] = end[c];
   left.lower[2] = -INFINITY, left.upper[2] = INFINITY;
   OK(mps_elastic_add_boundary(e, &left, NULL));
-  load.kind = MPS_ELASTIC_LOAD_VOLUME, load.all = 1;
-  load.force[0] = 3e3, load.force[1] = -2e3;
-  OK(mps_elastic_add_load(e, &load, NULL));
+  USING(elastic_load, mps_elastic_add_load(e, &given, NULL), .kind = MPS_ELASTIC_LOAD_VOLUME,
+        .all = 1, .force[0] = 3e3, .force[1] = -2e3);
   motion.dt = dt, motion.stiffness_damping = stiffness_damping;
   OK(mps_elastic_start(e, &motion));
   return e;
@@ -41,9 +34,8 @@ static mps_elastic *make(mps_particles **set, int32_t solver, double tolerance, 
 
 /* Displacements and velocities of all particles, 4 values each. */
 static void read_motion(mps_particles *set, double *out) {
-  mps_view u, v;
-  OK(mps_particles_view(set, "displacement", &u));
-  OK(mps_particles_view(set, "velocity", &v));
+  mps_view u = view_field(set, "displacement");
+  mps_view v = view_field(set, "velocity");
   for (int64_t i = 0; i < u.shape[0]; i++)
     for (int c = 0; c < 2; c++) {
       out[4 * i + c] = *mps_view_f64(&u, i, c);

@@ -6,21 +6,18 @@
 static mps_particles *make_set(int32_t dim, double spacing, double x0, double y0) {
   const mps_particles_def def = {
       .struct_size = sizeof def, .dim = dim, .spacing = spacing, .origin = {x0, y0, 0.0}};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE_KEPT(particles, set, create, context, &def);
   return set;
 }
 
 static mps_view positions(mps_particles *set) {
-  mps_view view;
-  OK(mps_particles_view(set, "position", &view));
+  mps_view view = view_field(set, "position");
   return view;
 }
 
 static int64_t box(mps_particles *set, double x0, double y0, double x1, double y1) {
-  const double lo[2] = {x0, y0}, hi[2] = {x1, y1};
   int64_t added = -1;
-  OK(mps_particles_fill_box(set, lo, hi, &added));
+  OK(mps_particles_fill_box(set, AT(x0, y0), AT(x1, y1), &added));
   return added;
 }
 
@@ -60,11 +57,9 @@ TEST(a_centre_within_a_billionth_of_a_bound_lies_on_it) {
 TEST(sites_come_x_first_at_exact_positions) {
   const mps_particles_def def = {
       .struct_size = sizeof def, .dim = 3, .spacing = 0.1, .origin = {0.7, -0.2, 5.0}};
-  const double lo[3] = {0.7, -0.4, 5.0}, hi[3] = {1.1, 0.1, 5.2};
-  scoped_particles *set = NULL;
   int64_t added;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, &added));
+  MAKE(particles, set, create, context, &def);
+  OK(mps_particles_fill_box(set, AT(0.7, -0.4, 5.0), AT(1.1, 0.1, 5.2), &added));
   assert_int_equal(added, 4 * 5 * 2);
   const mps_view x = positions(set);
   for (int64_t n = 0; n < added; n++) {
@@ -83,10 +78,7 @@ TEST(a_site_is_filled_once_even_when_its_particle_has_moved) {
   assert_int_equal(box(set, 0, 0, 10, 10), 0);
   assert_int_equal(box(set, 5, 5, 15, 15), 75);
   assert_int_equal(box(set, -5, -5, 20, 20), 25 * 25 - 175);
-  mps_edit moved;
-  OK(mps_particles_edit(set, "position", &moved));
-  *mps_edit_f64(&moved, 0, 0) = 1e3;
-  OK(mps_particles_commit(set, &moved));
+  EDIT(moved, set, "position") *mps_edit_f64(&moved, 0, 0) = 1e3;
   assert_int_equal(box(set, -5, -5, 20, 20), 0);
   OK(mps_particles_append(set, 1, centre)); /* off the lattice: takes no site */
   assert_int_equal(box(set, 20, 0, 21, 1), 1);
@@ -227,7 +219,6 @@ TEST(a_predicate_is_asked_once_for_each_site) {
 
 /* Refuses the eleventh site. */
 static mps_status eleven(void *user, const double *x, int32_t *inside) {
-  (void)x;
   *inside = 1;
   return ++*(int *)user > 10 ? MPS_ERROR_UNSUPPORTED : MPS_OK;
 }

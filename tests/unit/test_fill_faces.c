@@ -8,24 +8,21 @@ static mps_context *context;
 static char warning[512];
 
 static void listen(void *user, int32_t level, const char *text) {
-  (void)user;
   if (level == MPS_CONTEXT_LOG_WARNING) snprintf(warning, sizeof warning, "%s", text);
 }
 
 static mps_particles *empty(int32_t dim, double spacing, double origin) {
   DEF(particles, def, .dim = dim, .spacing = spacing);
-  mps_particles *set = NULL;
   for (int c = 0; c < dim; c++) def.origin[c] = origin;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE_KEPT(particles, set, create, context, &def);
   warning[0] = '\0';
   return set;
 }
 
 static int64_t box(mps_particles *set, double x0, double y0, double x1, double y1) {
-  const double lo[3] = {x0, y0, 0.0}, hi[3] = {x1, y1, mps_particles_spacing(set)};
   int64_t made = 0;
   warning[0] = '\0';
-  OK(mps_particles_fill_box(set, lo, hi, &made));
+  OK(mps_particles_fill_box(set, AT(x0, y0, 0.0), AT(x1, y1, mps_particles_spacing(set)), &made));
   return made;
 }
 
@@ -54,8 +51,7 @@ TEST(boxes_off_the_lattice_are_warned_of) {
   mps_particles_destroy(&set);
   /* the third axis counts */
   set = empty(3, 0.1, 0.0);
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 0.5, 0.26};
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_fill_box(set, AT(0.0, 0.0, 0.0), AT(1.0, 0.5, 0.26), NULL));
   assert_non_null(strstr(warning, "z 0 to 0.26"));
 }
 
@@ -97,7 +93,6 @@ TEST(small_balls_are_another_size) {
 }
 
 static mps_status everywhere(void *user, const double *x, int32_t *inside) {
-  (void)user, (void)x;
   *inside = 1;
   return MPS_OK;
 }
@@ -119,7 +114,6 @@ static int make(void **state) {
 }
 
 static int drop(void **state) {
-  (void)state;
   mps_context_destroy(&context);
   return 0;
 }

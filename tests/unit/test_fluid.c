@@ -7,12 +7,7 @@
 #include "fluid_tank.h"
 
 static mps_particles *block(double l0) {
-  mps_particles *p = NULL;
-  mps_particles_def set = mps_particles_defaults();
-  const double lo[2] = {0.0, 0.0}, hi[2] = {10.0 * l0, 5.0 * l0};
-  set.spacing = l0;
-  OK(mps_particles_create(context, &set, &p));
-  OK(mps_particles_fill_box(p, lo, hi, NULL));
+  mps_particles *p = box_of(context, l0, AT(0.0, 0.0), AT(10.0 * l0, 5.0 * l0));
   return p;
 }
 
@@ -43,9 +38,8 @@ TEST(bad_definitions_are_refused) {
 }
 
 static mps_material *newtonian(double viscosity) {
-  mps_material *material = NULL;
   DEF(material_newtonian, law, .bulk_modulus = 1e6, .viscosity = viscosity);
-  OK(mps_material_create_newtonian(context, &law, &material));
+  MAKE_KEPT(material, material, create_newtonian, context, &law);
   return material;
 }
 
@@ -53,20 +47,16 @@ static mps_material *newtonian(double viscosity) {
  * a digest of them all. */
 static double sheared(mps_fluid_def def, double density) {
   scoped_particles *p = block(0.1);
-  scoped_fluid *f = NULL;
-  mps_edit u;
   double sum = 0.0;
   def.dt = 1e-3;
   if (density > 0.0) OK(mps_particles_set(p, "density", 0, density));
   OK(mps_particles_add_field(p, "velocity", 0));
-  OK(mps_particles_edit(p, "velocity", &u));
-  for (int64_t i = 0; i < u.view.shape[0]; i++) *mps_edit_f64(&u, i, 0) = 0.01 * (double)(i / 10);
-  OK(mps_particles_commit(p, &u));
-  OK(mps_fluid_create(context, p, &def, &f));
+  EDIT(u, p, "velocity")
+    for (int64_t i = 0; i < u.view.shape[0]; i++) *mps_edit_f64(&u, i, 0) = 0.01 * (double)(i / 10);
+  MAKE(fluid, f, create, context, p, &def);
   (void)tank_wall(f, 0.0, 0.0, 0.0, 1.0, NULL);
   OK(mps_fluid_step(f, 10));
-  mps_view v;
-  OK(mps_particles_view(p, "velocity", &v));
+  mps_view v = view_field(p, "velocity");
   for (int64_t i = 0; i < v.shape[0]; i++) sum += *mps_view_f64(&v, i, 0) * (double)(1 + i);
   return sum;
 }
@@ -83,28 +73,23 @@ TEST(a_fluid_is_a_material) {
   assert_true(sheared(law, 1300.0) == expected);
   assert_true(sheared(plain, 1300.0) != expected);
   scoped_particles *p = block(0.1);
-  scoped_fluid *f = NULL;
-  OK(mps_fluid_create(context, p, &law, &f));
+  MAKE(fluid, f, create, context, p, &law);
   OK(mps_fluid_get_def(f, &now));
   assert_true(now.density == 1000.0 && now.viscosity == 50.0 && now.material == NULL);
   mps_fluid_destroy(&f);
   law = plain, law.material = rock;
   FAILS(mps_fluid_create(context, p, &law, &f), MPS_ERROR_UNSUPPORTED, "the law is linear_elastic");
-  mps_edit rho;
   OK(mps_particles_set(p, "density", 0, 1000.0));
-  OK(mps_particles_edit(p, "density", &rho));
-  *mps_edit_f64(&rho, 4, 0) = 1025.0;
-  OK(mps_particles_commit(p, &rho));
+  EDIT(rho, p, "density") *mps_edit_f64(&rho, 4, 0) = 1025.0;
   REFUSES(mps_fluid_create(context, p, NULL, &f), "is 1025 kg/m3, that of particle 0 1000");
   OK(mps_fluid_create(context, p, &numbers, &f));
 }
 
 TEST(the_definition_comes_back_completed) {
   scoped_particles *p = block(0.1);
-  scoped_fluid *f = NULL;
   mps_fluid_def def = mps_fluid_defaults(), now;
   def.density = 1025.0, def.measure = 2.0;
-  OK(mps_fluid_create(context, p, &def, &f));
+  MAKE(fluid, f, create, context, p, &def);
   OK(mps_fluid_set_dt(f, 0.01));
   OK(mps_fluid_get_def(f, &now));
   assert_int_equal(now.struct_size, sizeof now);
@@ -119,19 +104,17 @@ TEST(the_definition_comes_back_completed) {
 /* Highest pressure and velocities after a drop, by a kernel of the caller's or by its radius. */
 static void drop_with(mps_kernel *kernel, double *out) {
   scoped_particles *p = block(0.1);
-  scoped_fluid *f = NULL;
   mps_fluid_def def = mps_fluid_defaults(), now;
-  mps_view v;
   def.dt = 0.004;
   def.radius_ratio = kernel ? 3.1 : 2.9;
   def.kernel = kernel;
-  OK(mps_fluid_create(context, p, &def, &f));
+  MAKE(fluid, f, create, context, p, &def);
   mps_kernel_destroy(&kernel); /* the fluid has its share */
   OK(mps_fluid_get_def(f, &now));
   NEAR(now.radius_ratio, 2.9, 1e-14);
   tank_wall(f, 0.0, 0.0, 0.0, 1.0, NULL);
   OK(mps_fluid_step(f, 5));
-  OK(mps_particles_view(p, "velocity", &v));
+  mps_view v = view_field(p, "velocity");
   for (int64_t k = 0; k < v.shape[0]; k++) out[k] = *mps_view_f64(&v, k, 1);
 }
 
@@ -161,8 +144,7 @@ TEST(takes_a_kernel) {
 
 TEST(bad_boundaries_are_refused) {
   scoped_particles *p = block(0.1);
-  scoped_fluid *f = NULL;
-  OK(mps_fluid_create(context, p, NULL, &f));
+  MAKE(fluid, f, create, context, p, NULL);
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   REFUSES(mps_fluid_add_boundary(f, &def, NULL), "normal");
@@ -198,7 +180,6 @@ static mps_status steps_inside(void *user, mps_fluid *f) {
 }
 
 static mps_status stops(void *user, mps_fluid *f) {
-  (void)user;
   return mps_fluid_steps(f) == 3 ? MPS_ERROR_IO : MPS_OK;
 }
 
@@ -219,20 +200,17 @@ static void copy_state(const tank *t, double *to) {
   static const char *const names[] = {"position", "velocity"};
   const int64_t n = mps_particles_count(t->water);
   for (int f = 0; f < 2; f++) {
-    mps_view v;
-    OK(mps_particles_view(t->water, names[f], &v));
+    mps_view v = view_field(t->water, names[f]);
     for (int64_t i = 0; i < n; i++)
       for (int c = 0; c < 2; c++) *to++ = *mps_view_f64(&v, i, c);
   }
 }
 
 TEST(a_solution_that_does_not_converge_keeps_the_state) {
-  scoped_signal *piston = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0);
   mps_particles *p = block(0.05);
-  DEF(fluid, def, .iterations = 1, .tolerance = 1e-12);
   scoped_tank t = {p, NULL};
-  OK(mps_fluid_create(context, p, &def, &t.fluid));
+  USING(fluid, mps_fluid_create(context, p, &given, &t.fluid), .iterations = 1, .tolerance = 1e-12);
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
   tank_wall(t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
@@ -248,17 +226,14 @@ TEST(a_solution_that_does_not_converge_keeps_the_state) {
 }
 
 TEST(a_drop_falls_freely_and_an_empty_tank_goes_on) {
-  scoped_particles *p = NULL;
   DEF(particles, set, .spacing = 0.1);
-  scoped_fluid *f = NULL;
   DEF(fluid, def, .dt = 0.01);
   const double alone[2] = {0.0, 100.0};
-  OK(mps_particles_create(context, &set, &p));
+  MAKE(particles, p, create, context, &set);
   OK(mps_particles_append(p, 1, alone));
-  OK(mps_fluid_create(context, p, &def, &f));
+  MAKE(fluid, f, create, context, p, &def);
   OK(mps_fluid_step(f, 100)); /* symplectic Euler: g t (t + dt)/2 */
-  mps_view x;
-  OK(mps_particles_view(p, "position", &x));
+  mps_view x = view_field(p, "position");
   NEAR(*mps_view_f64(&x, 0, 1), 100.0 - 0.5 * TANK_G * 1.0 * 1.01, 1e-10);
   mps_fluid_report report;
   OK(mps_fluid_get_report(f, &report));
@@ -268,14 +243,12 @@ TEST(a_drop_falls_freely_and_an_empty_tank_goes_on) {
 /* Without gravity the shortest step is a share of the run, wherever on the axis of time it begins:
  * a drop of 1 m/s takes 40 steps a second, after a million seconds too. */
 TEST(a_late_run_has_steps_of_its_own_length) {
-  scoped_particles *p = NULL;
   DEF(particles, set, .spacing = 0.1);
-  scoped_fluid *f = NULL;
   DEF(fluid, def, .gravity[1] = 0.0, .dt = 1e6);
   const double alone[2] = {0.0, 0.0};
-  OK(mps_particles_create(context, &set, &p));
+  MAKE(particles, p, create, context, &set);
   OK(mps_particles_append(p, 1, alone));
-  OK(mps_fluid_create(context, p, &def, &f));
+  MAKE(fluid, f, create, context, p, &def);
   OK(mps_fluid_step(f, 1));
   OK(mps_fluid_set_dt(f, NAN));
   mps_edit u;
@@ -284,8 +257,7 @@ TEST(a_late_run_has_steps_of_its_own_length) {
   OK(mps_particles_commit(p, &u));
   OK(mps_fluid_run(f, 1e6 + 1.0, 1000, NULL, NULL));
   assert_in_range(mps_fluid_steps(f), 41, 42); /* .25 l0/|u| is 1/40 s */
-  mps_view x;
-  OK(mps_particles_view(p, "position", &x));
+  mps_view x = view_field(p, "position");
   NEAR(*mps_view_f64(&x, 0, 0), 1.0, 1e-9);
 }
 
@@ -304,20 +276,18 @@ TEST(a_tank_runs_empty) {
   OK(mps_fluid_step(t.fluid, 250));
   double level;
   const double middle = 0.25;
-  mps_view x;
   OK(mps_fluid_get_levels(t.fluid, 1, &middle, &level));
   const double nowhere = NAN;
   REFUSES(mps_fluid_get_levels(t.fluid, 1, &nowhere, &level), "station 0 is nan m, must be finite");
-  OK(mps_particles_view(t.water, "position", &x));
+  mps_view x = view_field(t.water, "position");
   for (int64_t i = 0; i < mps_particles_count(t.water); i++)
     NEAR(*mps_view_f64(&x, i, 1), 0.05 - 0.5 * TANK_G * 0.25, 0.12);
 }
 
 /* A snapshot of a moving piston's tank, 40 more steps, back, and the same 40 steps. */
 TEST(a_rollback_repeats_the_steps_bit_for_bit) {
-  scoped_signal *piston = NULL;
   scoped_snapshot *snapshot = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.05, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.05, 0.0);
   scoped_tank t = tank_make(context, 1.0, 0.3, 0.025, piston, 2e-3);
   const int64_t n = mps_particles_count(t.water);
   double *first = malloc(8 * (size_t)n * sizeof *first), *second = first + 4 * n;
@@ -516,8 +486,7 @@ TEST(a_wall_may_be_fast) {
     OK(mps_fluid_set_boundary_motion(t.fluid, TANK_LEFT, &place, &stop));
     OK(mps_fluid_step(t.fluid, 1));
   }
-  mps_view x;
-  OK(mps_particles_view(t.water, "position", &x));
+  mps_view x = view_field(t.water, "position");
   for (int64_t i = 0; i < mps_particles_count(t.water); i++) {
     assert_true(*mps_view_f64(&x, i, 0) > 0.04 && *mps_view_f64(&x, i, 0) < 0.6);
     assert_true(*mps_view_f64(&x, i, 1) > 0.0);
@@ -551,8 +520,7 @@ TEST(particles_come_and_go) {
   OK(mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
   NEAR(-r.force[0], 0.5 * 1000.0 * TANK_G * 0.36, 2.0);
   /* the last 600 go, wherever the sorting has put them */
-  mps_view id;
-  OK(mps_particles_view(t.water, "id", &id));
+  mps_view id = view_field(t.water, "id");
   int64_t found = 0;
   for (int64_t i = 0; i < n + 600; i++)
     if (*mps_view_i64(&id, i, 0) >= n) ids[found++] = *mps_view_i64(&id, i, 0);
@@ -578,7 +546,7 @@ TEST(a_step_in_parts_is_the_step) {
   const int64_t n = mps_particles_count(t.water);
   double *whole = malloc(12 * (size_t)n * sizeof *whole), *parts = whole + 4 * n,
          *before = parts + 4 * n;
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   mps_reaction force[2];
   OK(mps_fluid_snapshot(t.fluid, &snapshot));
   for (int k = 0; k < 40; k++) {
@@ -615,7 +583,6 @@ TEST(a_step_in_parts_is_the_step) {
   OK(mps_fluid_get_reaction(t.fluid, TANK_LEFT, &force[1]));
   assert_memory_equal(whole, parts, 4 * (size_t)n * sizeof *whole);
   assert_memory_equal(&force[0], &force[1], sizeof force[0]);
-  mps_snapshot_destroy(&snapshot);
   free(whole);
 }
 
@@ -691,13 +658,11 @@ TEST(thousands_are_where_they_are_put) {
 /* Water that flows off the end of its bed is taken out and counted, and its momentum too; a
  * rollback brings it back. */
 TEST(water_leaves_by_an_open_side) {
-  mps_particles_def set = mps_particles_defaults();
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   scoped_tank t = {NULL, NULL};
   int32_t number = -1;
-  set.spacing = 0.02;
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = 0.02);
   tank_fill(t.water, 0.3, 0.2, NULL, NULL);
   OK(mps_fluid_create(context, t.water, NULL, &t.fluid));
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
@@ -706,7 +671,7 @@ TEST(water_leaves_by_an_open_side) {
   OK(mps_fluid_add_boundary(t.fluid, &def, &number));
   assert_int_equal(number, 2);
   const double mass = 1000.0 * 0.02 * 0.02;
-  mps_snapshot *before = NULL;
+  scoped_snapshot *before = NULL;
   mps_reaction r = {.removed = 0};
   double x[96], p[32];
   int64_t count = 0;
@@ -737,7 +702,6 @@ TEST(water_leaves_by_an_open_side) {
   OK(mps_fluid_step(t.fluid, steps - mps_fluid_steps(t.fluid)));
   OK(mps_fluid_get_totals(t.fluid, &again));
   assert_memory_equal(&first, &again, sizeof first);
-  mps_snapshot_destroy(&before);
   /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
   REFUSES(mps_fluid_get_boundary_points(t.fluid, number, 0, &count, NULL, NULL), "number is 2");
   def.nodes = x, def.node_count = 1;

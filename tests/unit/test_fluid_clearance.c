@@ -17,9 +17,7 @@ static const double basin[4][3] = {
 static const double middle[2] = {0.38, 0.33};
 
 static int make(void **state) {
-  (void)state;
   DEF(particles, set, .spacing = L0);
-  mps_fluid_def def = mps_fluid_defaults();
   if (mps_particles_create(context, &set, &water) != MPS_OK) return 1;
   for (int n = 0; n < 40 * 16; n++) {
     const double at[2] = {(n % 40 + 0.5) * L0, (n / 40 + 0.5) * L0};
@@ -27,12 +25,11 @@ static int make(void **state) {
       continue;
     if (mps_particles_append(water, 1, at) != MPS_OK) return 1;
   }
-  def.level = 0.8;
+  DEF(fluid, def, .level = 0.8);
   return mps_fluid_create(context, water, &def, &fluid) == MPS_OK ? 0 : 1;
 }
 
 static int drop(void **state) {
-  (void)state;
   mps_contact_destroy(&contact);
   mps_body_destroy(&box);
   mps_fluid_destroy(&fluid);
@@ -41,20 +38,17 @@ static int drop(void **state) {
 }
 
 static mps_status add_basin(double left, double bottom) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   double corner[4][3];
   memcpy(corner, basin, sizeof corner);
   corner[0][0] = corner[1][0] = left, corner[1][1] = corner[2][1] = bottom;
-  def.kind = MPS_BOUNDARY_ROLLER;
-  def.corners = corner[0], def.corner_count = 4;
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .corners = corner[0], .corner_count = 4);
   return mps_fluid_add_boundary(fluid, &def, NULL);
 }
 
 static mps_status add_box(double x, double y) {
-  mps_body_def def = mps_body_defaults();
   DEF(fluid_contact, with, .kind = MPS_BOUNDARY_ROLLER, .mover = MPS_CONTACT_MOVER_OTHER);
   const double xy[8] = {-0.2, -0.15, 0.2, -0.15, 0.2, 0.15, -0.2, 0.15};
-  def.position[0] = x, def.position[1] = y;
+  DEF(body, def, .position[0] = x, .position[1] = y);
   mps_body_destroy(&box);
   OK(mps_body_create_polygon(context, &def, 4, xy, &box));
   return mps_fluid_add_contact(fluid, box, &with, &contact);
@@ -78,9 +72,8 @@ TEST_EACH(a_body_near_a_polyline_is_refused, make, drop) {
 
 TEST_EACH(a_polyline_near_a_body_is_refused, make, drop) {
   OK(add_box(middle[0], middle[1]));
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   const double inside[4][3] = {{0.3, 0.3, 0.0}, {0.35, 0.4, 0.0}, {0.4, 0.3, 0.0}, {0.3, 0.3, 0.0}};
-  def.kind = MPS_BOUNDARY_ROLLER, def.corners = inside[0], def.corner_count = 4;
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .corners = inside[0], .corner_count = 4);
   assert_int_equal(mps_fluid_add_boundary(fluid, &def, NULL), MPS_ERROR_ARGUMENT);
   says("m from body 0, must be at least re = 0.155 m");
   OK(add_basin(0.0, 0.0));
@@ -92,14 +85,13 @@ TEST_EACH(rock_whose_weights_reach_further_is_refused, make, drop) {
   const double corner[3][3] = {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}, {1.0, 0.1, 0.0}};
   DEF(fluid_rock, rock, .corners = corner[0], .corner_count = 3, .porosity = 0.45,
       .diameter = 0.02);
-  mps_fluid_boundary_def side = mps_fluid_boundary_defaults();
   OK(add_basin(0.0, 0.0));
   OK(add_box(0.2 + 1.05 * RE, 1.5));
   assert_int_equal(mps_fluid_add_rock(fluid, &rock, NULL), MPS_ERROR_ARGUMENT);
   says("porosity of the rock: its weights have the radius 0.178885 m, but body 0 is 0.16275 m from "
        "segment 0 of the polyline of boundary 0");
   mps_contact_destroy(&contact);
-  side.point[0] = -1.05 * RE, side.normal[0] = 1.0;
+  DEF(fluid_boundary, side, .point[0] = -1.05 * RE, .normal[0] = 1.0);
   OK(mps_fluid_add_boundary(fluid, &side, NULL));
   assert_int_equal(mps_fluid_add_rock(fluid, &rock, NULL), MPS_ERROR_ARGUMENT);
   says("the corner at (0, 0) m of the polyline of boundary 0 is 0.16275 m from boundary 1");
@@ -112,13 +104,12 @@ TEST_EACH(rock_whose_weights_reach_further_is_refused, make, drop) {
 /* Beyond re the images in both are right: the box has its buoyancy, and the bed the pressure of the
  * water above it. */
 TEST_EACH(beside_each_other_both_are_right, make, drop) {
-  mps_fluid_load_def damping = mps_fluid_load_defaults();
   mps_reaction r;
   double p[2], level;
   const double below[6] = {0.38, 0.0, 0.0, 1.5, 0.0, 0.0}, side[3] = {0.0, 0.3, 0.0}, far = 1.5;
   OK(add_basin(0.0, 0.0));
   OK(add_box(middle[0], middle[1]));
-  damping.all = 1, damping.kind = MPS_FLUID_LOAD_DAMPING, damping.rate = 5.0;
+  DEF(fluid_load, damping, .all = 1, .kind = MPS_FLUID_LOAD_DAMPING, .rate = 5.0);
   OK(mps_fluid_add_load(fluid, &damping, NULL));
   OK(mps_fluid_step(fluid, 400));
   OK(mps_contact_get_reaction(contact, 0, &r));

@@ -15,8 +15,6 @@ static uint64_t seed;
 
 /* Off the lattice by up to .1 l0. */
 static void rough(void *user, double *x, double *u) {
-  (void)user;
-  (void)u;
   for (int c = 0; c < 2; c++) {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     x[c] += 0.1 * L0 * ((double)(seed >> 11) * 0x1p-52 - 1.0);
@@ -139,9 +137,8 @@ static mps_status add_right(void *user, const double *b, double tolerance, doubl
 /* The equations of a closed space have a solution only where their right sides add up to 0. */
 static void assert_balanced(mps_fluid *fluid) {
   right_sides r = {.rows = 0};
-  mps_linear_solver_def def = mps_linear_solver_defaults();
   mps_solver *solver = mps_fluid_solver(fluid);
-  def.user = &r, def.matrix = count_rows, def.solve = add_right;
+  DEF(linear_solver, def, .user = &r, .matrix = count_rows, .solve = add_right);
   OK(mps_solver_set_linear_solver(solver, MPS_LINEAR_EQUATION_PRESSURE, &def));
   assert_int_equal(mps_fluid_step(fluid, 1), MPS_ERROR_CANCELLED);
   OK(mps_solver_set_linear_solver(solver, MPS_LINEAR_EQUATION_PRESSURE, NULL));
@@ -153,12 +150,10 @@ static void assert_balanced(mps_fluid *fluid) {
 /* A box in the full box falls freely, heavier than water, until the run ends: its weight less
  * buoyancy and added mass moves it, and the volume is kept. */
 TEST(a_body_moves_in_a_full_box) {
-  DEF(particles, set, .spacing = L0);
   DEF(fluid, def, .dt = 2e-3, .level = DEPTH);
   DEF(body, at, .position[0] = 0.2, .position[1] = 0.1);
   scoped_tank t = {NULL, NULL};
-  scoped_body *body = NULL;
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = L0);
   for (int j = 0; j < 10; j++)
     for (int i = 0; i < 20; i++) {
       const double p[2] = {(i + 0.5) * L0, (j + 0.5) * L0};
@@ -170,7 +165,7 @@ TEST(a_body_moves_in_a_full_box) {
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(t.fluid, LENGTH, 0.0, -1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.0, DEPTH, 0.0, -1.0, NULL);
-  OK(mps_body_create_box(context, &at, 0.12, 0.08, &body));
+  MAKE(body, body, create_box, context, &at, 0.12, 0.08);
   scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_OTHER);
   WITH_DEFAULTS(mps_body_motion, motion, .position[0] = 0.2, .position[1] = 0.1);
   for (int k = 1; k <= 100; k++) {

@@ -1,16 +1,12 @@
 /* test_fluid_coarse.c - the coarse space of the pressure solution: iterations hardly grow with the
  * number of particles, a box without surface and water in two parts are solved for, and the coarse
  * equation itself. SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "test_fixture.h"
 
 #include "core/base/envelope.h"
 #include "fluid_tank.h"
 #include "linear_plug.h"
-
-static double noise(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
 
 /* ---- the coarse equation --------------------------------------------------------------------- */
 
@@ -79,16 +75,14 @@ TEST(the_coarse_equation_is_solved) {
  * memory, bytes a particle. */
 static double iterations(int rows, double *bytes) {
   const double l0 = 0.3 / rows, length = l0 * round(16.0 / 3.0 * rows);
-  mps_signal *piston = NULL;
   mps_fluid_report before, after;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0);
   tank t = tank_make(context, length, 0.3, l0, piston, 0.04 * sqrt(l0 / TANK_G));
   OK(mps_fluid_step(t.fluid, 10));
   OK(mps_fluid_get_report(t.fluid, &before));
   OK(mps_fluid_step(t.fluid, 20));
   OK(mps_fluid_get_report(t.fluid, &after));
   *bytes = (double)after.bytes / (double)mps_particles_count(t.water);
-  mps_signal_destroy(&piston);
   tank_free(&t);
   return (double)(after.all_iterations - before.all_iterations) / 20.0;
 }
@@ -110,12 +104,10 @@ static double press(bool plain, double tolerance, int64_t *iterations) {
   const double side = 0.8;
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid_load_def load = mps_fluid_load_defaults();
   SCOPED(linear_plug_drop) linear_plug p = {.fault = LINEAR_FINE};
   const mps_linear_solver_def solver = linear_plug_def(&p);
   tank t = {NULL, NULL};
   set.spacing = 0.01, def.dt = 2e-3, def.tolerance = tolerance;
-  load.all = 1, load.acceleration[0] = 3.0;
   OK(mps_particles_create(context, &set, &t.water));
   tank_fill(t.water, side, side, NULL, NULL);
   OK(mps_fluid_create(context, t.water, &def, &t.fluid));
@@ -123,7 +115,7 @@ static double press(bool plain, double tolerance, int64_t *iterations) {
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(t.fluid, side, 0.0, -1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.0, side, 0.0, -1.0, NULL);
-  OK(mps_fluid_add_load(t.fluid, &load, NULL));
+  USING(fluid_load, mps_fluid_add_load(t.fluid, &given, NULL), .all = 1, .acceleration[0] = 3.0);
   if (plain)
     OK(mps_solver_set_linear_solver(mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE,
                                     &solver));
@@ -154,11 +146,10 @@ static double fall(bool both) {
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  const double lower[2] = {0.0, 0.0}, upper[2] = {0.8, 0.8};
   const double lower2[2] = {3.0, 2.0}, upper2[2] = {3.4, 2.4}, alone[] = {1.5, 1.5, 2.0, 0.3};
   set.spacing = 0.01, def.dt = 1e-3, def.tolerance = 1e-10, def.level = 0.8;
   OK(mps_particles_create(context, &set, &t.water));
-  OK(mps_particles_fill_box(t.water, lower, upper, NULL));
+  OK(mps_particles_fill_box(t.water, AT(0.0, 0.0), AT(0.8, 0.8), NULL));
   if (both) OK(mps_particles_fill_box(t.water, lower2, upper2, NULL));
   if (both) OK(mps_particles_append(t.water, 2, alone));
   OK(mps_fluid_create(context, t.water, &def, &t.fluid));

@@ -26,8 +26,7 @@ static tank make(bool disturbed, double dt) {
 static double *positions(const tank *t) {
   const int64_t n = mps_particles_count(t->water);
   double *x = malloc((size_t)n * 2 * sizeof *x);
-  mps_view v;
-  OK(mps_particles_view(t->water, "position", &v));
+  mps_view v = view_field(t->water, "position");
   for (int64_t i = 0; i < n; i++) /* by id: the fluid sorts */
     for (int c = 0; c < 2; c++)
       x[2 * i + c] = *mps_view_f64(&v, mps_particles_index(t->water, i), c);
@@ -83,10 +82,8 @@ TEST(a_lattice_and_a_fifth_of_the_source_hold) {
  * step that the fluid recommends the same state continues. */
 TEST(a_step_far_above_the_limit_is_refused) {
   scoped_tank t = make(false, NAN);
-  mps_edit edit;
-  OK(mps_particles_edit(t.water, "velocity", &edit));
-  for (int64_t i = 0; i < mps_particles_count(t.water); i++) *mps_edit_f64(&edit, i, 1) = 2.0;
-  OK(mps_particles_commit(t.water, &edit));
+  EDIT(edit, t.water, "velocity")
+    for (int64_t i = 0; i < mps_particles_count(t.water); i++) *mps_edit_f64(&edit, i, 1) = 2.0;
   OK(mps_fluid_set_dt(t.fluid, 0.4 * L0 / 2.0));
   OK(run(&t, 1));
   OK(mps_fluid_set_dt(t.fluid, 1.2 * L0 / 2.0));

@@ -3,23 +3,18 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#define PI 3.141592653589793
-
 typedef struct tank {
   mps_particles *water;
   mps_fluid *fluid;
 } tank;
 
 static void begin(tank *t, double spacing) {
-  mps_particles_def set = mps_particles_defaults();
   *t = (tank){0};
-  set.spacing = spacing;
-  OK(mps_particles_create(context, &set, &t->water));
+  USING(particles, mps_particles_create(context, &given, &t->water), .spacing = spacing);
 }
 
 static void fill(tank *t, double level) {
-  DEF(fluid, def, .level = level);
-  OK(mps_fluid_create(context, t->water, &def, &t->fluid));
+  USING(fluid, mps_fluid_create(context, t->water, &given, &t->fluid), .level = level);
 }
 
 static void drop(tank *t) {
@@ -28,9 +23,9 @@ static void drop(tank *t) {
 }
 
 static void add_plane(tank *t, double x, double y, double nx, double ny, int32_t *number) {
-  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .point[0] = x, .point[1] = y,
-      .normal[0] = nx, .normal[1] = ny);
-  OK(mps_fluid_add_boundary(t->fluid, &def, number));
+  USING(fluid_boundary, mps_fluid_add_boundary(t->fluid, &given, number),
+        .kind = MPS_BOUNDARY_ROLLER, .point[0] = x, .point[1] = y, .normal[0] = nx,
+        .normal[1] = ny);
 }
 
 static void add_line(tank *t, int64_t corners, const double *xy) {
@@ -39,8 +34,7 @@ static void add_line(tank *t, int64_t corners, const double *xy) {
 }
 
 static double place(const tank *t, int64_t i, int32_t c) {
-  mps_view x;
-  OK(mps_particles_view(t->water, "position", &x));
+  mps_view x = view_field(t->water, "position");
   return *mps_view_f64(&x, i, c);
 }
 
@@ -111,13 +105,12 @@ TEST(water_rests_in_a_bowl_of_planes) {
 /* Numbers are the lowest free ones; one too many is refused and changes nothing. */
 TEST(boundaries_have_a_documented_maximum) {
   tank t;
-  mps_fluid_boundary_def side = mps_fluid_boundary_defaults();
   int32_t number = -1;
   const double at[2] = {0.5, 0.5};
   begin(&t, 0.1);
   OK(mps_particles_append(t.water, 1, at));
   fill(&t, 1.0);
-  side.kind = MPS_BOUNDARY_OPEN, side.normal[1] = 1.0, side.point[1] = -1.0;
+  DEF(fluid_boundary, side, .kind = MPS_BOUNDARY_OPEN, .normal[1] = 1.0, .point[1] = -1.0);
   for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++)
     OK(mps_fluid_add_boundary(t.fluid, &side, &number));
   assert_int_equal(number, MPS_FLUID_MAX_BOUNDARIES - 1);
@@ -268,14 +261,12 @@ TEST(a_bed_in_pieces_is_one) {
  * that; `more` planes behind the left side. */
 static void add_drop(tank *t, int more) {
   const double lower[2] = {0.0, 0.0}, upper[2] = {1.0, 0.5}, at[2] = {0.5, 0.9};
-  mps_edit edit;
   begin(t, SIZE);
   OK(mps_particles_fill_box(t->water, lower, upper, NULL));
   OK(mps_particles_append(t->water, 1, at));
   OK(mps_particles_add_field(t->water, "velocity", 0));
-  OK(mps_particles_edit(t->water, "velocity", &edit));
-  *mps_edit_f64(&edit, mps_particles_count(t->water) - 1, 0) = 2000.0;
-  OK(mps_particles_commit(t->water, &edit));
+  EDIT(edit, t->water, "velocity")
+    *mps_edit_f64(&edit, mps_particles_count(t->water) - 1, 0) = 2000.0;
   fill(t, 0.5);
   add_sides(t, 2.0);
   for (int k = 0; k < more; k++) add_plane(t, -1.0 - k, 0.0, 1.0, 0.0, NULL);

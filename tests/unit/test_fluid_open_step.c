@@ -13,8 +13,7 @@ TEST(a_body_leaves_in_an_open_step) {
     mps_context *own = test_allocator_context(&allocator);
     tank t = tank_make(own, 0.6, 0.3, 0.03, NULL, 2e-3);
     DEF(body, at, .position[0] = 0.3, .position[1] = 0.42);
-    mps_body *box = NULL;
-    OK(mps_body_create_box(own, &at, 0.2, 0.2, &box));
+    MAKE_KEPT(body, box, create_box, own, &at, 0.2, 0.2);
     mps_contact *contact = tank_body(t.fluid, box, MPS_CONTACT_MOVER_OTHER);
     WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = -0.5, .position[1] = 0.419);
     OK(mps_body_set_motion(box, &motion));

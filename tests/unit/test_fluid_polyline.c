@@ -9,20 +9,17 @@ static mps_fluid *fluid;
 
 /* 16 x 8 particles on y = 0 between x = 0 and .8 m. */
 static int make(void **state) {
-  (void)state;
   DEF(particles, set, .spacing = L0);
-  mps_fluid_def def = mps_fluid_defaults();
   if (mps_particles_create(context, &set, &water) != MPS_OK) return 1;
   for (int n = 0; n < 128; n++) {
     const double at[2] = {(n % 16 + 0.5) * L0, (n / 16 + 0.5) * L0};
     if (mps_particles_append(water, 1, at) != MPS_OK) return 1;
   }
-  def.level = 0.4;
+  DEF(fluid, def, .level = 0.4);
   return mps_fluid_create(context, water, &def, &fluid) == MPS_OK ? 0 : 1;
 }
 
 static int drop(void **state) {
-  (void)state;
   mps_fluid_destroy(&fluid);
   mps_particles_destroy(&water);
   return 0;
@@ -136,12 +133,11 @@ TEST_EACH(readings_are_those_of_planes, make, drop) {
 }
 
 TEST_EACH(polylines_are_changed_and_removed, make, drop) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   const double wide[4][3] = {
       {-0.1, 0.8, 0.0}, {-0.1, -0.1, 0.0}, {0.9, -0.1, 0.0}, {0.9, 0.8, 0.0}};
   OK(add(4, bed, NULL));
   OK(mps_fluid_step(fluid, 2));
-  def.kind = MPS_BOUNDARY_ROLLER, def.corners = wide[0], def.corner_count = 4;
+  DEF(fluid_boundary, def, .kind = MPS_BOUNDARY_ROLLER, .corners = wide[0], .corner_count = 4);
   OK(mps_fluid_set_boundary(fluid, 0, &def));
   OK(mps_fluid_step(fluid, 2));
   def.corner_count = 1;

@@ -19,38 +19,30 @@ typedef struct scene {
 } scene;
 
 static void push_some(mps_particles *water) {
-  mps_edit force;
   OK(mps_particles_add_field(water, "external_force", 0));
-  OK(mps_particles_edit(water, "external_force", &force));
-  for (int64_t i = 0; i < mps_particles_count(water); i += 7) *mps_edit_f64(&force, i, 0) = 0.3;
-  OK(mps_particles_commit(water, &force));
+  EDIT(force, water, "external_force")
+    for (int64_t i = 0; i < mps_particles_count(water); i += 7) *mps_edit_f64(&force, i, 0) = 0.3;
 }
 
 static void add_box(scene *s) {
-  mps_body_def def = mps_body_defaults();
   int64_t ids[200], count = 0;
-  mps_view id, x;
-  OK(mps_particles_view(s->t.water, "id", &id));
-  OK(mps_particles_view(s->t.water, "position", &x));
+  mps_view id = view_field(s->t.water, "id");
+  mps_view x = view_field(s->t.water, "position");
   for (int64_t i = 0; i < id.shape[0]; i++)
     if (fabs(*mps_view_f64(&x, i, 0) - 0.3) < 0.05 && *mps_view_f64(&x, i, 1) > 0.3)
       ids[count++] = *mps_view_i64(&id, i, 0);
   OK(mps_particles_remove(s->t.water, ids, count));
-  def.motion = MPS_BODY_MOTION_FREE, def.gravity[1] = -TANK_G;
-  def.position[0] = 0.3, def.position[1] = 0.4;
-  def.mass = 12.0, def.inertia[2] = 0.04;
+  DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .gravity[1] = -TANK_G, .position[0] = 0.3,
+      .position[1] = 0.4, .mass = 12.0, .inertia[2] = 0.04);
   OK(mps_body_create_box(context, &def, 0.1, 0.2, &s->body));
   s->contact = tank_body(s->t.fluid, s->body, MPS_CONTACT_MOVER_SOLVER);
 }
 
 static scene make(int kind) {
   scene s = {.right = kind == SPILLS ? (double)NAN : 1.2};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_load_def load = mps_fluid_load_defaults();
   mps_fluid_boundary_def end = mps_fluid_boundary_defaults();
   end.kind = MPS_BOUNDARY_ROLLER; /* slip */
-  set.spacing = SPACING;
-  OK(mps_particles_create(context, &set, &s.t.water));
+  USING(particles, mps_particles_create(context, &given, &s.t.water), .spacing = SPACING);
   tank_fill(s.t.water, 0.6, 0.4, NULL, NULL);
   push_some(s.t.water);
   OK(mps_fluid_create(context, s.t.water, NULL, &s.t.fluid));
@@ -59,7 +51,7 @@ static scene make(int kind) {
   end.point[0] = kind == SPILLS ? 0.65 : s.right, end.normal[0] = -1.0;
   if (kind == SPILLS) end.kind = MPS_BOUNDARY_OPEN;
   OK(mps_fluid_add_boundary(s.t.fluid, &end, NULL));
-  load.lower[0] = 0.5, load.acceleration[0] = 1.0;
+  DEF(fluid_load, load, .lower[0] = 0.5, .acceleration[0] = 1.0);
   OK(mps_fluid_add_load(s.t.fluid, &load, NULL));
   load.kind = MPS_FLUID_LOAD_PRESSURE, load.pressure = 30.0;
   OK(mps_fluid_add_load(s.t.fluid, &load, NULL));
@@ -106,12 +98,10 @@ TEST(of_a_body_afloat) { readings_survive(AFLOAT, test_quick() ? 30 : 10); }
 TEST(of_what_the_caller_changes) {
   static readings before, after;
   scoped_snapshot *kept = NULL;
-  mps_edit x;
   SCOPED(drop_scene) scene s = make(CLOSED);
   OK(mps_fluid_step(s.t.fluid, 10));
-  OK(mps_particles_edit(s.t.water, "position", &x));
-  for (int64_t i = 0; i < mps_particles_count(s.t.water); i++) *mps_edit_f64(&x, i, 1) += 0.003;
-  OK(mps_particles_commit(s.t.water, &x));
+  EDIT(x, s.t.water, "position")
+    for (int64_t i = 0; i < mps_particles_count(s.t.water); i++) *mps_edit_f64(&x, i, 1) += 0.003;
   OK(mps_fluid_snapshot(s.t.fluid, &kept));
   read_scene(&s, &before);
   OK(mps_fluid_step(s.t.fluid, 2));

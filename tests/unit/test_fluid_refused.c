@@ -20,15 +20,14 @@ typedef struct reading {
 static reading *read_all(mps_fluid *fluid) {
   reading *out = calloc(1, sizeof *out);
   mps_particles *set = mps_fluid_particles(fluid);
-  mps_view x, rise, surface;
   const int64_t n = mps_particles_count(set);
   assert_true(n <= MOST);
   for (int32_t b = 0; b < 3; b++) OK(mps_fluid_get_reaction(fluid, b, &out->wall[b]));
   OK(mps_fluid_get_report(fluid, &out->report));
   out->report.bytes = 0; /* a refused step may have grown its lists of neighbours */
-  OK(mps_particles_view(set, "position", &x));
-  OK(mps_particles_view(set, "surface_rise", &rise));
-  OK(mps_particles_view(set, "free_surface", &surface));
+  mps_view x = view_field(set, "position");
+  mps_view rise = view_field(set, "surface_rise");
+  mps_view surface = view_field(set, "free_surface");
   for (int64_t i = 0; i < n; i++) {
     for (int32_t c = 0; c < 2; c++) out->position[i][c] = *mps_view_f64(&x, i, c);
     out->rise[i] = *mps_view_f64(&rise, i, 0);
@@ -44,8 +43,6 @@ static void assert_as_before(mps_fluid *fluid, reading *before) {
 }
 
 static void kick(void *user, double *x, double *u) {
-  (void)user;
-  (void)u;
   x[0] += 0.1 * L0 * sin(400.0 * x[0] * x[1]), x[1] += 0.1 * L0 * cos(300.0 * x[0]);
 }
 
@@ -68,14 +65,10 @@ TEST(a_step_that_does_not_begin_leaves_reactions) {
   assert_as_before(t.fluid, before);
 }
 
-static mps_status take(void *user, const mps_linear_matrix *matrix) {
-  (void)user, (void)matrix;
-  return MPS_OK;
-}
+static mps_status take(void *user, const mps_linear_matrix *matrix) { return MPS_OK; }
 
 static mps_status refuse(void *user, const double *b, double tolerance, double *x,
                          mps_linear_result *result) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)result;
   return MPS_ERROR_NUMERIC;
 }
 
@@ -83,25 +76,23 @@ static mps_status refuse(void *user, const double *b, double tolerance, double *
 TEST(a_step_that_fails_leaves_reactions_and_loads) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid_load_def load = mps_fluid_load_defaults();
-  mps_linear_solver_def solver = mps_linear_solver_defaults();
-  scoped_signal *sine = NULL;
   tank t;
   double x[3] = {0.2, 0.0, 0.0}, before, after;
   set.spacing = L0, def.dt = 2e-3;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 5.0, 1.0, 0.0, &sine));
+  MAKE(signal, sine, create_sine, context, MPS_SIGNAL_QUANTITY_VALUE, 5.0, 1.0, 0.0);
   OK(mps_particles_create(context, &set, &t.water));
   tank_fill(t.water, 0.4, 0.2, NULL, NULL);
   OK(mps_fluid_create(context, t.water, &def, &t.fluid));
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.4, 0.0, -1.0, 0.0, NULL);
-  load.all = 1, load.acceleration[1] = 5.0, load.signal[1] = sine;
+  DEF(fluid_load, load, .all = 1, .acceleration[1] = 5.0, .signal[1] = sine);
   OK(mps_fluid_add_load(t.fluid, &load, NULL));
   OK(mps_fluid_step(t.fluid, 5));
-  solver.matrix = take, solver.solve = refuse;
-  OK(mps_solver_set_linear_solver(mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE,
-                                  &solver));
+  USING(
+      linear_solver,
+      mps_solver_set_linear_solver(mps_fluid_solver(t.fluid), MPS_LINEAR_EQUATION_PRESSURE, &given),
+      .matrix = take, .solve = refuse);
   OK(mps_fluid_get_pressure(t.fluid, TANK_BED, 1, x, &before));
   reading *all = read_all(t.fluid);
   assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_NUMERIC);

@@ -8,17 +8,15 @@ static mps_particles *water;
 static mps_fluid *fluid;
 
 static int make(void **state) {
-  (void)state;
   const double normal[3][3] = {{0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 1.2}};
   DEF(particles, set, .spacing = L0);
-  mps_fluid_def def = mps_fluid_defaults();
   if (mps_particles_create(context, &set, &water) != MPS_OK) return 1;
   for (int n = 0; n < 24 * 8; n++) {
     const double at[2] = {(n % 24 + 0.5) * L0, (n / 24 + 0.5) * L0};
     if (at[0] > 0.4 && at[0] < 0.8) continue;
     if (mps_particles_append(water, 1, at) != MPS_OK) return 1;
   }
-  def.level = 0.4;
+  DEF(fluid, def, .level = 0.4);
   if (mps_fluid_create(context, water, &def, &fluid) != MPS_OK) return 1;
   for (int k = 0; k < 3; k++) {
     DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .normal[0] = normal[k][0],
@@ -29,7 +27,6 @@ static int make(void **state) {
 }
 
 static int drop(void **state) {
-  (void)state;
   mps_fluid_destroy(&fluid);
   mps_particles_destroy(&water);
   return 0;
@@ -96,11 +93,10 @@ TEST_EACH(bodies_have_pressure_probes, make, drop) {
   const double xy[8] = {0.4, 0.0, 0.8, 0.0, 0.8, 0.6, 0.4, 0.6}, off[3] = {0.3, 0.2, 0.0};
   mps_body_def def = mps_body_defaults();
   DEF(fluid_contact, with, .kind = MPS_BOUNDARY_ROLLER);
-  scoped_body *box = NULL;
   scoped_contact *contact = NULL;
   double p[2];
   const double at[6] = {0.4, 0.1, 0.0, 0.8, 0.3, 0.0};
-  OK(mps_body_create_polygon(context, &def, 4, xy, &box));
+  MAKE(body, box, create_polygon, context, &def, 4, xy);
   OK(mps_fluid_add_contact(fluid, box, &with, &contact));
   OK(mps_fluid_step(fluid, 50));
   OK(mps_fluid_get_body_pressure(fluid, contact, 2, at, p));

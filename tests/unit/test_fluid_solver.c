@@ -81,14 +81,12 @@ static void plug_end(plug *p) {
 }
 
 static void put_in(mps_fluid *fluid, plug *p) {
-  mps_linear_solver_def def = mps_linear_solver_defaults();
-  def.user = p, def.matrix = take_matrix, def.solve = solve;
+  DEF(linear_solver, def, .user = p, .matrix = take_matrix, .solve = solve);
   OK(mps_solver_set_linear_solver(mps_fluid_solver(fluid), MPS_LINEAR_EQUATION_PRESSURE, &def));
 }
 
 /* A tank whose left wall moves, and a particle above it that falls alone. */
 static tank waves_of(double length, double tolerance) {
-  scoped_signal *piston = NULL;
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
@@ -98,7 +96,7 @@ static tank waves_of(double length, double tolerance) {
   tank_fill(t.water, length, 0.25, NULL, NULL);
   OK(mps_particles_append(t.water, 1, drop));
   OK(mps_fluid_create(context, t.water, &def, &t.fluid));
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0);
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
   tank_wall(t.fluid, length, 0.0, -1.0, 0.0, NULL);

@@ -89,9 +89,8 @@ static void lower_box(mps_context *own, double to, int steps) {
   mps_body_def at = mps_body_defaults();
   mps_body_motion motion = mps_body_motion_defaults();
   scoped_tank t = {NULL, NULL};
-  scoped_body *box = NULL;
   tilt(17.0, at.position, &at.rotation[2]);
-  OK(mps_body_create_box(own, &at, WIDE, HIGH, &box));
+  MAKE(body, box, create_box, own, &at, WIDE, HIGH);
   set.spacing = L0, def.dt = 2e-3, def.level = hi[1];
   OK(mps_particles_create(own, &set, &t.water));
   for (double y = lo[1] + 0.5 * L0; y < hi[1]; y += L0)
@@ -130,17 +129,13 @@ TEST(a_run_does_not_choose_endless_steps) {
   for (int weightless = 0; weightless < 2; weightless++) {
     journal j = {0};
     scoped_context *own = journal_context(&j, NULL);
-    DEF(particles, set, .spacing = L0);
     mps_fluid_def def = mps_fluid_defaults();
     tank t;
-    mps_edit u;
     if (weightless) def.gravity[1] = 0.0;
-    OK(mps_particles_create(own, &set, &t.water));
+    USING(particles, mps_particles_create(own, &given, &t.water), .spacing = L0);
     tank_fill(t.water, 0.2, 0.1, NULL, NULL);
     OK(mps_fluid_create(own, t.water, &def, &t.fluid));
-    OK(mps_particles_edit(t.water, "velocity", &u));
-    *mps_edit_f64(&u, 0, 1) = weightless ? 1e8 : 1e6;
-    OK(mps_particles_commit(t.water, &u));
+    EDIT(u, t.water, "velocity") *mps_edit_f64(&u, 0, 1) = weightless ? 1e8 : 1e6;
     assert_int_equal(mps_fluid_run(t.fluid, 0.02, 1, NULL, NULL), MPS_ERROR_DIVERGED);
     assert_non_null(strstr(mps_context_error(own)->message, "give dt"));
     assert_int_equal(mps_fluid_steps(t.fluid), 0);

@@ -8,18 +8,10 @@
 
 /* A block of the given height on the unit square (2D: unit length), spacing 0.25 m. */
 static mps_particles *ground(mps_context *own, int32_t dim, double height) {
-  const double lo[3] = {0.0}, hi[3] = {1.0, dim == 2 ? height : 1.0, height};
   DEF(particles, def, .dim = dim, .spacing = 0.25);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  MAKE_KEPT(particles, set, create, own, &def);
+  OK(mps_particles_fill_box(set, AT(0.0), AT(1.0, dim == 2 ? height : 1.0, height), NULL));
   return set;
-}
-
-static mps_view view_of(mps_particles *set, const char *name) {
-  mps_view view;
-  OK(mps_particles_view(set, name, &view));
-  return view;
 }
 
 /* Two layers, 1 m of 1500 with K0 = 0.4 and deeper ground of 2000 with K0 = 0.6, under 3 kPa. */
@@ -37,7 +29,7 @@ static mps_geostatic_def two_layers(void) {
 /* Every particle carries the weight above the level `surface(x)`. */
 static void expect_two_layers(mps_particles *set, int up, double (*surface)(double x)) {
   const int dim = mps_particles_dim(set);
-  mps_view x = view_of(set, "position"), s = view_of(set, "stress");
+  mps_view x = view_field(set, "position"), s = view_field(set, "stress");
   assert_int_equal(s.shape[1], 2 * dim);
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double depth = surface(*mps_view_f64(&x, k, 0)) - *mps_view_f64(&x, k, up);
@@ -56,10 +48,7 @@ static mps_status level(void *user, const double *x, double *at) {
   *at = slope(x[0]);
   return MPS_OK;
 }
-static mps_status no_level(void *user, const double *x, double *at) {
-  (void)user, (void)x, (void)at;
-  return MPS_ERROR_IO;
-}
+static mps_status no_level(void *user, const double *x, double *at) { return MPS_ERROR_IO; }
 
 TEST(layers_carry_what_lies_above) {
   for (int32_t dim = 2; dim <= 3; dim++) {
@@ -103,7 +92,7 @@ TEST(layers_take_their_particles_density) {
   FAILS(mps_particles_set_geostatic(set, &def), MPS_ERROR_FIELD,
         "layer 0 has density NaN, but the set has no field 'density'");
   OK(mps_particles_set(set, "density", 0, 2000.0));
-  const mps_view x = view_of(set, "position");
+  const mps_view x = view_field(set, "position");
   double *rho = mpsi_particles_column(set, "density", 0); /* past the set's own check */
   for (int64_t k = 0; k < x.shape[0]; k++)
     if (*mps_view_f64(&x, k, 1) > 2.0) rho[k] = 1500.0;
@@ -199,7 +188,7 @@ TEST(a_function_sets_the_stress) {
   assert_int_equal(mps_particles_view(set, "stress", &s), MPS_ERROR_FIELD);
   limit = 10.0;
   OK(mps_particles_set_stress(set, radial, &limit));
-  s = view_of(set, "stress");
+  s = view_field(set, "stress");
   for (int64_t k = 0; k < x.view.shape[0]; k++) {
     for (int c = 0; c < 3; c++)
       NEAR(*mps_view_f64(&s, k, c), -100.0 * (c + 1) * *mps_view_f64(&x.view, k, 1), 1e-12);
@@ -214,25 +203,23 @@ TEST(an_open_edit_is_respected) {
   scoped_particles *set = ground(context, 2, 2.0);
   const mps_geostatic_def def = two_layers();
   double limit = 10.0;
-  mps_edit edit;
   OK(mps_particles_add_field(set, "stress", 0));
-  OK(mps_particles_edit(set, "stress", &edit));
-  *mps_edit_f64(&edit, 3, 0) = -7.0;
-  FAILS(mps_particles_set_geostatic(set, &def), MPS_ERROR_STATE, "being edited");
-  FAILS(mps_particles_set_stress(set, radial, &limit), MPS_ERROR_STATE, "being edited");
-  assert_true(*mps_edit_f64(&edit, 3, 0) == -7.0);
-  OK(mps_particles_commit(set, &edit));
+  EDIT(edit, set, "stress") {
+    *mps_edit_f64(&edit, 3, 0) = -7.0;
+    FAILS(mps_particles_set_geostatic(set, &def), MPS_ERROR_STATE, "being edited");
+    FAILS(mps_particles_set_stress(set, radial, &limit), MPS_ERROR_STATE, "being edited");
+    assert_true(*mps_edit_f64(&edit, 3, 0) == -7.0);
+  }
   OK(mps_particles_set_geostatic(set, &def));
 }
 
 static mps_status set_and_destroy(mps_context *own, int what) {
   double limit = 10.0;
   DEF(particles, def, .spacing = 0.25);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 1.0};
   const mps_geostatic_def layers = two_layers();
   scoped_particles *set = NULL;
   mps_status status = mps_particles_create(own, &def, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_fill_box(set, AT(0.0, 0.0), AT(1.0, 1.0), NULL);
   if (status == MPS_OK)
     status = what == 0 ? mps_particles_set_geostatic(set, &layers)
                        : mps_particles_set_stress(set, radial, &limit);

@@ -6,21 +6,16 @@
 #include "core/particles/particles_internal.h"
 
 static mps_particles *make_set(mps_context *own, double width) {
-  DEF(particles, def, .spacing = 0.5);
-  mps_particles *set = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {width, 2.0};
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  mps_particles *set = box_of(own, 0.5, AT(0.0, 0.0), AT(width, 2.0));
   OK(mps_particles_set(set, "density", 0, 2000.0));
   return set;
 }
 
 static mps_mpm *make_mpm(mps_particles *set) {
-  scoped_material *material = NULL;
   mps_mpm *mpm = NULL;
   DEF(mpm, def, .cell = 1.0);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 8.0;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
+  MAKE(material, material, create_linear_elastic, context, 1e6, 0.3);
   OK(mps_mpm_create(context, set, material, &def, &mpm));
   return mpm;
 }
@@ -54,9 +49,8 @@ _Static_assert(_Generic(mps_view_f64(NULL, 0, 0), const double * : 1, default : 
 
 TEST(views_are_for_reading_and_edits_for_writing) {
   scoped_particles *set = make_set(context, 2.0);
-  mps_view v;
   mps_edit e, other;
-  OK(mps_particles_view(set, "density", &v));
+  mps_view v = view_field(set, "density");
   assert_true(v.flags & MPS_VIEW_READONLY);
   assert_int_equal(v.device_type, 0);
   OK(mps_particles_edit(set, "density", &e));
@@ -111,11 +105,10 @@ TEST(commit_checks_values_and_names_the_particle) {
 TEST(a_step_waits_for_the_commit) {
   scoped_particles *set = make_set(context, 2.0);
   scoped_mpm *mpm = make_mpm(set);
-  mps_edit v;
-  OK(mps_particles_edit(set, "velocity", &v));
-  FAILS(mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
-  FAILS(mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "velocity") {
+    FAILS(mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
+    FAILS(mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
+  }
   OK(mps_mpm_step(mpm, 1));
 }
 
@@ -124,12 +117,10 @@ TEST(a_step_waits_for_the_commit) {
 TEST(states_wait_for_the_commit) {
   scoped_particles *set = make_set(context, 4.0);
   mps_dynamics_def def = mps_dynamics_defaults();
-  scoped_dynamics *dynamics = NULL;
   scoped_snapshot *snapshot = NULL;
   mps_edit v;
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  OK(mps_dynamics_create(context, set, &def, &dynamics));
+  SET_FIELDS(set, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0});
+  MAKE(dynamics, dynamics, create, context, set, &def);
   OK(mps_particles_edit(set, "velocity", &v));
   *mps_edit_f64(&v, 0, 0) = NAN;
   const char *text = "field 'velocity' is being edited";
@@ -197,13 +188,8 @@ TEST(the_limit_follows_the_callers_velocity) {
 /* Two metres of soil far from the walls, in flight: particles enter other cells, but stay near
  * enough to the blocks that they were sorted to. */
 static mps_particles *free_set(void) {
-  DEF(particles, def, .spacing = 0.25);
-  mps_particles *set = NULL;
-  const double lo[2] = {2.1, 3.1}, hi[2] = {4.1, 5.1};
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 2000.0));
-  OK(mps_particles_set(set, "velocity", 0, 2.0));
+  mps_particles *set = box_of(context, 0.25, AT(2.1, 3.1), AT(4.1, 5.1));
+  SET_FIELDS(set, {"density", 2000.0}, {"velocity", 2.0});
   OK(mps_particles_add_field(set, "external_force", 0));
   return set;
 }
@@ -234,8 +220,7 @@ TEST(an_edited_force_acts_at_once) {
   scoped_mpm *mpm = make_mpm(set);
   double speed = 2.0;
   for (int step = 1; step <= 3; step++) {
-    mps_view m;
-    OK(mps_particles_view(set, "mass", &m));
+    mps_view m = view_field(set, "mass");
     OK(mps_particles_edit(set, "external_force", &f));
     for (int64_t k = 0; k < f.view.shape[0]; k++)
       *mps_edit_f64(&f, k, 0) = 3.0 * step * *mps_view_f64(&m, k, 0);
@@ -253,7 +238,6 @@ TEST(an_edited_force_acts_at_once) {
 TEST(an_abandoned_edit_was_none) {
   scoped_particles *set = make_set(context, 2.0);
   scoped_mpm *mpm = make_mpm(set);
-  mps_view other;
   mps_edit x;
   OK(mps_mpm_step(mpm, 1));
   const double limit = mps_mpm_limit(mpm);
@@ -272,16 +256,15 @@ TEST(an_abandoned_edit_was_none) {
   }
   REFUSES(mps_particles_abandon(set, NULL), "edit is NULL");
   assert_int_equal(mps_particles_abandon(NULL, &x), MPS_ERROR_ARGUMENT);
-  OK(mps_particles_view(set, "position", &other));
+  (void)view_field(set, "position");
 }
 
 /* One material for all solvers, given to a set that a solver holds: its masses follow. */
 TEST(a_sets_material_renews_its_masses) {
   scoped_particles *set = make_set(context, 2.0);
   scoped_mpm *mpm = make_mpm(set);
-  scoped_material *rock = NULL;
   mps_totals before, after;
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.2, &rock));
+  MAKE(material, rock, create_linear_elastic, context, 1e7, 0.2);
   OK(mps_mpm_get_totals(mpm, &before));
   OK(mps_particles_set_material(set, rock, 3000.0, NULL, 0));
   OK(mps_mpm_get_totals(mpm, &after));
@@ -289,19 +272,17 @@ TEST(a_sets_material_renews_its_masses) {
 }
 
 TEST(one_solver_moves_a_set) {
-  mps_particles *set = make_set(context, 2.0);
+  scoped_particles *set = make_set(context, 2.0);
   mps_mpm *mpm = make_mpm(set), *second = NULL;
-  mps_material *material = NULL;
   DEF(mpm, def, .cell = 1.0);
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
+  MAKE(material, material, create_linear_elastic, context, 1e6, 0.3);
   const uint64_t epoch = mps_particles_epoch(set);
   const int32_t fields = mps_particles_field_count(set);
   FAILS(mps_mpm_create(context, set, material, &def, &second), MPS_ERROR_STATE,
         "held by a WLS-MPM solver");
   assert_null(second);
   mps_dynamics *dynamics = NULL;
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  SET_FIELDS(set, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0});
   FAILS(mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_STATE, "held by");
   assert_int_equal(mps_particles_epoch(set), epoch);
   assert_int_equal(mps_particles_field_count(set), fields + 2);
@@ -319,7 +300,6 @@ TEST(one_solver_moves_a_set) {
 TEST(particles_are_removed_and_keep_their_ids) {
   scoped_particles *set = make_set(context, 2.0);
   OK(mps_particles_add_field(set, "user.mine", 2));
-  mps_view x;
   mps_edit mine;
   OK(mps_particles_edit(set, "user.mine", &mine));
   for (int64_t k = 0; k < 16; k++)
@@ -359,7 +339,7 @@ TEST(particles_are_removed_and_keep_their_ids) {
   assert_int_equal(count, 14);
   assert_int_equal(found[0], 1);
   assert_int_equal(found[13], 16);
-  OK(mps_particles_view(set, "position", &x));
+  (void)view_field(set, "position");
   int64_t all[14];
   memcpy(all, found, sizeof all);
   OK(mps_particles_remove(set, all, 14));
@@ -377,7 +357,6 @@ typedef struct visitor {
 } visitor;
 
 static bool visit_compares(const void *self, const char *field) {
-  (void)self;
   return strcmp(field, "density") == 0;
 }
 
@@ -414,7 +393,7 @@ static void visit_renew(void *self) {
 }
 
 TEST(holders_decide_who_comes_and_goes) {
-  mps_particles *set = make_set(context, 2.0);
+  scoped_particles *set = make_set(context, 2.0);
   visitor v = {.set = set};
   mpsi_holder recorder = {.name = "a recorder", .kind = MPSI_USE_LOOK};
   mpsi_holder solver = {.name = "a solver of the test",
@@ -475,8 +454,7 @@ TEST(a_set_goes_back_to_what_it_was) {
   OK(mpsi_particles_back_up(set, "test", &backup));
   int64_t order[16];
   for (int64_t k = 0; k < 16; k++) order[k] = 15 - k;
-  OK(mps_particles_set(set, "volume", 0, 3.0));
-  OK(mps_particles_set(set, "density", 0, 7.0));
+  SET_FIELDS(set, {"volume", 3.0}, {"density", 7.0});
   OK(mpsi_particles_permute(set, "test", order));
   mpsi_particles_go_back(set, &backup);
   assert_int_equal(mps_particles_epoch(set), epoch);

@@ -21,11 +21,9 @@ typedef void (*build_fn)(scene *x, bool fresh);
 
 static scene begin(double young) {
   scene x = {.s = mpm_scene_begin(context, 0.1, 0.0, 0.0, young)};
-  mps_mpm_def def = mps_mpm_defaults();
   mpm_scene_box(&x.s, 0.0, 0.0, 1.0, 1.0);
-  def.cell = 0.2, def.gravity[1] = -9.81;
-  def.lower[0] = 0.0, def.upper[0] = 1.0, def.lower[1] = 0.0;
-  mpm_scene_solve(&x.s, &def);
+  USING(mpm, mpm_scene_solve(&x.s, &given), .cell = 0.2, .gravity[1] = -9.81, .lower[0] = 0.0,
+        .upper[0] = 1.0, .lower[1] = 0.0);
   DEF(material_cam_clay, clay, .critical_slope = 1.0, .compression = 0.2, .swelling = 0.05,
       .void_ratio = 1.0, .preconsolidation = 5e4);
   OK(mps_material_create_cam_clay(context, &clay, &x.clay));
@@ -40,9 +38,8 @@ static void end(scene *x) {
 
 static mps_body *block_at(double x, double y, double half) {
   DEF(body, def, .position[0] = x, .position[1] = y);
-  mps_body *body = NULL;
   const double corners[8] = {-half, -half, half, -half, half, half, -half, half};
-  OK(mps_body_create_polygon(context, &def, 4, corners, &body));
+  MAKE_KEPT(body, body, create_polygon, context, &def, 4, corners);
   return body;
 }
 
@@ -82,11 +79,10 @@ static void insert_then_law(scene *x, bool fresh) {
   OK(mps_mpm_step(x->s.mpm, 2));
   OK(mps_particles_append(x->s.particles, 2, at));
   OK(mps_particles_set(x->s.particles, "density", 0, 1000.0));
-  mps_edit stress = mpm_scene_edit(&x->s, "stress");
-  for (int k = 0; k < 2; k++)
-    for (int c = 0; c < 3; c++)
-      *mps_edit_f64(&stress, mps_particles_index(x->s.particles, ids[k]), c) = -1e3;
-  mpm_scene_commit(&x->s, &stress);
+  EDIT(stress, x->s.particles, "stress")
+    for (int k = 0; k < 2; k++)
+      for (int c = 0; c < 3; c++)
+        *mps_edit_f64(&stress, mps_particles_index(x->s.particles, ids[k]), c) = -1e3;
   OK(mps_mpm_set_material(x->s.mpm, x->clay, ids, 2));
 }
 

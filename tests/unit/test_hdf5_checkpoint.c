@@ -50,9 +50,8 @@ static uint64_t bits(const char *name, int64_t component, int64_t id) {
 
 /* Writes or compares a field. */
 static void field_bits(mps_particles *set, const char *name, bool write) {
-  mps_view id, view;
-  OK(mps_particles_view(set, "id", &id));
-  OK(mps_particles_view(set, name, &view));
+  mps_view id = view_field(set, "id");
+  mps_view view = view_field(set, name);
   for (int64_t i = 0; i < view.shape[0]; i++)
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const uint64_t want = bits(name, c, *mps_view_i64(&id, i, 0));
@@ -102,9 +101,8 @@ static unsigned char *copy_of(mps_particles *set, size_t *size) {
   *size = 0;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
-    mps_view view;
     OK(mps_particles_get_field_info(set, f, &info));
-    OK(mps_particles_view(set, info.name, &view));
+    mps_view view = view_field(set, info.name);
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const size_t bytes = (size_t)view.shape[0] * 8;
       copy = realloc(copy, *size + bytes + 1);
@@ -322,7 +320,6 @@ static void store(const char *file, const void *data, size_t size) {
 
 TEST(what_is_no_checkpoint_is_refused) {
   scoped_particles *set = make_set(context, 2, 0.5, COUNT);
-  mps_recorder_def def = mps_recorder_defaults();
   scoped_recorder *recorder = NULL;
   refused(TEST_TMP "/no such file", set, MPS_ERROR_IO, "No such file or directory");
   refused(TEST_TMP, set, MPS_ERROR_IO, "not a file");
@@ -335,8 +332,7 @@ TEST(what_is_no_checkpoint_is_refused) {
   store(bent, "time,x,y\n0,1,2\n", 15);
   refused(bent, set, MPS_ERROR_FORMAT, "does not begin as an HDF5 file");
   unlink(bent);
-  def.path = bent;
-  OK(mps_recorder_create(context, set, &def, &recorder));
+  USING(recorder, mps_recorder_create(context, set, &given, &recorder), .path = bent);
   refused(bent, set, MPS_ERROR_FORMAT, "does not end with a seal");
 }
 
@@ -398,7 +394,6 @@ TEST(a_sealed_file_cut_short_is_refused) {
 
 static int printed;
 static herr_t host_print(hid_t stack, void *data) {
-  (void)stack;
   printed += *(int *)data;
   return 0;
 }

@@ -9,8 +9,7 @@ static const char *const fields[] = {"position", "velocity", "reduced_pressure",
 
 /* Water of 24 x 12 particles before a piston. */
 static tank make(mps_context *c, double depth) {
-  scoped_signal *piston = NULL;
-  OK(mps_signal_create_sine(c, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.25, 0.005, 0.0, &piston));
+  MAKE(signal, piston, create_sine, c, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.25, 0.005, 0.0);
   tank t = tank_make(c, 24 * 0.025, depth, 0.025, piston, 2e-3);
   return t;
 }
@@ -55,21 +54,18 @@ TEST(goes_on_from_a_file) {
 
 /* A box that floats and heaves: its place is the file's too. */
 static tank make_afloat(mps_context *c, mps_body **box) {
-  mps_body_def def = mps_body_defaults();
   const double load[3] = {1.0, -10.0, 0.0};
   tank t = make(c, 0.3);
   int64_t ids[4 * 4], count = 0;
-  mps_view id, x;
-  OK(mps_particles_view(t.water, "id", &id));
-  OK(mps_particles_view(t.water, "position", &x));
+  mps_view id = view_field(t.water, "id");
+  mps_view x = view_field(t.water, "position");
   for (int64_t i = 0; i < id.shape[0]; i++)
     if (fabs(*mps_view_f64(&x, i, 0) - 0.3) < 0.05 && *mps_view_f64(&x, i, 1) > 0.2)
       ids[count++] = *mps_view_i64(&id, i, 0);
   assert_int_equal(count, 16);
   OK(mps_particles_remove(t.water, ids, count));
-  def.motion = MPS_BODY_MOTION_FREE, def.gravity[1] = -TANK_G;
-  def.position[0] = 0.3, def.position[1] = 0.3;
-  def.mass = 10.0, def.inertia[2] = 0.04;
+  DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .gravity[1] = -TANK_G, .position[0] = 0.3,
+      .position[1] = 0.3, .mass = 10.0, .inertia[2] = 0.04);
   OK(mps_body_create_box(c, &def, 0.1, 0.2, box));
   OK(mps_body_set_load(*box, load, NULL));
   tank_float(t.fluid, *box);

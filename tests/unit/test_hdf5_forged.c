@@ -93,7 +93,6 @@ static herr_t forge_dataset(hid_t object, const char *name, void *data) {
 }
 
 static herr_t forge_group(hid_t object, const char *name, const H5L_info_t *info, void *data) {
-  (void)info;
   H5O_info_t what;
   if (H5Oget_info_by_name(object, name, &what, H5P_DEFAULT) < 0) return -1;
   if (what.type == H5O_TYPE_DATASET) return forge_dataset(object, name, data);
@@ -131,11 +130,9 @@ static void drop_files(void) { remove(GOOD), remove(FORGED); }
 
 static mpm_scene ground(void) {
   mpm_scene s = mpm_scene_begin(context, 0.1, 0.0, 0.0, 1e6);
-  mps_mpm_def def = mps_mpm_defaults();
   mpm_scene_box(&s, 0.0, 0.0, 0.8, 0.8);
-  def.cell = 0.2, def.gravity[1] = -9.81;
-  def.lower[0] = 0.0, def.upper[0] = 0.8, def.lower[1] = 0.0;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.2, .gravity[1] = -9.81, .lower[0] = 0.0,
+        .upper[0] = 0.8, .lower[1] = 0.0);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
@@ -172,12 +169,10 @@ TEST(integers_of_wls_mpm) {
 /* ---- the fluid ------------------------------------------------------------------------------- */
 
 static void make_water(mps_particles **set, mps_fluid **fluid) {
-  DEF(particles, def, .spacing = 0.05);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 0.5};
   mps_fluid_def water = mps_fluid_defaults();
   DEF(fluid_boundary, bed, .kind = MPS_BOUNDARY_ROLLER, .normal[1] = 1.0);
-  OK(mps_particles_create(context, &def, set));
-  OK(mps_particles_fill_box(*set, lo, hi, NULL));
+  USING(particles, mps_particles_create(context, &given, set), .spacing = 0.05);
+  OK(mps_particles_fill_box(*set, AT(0.0, 0.0), AT(1.0, 0.5), NULL));
   OK(mps_fluid_create(context, *set, &water, fluid));
   OK(mps_fluid_add_boundary(*fluid, &bed, NULL));
 }

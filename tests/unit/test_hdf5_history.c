@@ -368,30 +368,22 @@ TEST(a_killed_run_goes_on_without_a_double_or_missing_row) {
 /* ---- ranks ----------------------------------------------------------------------------------- */
 
 static mps_status rank_value(void *user, mps_solver *solver, double *out) {
-  (void)solver;
   *out = 10.0 + *(int32_t *)user;
   return MPS_OK;
 }
 
 /* Each rank gives its own numbers: those of rank 0 count, in memory, file and checkpoint. */
 static void on_a_rank(void *user, team *t, int32_t rank) {
-  (void)user;
-  mps_context *c = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {40.0, 30.0};
+  scoped_context *c = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = team_domain_def(t, rank);
-  mps_particles_def particles = mps_particles_defaults();
   mps_dynamics_def solver = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
   mps_history *h = NULL;
-  particles.spacing = 1.0;
   mps_particles *set = NULL;
   OK(mps_domain_create(c, &def, &solver.domain));
-  OK(mps_domain_create_particles(solver.domain, &particles, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1900.0));
-  OK(mps_particles_set(set, "shear_velocity", 0, 200.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 400.0));
-  OK(mps_dynamics_create(c, set, &solver, &dynamics));
+  USING(particles, mps_domain_create_particles(solver.domain, &given, &set), .spacing = 1.0);
+  OK(mps_particles_fill_box(set, AT(0.0, 0.0), AT(40.0, 30.0), NULL));
+  SET_FIELDS(set, {"density", 1900.0}, {"shear_velocity", 200.0}, {"pressure_velocity", 400.0});
+  MAKE_KEPT(dynamics, dynamics, create, c, set, &solver);
   OK(mps_history_create(mps_dynamics_solver(dynamics), "r", names, NULL, 2, &h));
   OK(mps_history_set_source(h, "settlement", rank_value, &rank, NULL));
   OK(mps_history_open(h, path, 1));
@@ -409,7 +401,6 @@ static void on_a_rank(void *user, team *t, int32_t rank) {
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
   mps_domain_destroy(&solver.domain);
-  mps_context_destroy(&c);
 }
 
 TEST(ranks_have_the_rows_of_the_first) {

@@ -53,8 +53,7 @@ TEST(goes_on_in_axisymmetry) { stop_and_go_on(MPS_MPM_GEOMETRY_AXISYMMETRIC, 83,
 TEST(goes_on_in_space) { stop_and_go_on(MPS_MPM_GEOMETRY_SPACE, 29, 4); }
 
 /* Stops at every step, some of which leave the particles to be sorted by the next. */
-TEST(goes_on_from_every_step) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(goes_on_from_every_step) {
   SCOPED(drop)
   scene whole = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         next = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
@@ -82,7 +81,7 @@ TEST(with_walls_loads_and_materials) {
     for (int k = 0; k < (test_quick() ? 3 : 4);
          k++) { /* at first before the walls have found their forces at rest */
       int32_t threads = 3;
-      mps_context *other = on_threads(&threads);
+      scoped_context *other = on_threads(&threads);
       OK(mps_mpm_save(whole.s.mpm, path, NULL));
       scene next = build_held(other, geometry);
       if (k == 2) OK(mps_mpm_step(next.s.mpm, 30));
@@ -94,13 +93,11 @@ TEST(with_walls_loads_and_materials) {
       same_fields(&whole, &next);
       same_forces(&whole, &next);
       drop(&next);
-      mps_context_destroy(&other);
     }
   }
 }
 
-TEST(other_walls_loads_and_materials_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(other_walls_loads_and_materials_are_refused) {
   scene saved = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
   OK(mps_mpm_save(saved.s.mpm, path, NULL));
   drop(&saved);
@@ -120,8 +117,7 @@ TEST(other_walls_loads_and_materials_are_refused) {
 
 /* ---- errors ---------------------------------------------------------------------------------- */
 
-TEST(another_solver_is_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(another_solver_is_refused) {
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   OK(mps_mpm_step(x.s.mpm, 20));
   OK(mps_mpm_save(x.s.mpm, path, NULL));
@@ -163,8 +159,7 @@ TEST(another_solver_is_refused) {
 }
 
 /* The set takes the particles of the file: more, fewer, or others than it has. */
-TEST(another_number_of_particles_is_taken) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(another_number_of_particles_is_taken) {
   change more = none;
   more.particles = 1;
   SCOPED(drop)
@@ -186,8 +181,7 @@ TEST(another_number_of_particles_is_taken) {
   same(&few, &many);
 }
 
-TEST(other_files_and_bad_arguments) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(other_files_and_bad_arguments) {
   SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
   assert_int_equal(mps_mpm_save(NULL, path, NULL), MPS_ERROR_ARGUMENT);
@@ -217,8 +211,7 @@ TEST(other_files_and_bad_arguments) {
 }
 
 /* A step that diverges is undone, and an earlier checkpoint brings back what was before. */
-TEST(a_broken_run_goes_back) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_broken_run_goes_back) {
   SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         y = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
@@ -234,8 +227,7 @@ TEST(a_broken_run_goes_back) {
 }
 
 /* What the caller gives along comes back, from both kinds of checkpoint. */
-TEST(the_callers_bytes_come_back) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_callers_bytes_come_back) {
   SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   char text[] = "rows so far", room[64];
   for (int k = 0; k < 2; k++) {
@@ -261,8 +253,7 @@ TEST(the_callers_bytes_come_back) {
 }
 
 /* Fields that a solver has not read would be a wrong state without a word. */
-TEST(a_set_that_a_solver_holds_is_not_read_into) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_set_that_a_solver_holds_is_not_read_into) {
   SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
@@ -276,8 +267,7 @@ TEST(a_set_that_a_solver_holds_is_not_read_into) {
 
 /* A sealed file with contents that no run writes: a block elsewhere, or with a tile that its
  * particles' stencils would leave. */
-TEST(blocks_elsewhere_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(blocks_elsewhere_are_refused) {
   SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   enum { ROW = 10 };
   static const int64_t bad[][2] = {{0, 1},  {1, 1000}, {1, INT64_MAX}, {3, 1},
@@ -308,7 +298,6 @@ TEST(blocks_elsewhere_are_refused) {
 }
 
 static mps_status restore_once(mps_context *own, int what) {
-  (void)what;
   scene x;
   mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_save(x.s.mpm, path, NULL);

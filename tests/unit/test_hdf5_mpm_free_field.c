@@ -21,10 +21,8 @@ static const char path[] = TEST_TMP "/mpm_free_field.h5";
 static mpm_scene shaken_dry(mps_context *on, int32_t sides) {
   DEF(material_mohr_coulomb, law, .young = field_young(100.0), .poisson = FIELD_NU, .friction = 0.5,
       .cohesion = 500.0);
-  scoped_material *sand = NULL;
-  scoped_signal *signal = NULL;
-  OK(mps_material_create_mohr_coulomb(on, &law, &sand));
-  OK(mps_signal_create_sine(on, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
+  MAKE(material, sand, create_mohr_coulomb, on, &law);
+  MAKE(signal, signal, create_sine, on, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0);
   const field_ground of = {.width = 6.0,
                            .height = 8.0,
                            .spacing = 0.5,
@@ -180,12 +178,10 @@ TEST(columns_of_other_laws_are_refused) {
       .width = 6.0, .height = 8.0, .spacing = 0.5, .vs = 100.0, .sides = MPS_BOUNDARY_FREE_FIELD};
   scoped_mpm_scene s = field_scene(context, &of);
   DEF(material_mohr_coulomb, law, .young = field_young(100.0), .friction = 0.5);
-  mps_material *sand = NULL;
   const double middle[2] = {3.25, 4.25};
-  OK(mps_material_create_mohr_coulomb(context, &law, &sand));
+  MAKE(material, sand, create_mohr_coulomb, context, &law);
   const int64_t id = mps_particles_nearest(s.particles, middle);
   OK(mps_mpm_set_material(s.mpm, sand, &id, 1));
-  mps_material_destroy(&sand);
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
     OK(mps_mpm_save(s.mpm, path, NULL));
     write_number(bad[k].list, bad[k].value);
@@ -225,8 +221,7 @@ static mps_status update(void *user, const mps_material_block *b) {
 static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
   DEF(material_user, law, .update = update, .user = of,
       .bulk_modulus = FIELD_RHO * 1e4 * (1.5 + 2.0 / 3.0), .shear_modulus = FIELD_RHO * 1e4);
-  scoped_material *material = NULL;
-  OK(mps_material_create_user(context, &law, &material));
+  MAKE(material, material, create_user, context, &law);
   const field_ground ground = {.width = 6.0,
                                .height = 6.0,
                                .spacing = 0.5,
@@ -244,8 +239,7 @@ static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
 /* A law refuses at any of its calls of a step, of either column or of the particles: the step is
  * undone, and is made afterwards as if nothing had been. */
 TEST(refused_steps_are_undone) {
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
+  MAKE(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0);
   fussy plain = {0}, of = {0};
   scoped_mpm_scene twin = fussy_scene(&plain, signal), s = fussy_scene(&of, signal);
   OK(mps_mpm_step(twin.mpm, 21));
@@ -302,20 +296,20 @@ static mps_status set(mpm_scene *s, int32_t side, int32_t kind) {
 
 TEST(refuses_by_name) {
   scoped_mpm_scene s = shaken(context, MPS_BOUNDARY_ROLLER);
-  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0, &signal));
+  MAKE(signal, signal, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 4.0, 1.0, 20.0);
   REFUSES(set(&s, MPS_SIDE_Y_LOWER, 5), "kind is MPS_BOUNDARY_FREE_FIELD at MPS_SIDE_Y_LOWER");
-  def.kind = MPS_BOUNDARY_FREE_FIELD, def.signal[0] = signal;
+  DEF(mpm_boundary, def, .kind = MPS_BOUNDARY_FREE_FIELD, .signal[0] = signal);
   REFUSES(mps_mpm_set_boundary(s.mpm, 0, &def), "signal[0] is given");
   REFUSES(set(&s, 0, 8), "kind is 8");
   OK(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
   REFUSES(set(&s, 0, 5), "beside MPS_SIDE_Y_LOWER of kind");
   OK(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD));
   OK(set(&s, 0, 5));
-  REFUSES(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL), "beside a side of kind MPS_BOUNDARY_FREE_FIELD");
+  REFUSES(set(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL),
+          "beside a side of kind MPS_BOUNDARY_FREE_FIELD");
   FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE, "settle with MPS_BOUNDARY_ROLLER");
-  REFUSES(mps_experimental_mpm_standard(s.mpm, 0.9), "MPS_SIDE_X_LOWER is of kind MPS_BOUNDARY_FREE_FIELD");
+  REFUSES(mps_experimental_mpm_standard(s.mpm, 0.9),
+          "MPS_SIDE_X_LOWER is of kind MPS_BOUNDARY_FREE_FIELD");
   REFUSES(mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
           "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT");
   OK(mps_mpm_step(s.mpm, 3)); /* it still works */
@@ -326,16 +320,12 @@ TEST(refuses_by_name) {
 static mpm_scene block(int32_t geometry, double width, double from) {
   mpm_scene s = mpm_scene_begin(context, 0.5, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, from, 0.0, width, 4.0);
-  DEF(mpm, def, .cell = 1.0, .geometry = geometry);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 1.0, .geometry = geometry,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = width);
   return s;
 }
 
-static int32_t cancel(void *user) {
-  (void)user;
-  return 1;
-}
+static int32_t cancel(void *user) { return 1; }
 
 /* Velocities of relaxation are no motion of the ground: the column would keep them. */
 TEST(refuses_ground_that_settles) {
@@ -381,16 +371,15 @@ static void ask_on_rank(void *user, team *t, int32_t rank) {
   scoped_particles *particles = NULL;
   scoped_material *material = NULL;
   scoped_mpm *mpm = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {16.0, 8.0};
   const mps_domain_def domain_def = team_domain_def(t, rank);
   DEF(particles, set_def, .spacing = 0.5);
   mps_status status = mps_domain_create(own, &domain_def, &domain);
   if (status == MPS_OK) status = mps_particles_create(own, &set_def, &particles);
-  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK)
+    status = mps_particles_fill_box(particles, AT(0.0, 0.0), AT(16.0, 8.0), NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
-  DEF(mpm, def, .cell = 1.0, .domain = domain);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 16.0;
+  DEF(mpm, def, .cell = 1.0, .domain = domain, .lower[0] = def.lower[1] = 0.0, .upper[0] = 16.0);
   if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
   out->made = status;
   out->set = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
@@ -412,18 +401,16 @@ TEST(refused_on_ranks) {
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 static mps_status make(mps_context *own, int what) {
-  (void)what;
   DEF(particles, set_def, .spacing = 0.5);
   scoped_particles *particles = NULL;
   scoped_material *material = NULL;
   scoped_mpm *mpm = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 2.0};
   mps_status status = mps_particles_create(own, &set_def, &particles);
-  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK)
+    status = mps_particles_fill_box(particles, AT(0.0, 0.0), AT(4.0, 2.0), NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
   if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
-  DEF(mpm, def, .cell = 1.0);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 4.0;
+  DEF(mpm, def, .cell = 1.0, .lower[0] = def.lower[1] = 0.0, .upper[0] = 4.0);
   if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
   if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
   if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);

@@ -10,11 +10,10 @@
 #define MOST_RATIO 1.2 /* of the memory of rank 0 to that of the rank with most of the others */
 
 static mps_status begin_set(mps_context *own, mps_domain *domain, mps_particles **out) {
-  const double lo[2] = {0.0, 0.0}, hi[2] = {200.0, 150.0};
   DEF(particles, def, .spacing = 1.0);
   mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
                              : mps_particles_create(own, &def, out);
-  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
+  TRY(mps_particles_fill_box(*out, AT(0.0, 0.0), AT(200.0, 150.0), NULL));
   return status;
 }
 

@@ -30,9 +30,8 @@ static const known_field known[] = {{"displacement", 2, 3, 1},
 #define KNOWN ((int)(sizeof known / sizeof *known))
 
 static void fill(mps_particles *set, double time) {
-  mps_view id;
   mps_edit view;
-  OK(mps_particles_view(set, "id", &id));
+  mps_view id = view_field(set, "id");
   for (int f = -2; f < KNOWN; f++) {
     const char *name = f == -2 ? "position" : f == -1 ? "group" : known[f].name;
     OK(mps_particles_edit(set, name, &view));
@@ -55,8 +54,7 @@ static void add(mps_particles *set, int64_t count) {
 
 static mps_particles *make_set_in(mps_context *ctx, int32_t dim, int64_t count) {
   DEF(particles, def, .dim = dim, .spacing = 0.5);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(ctx, &def, &set));
+  MAKE_KEPT(particles, set, create, ctx, &def);
   for (int f = 0; f < KNOWN; f++)
     OK(mps_particles_add_field(set, known[f].name, f == 0 ? dim : known[f].components));
   OK(mps_particles_add_field(set, "group", 0));
@@ -68,8 +66,7 @@ static mps_particles *make_set(int64_t count) { return make_set_in(context, 2, c
 
 static mps_recorder *record(mps_particles *set, const char *path, int32_t compression) {
   DEF(recorder, def, .path = path, .compression = compression, .xdmf = 1);
-  mps_recorder *recorder = NULL;
-  OK(mps_recorder_create(context, set, &def, &recorder));
+  MAKE_KEPT(recorder, recorder, create, context, set, &def);
   return recorder;
 }
 
@@ -507,13 +504,12 @@ TEST(a_full_disk_spares_growing_tables) {
   enum { LONG = 140 };
   scoped_particles *set = make_set(2);
   DEF(recorder, def, .path = path);
-  mps_recorder *recorder = NULL;
   off_t size[LONG];
   static const char *const list[] = {"pressure"};
   def.fields = list;
   def.field_count = 1;
   def.compression = 1; /* a chunk a frame, so that the tables of chunks grow fast */
-  OK(mps_recorder_create(context, set, &def, &recorder));
+  MAKE_KEPT(recorder, recorder, create, context, set, &def);
   for (int k = 0; k < LONG; k++) {
     struct stat status;
     OK(mps_recorder_write(recorder, k));
@@ -550,12 +546,10 @@ TEST(a_full_disk_spares_growing_tables) {
 
 static mps_status make_and_write(mps_context *ctx, int what) {
   DEF(particles, set_def, .spacing = 1.0);
-  mps_recorder_def def = mps_recorder_defaults();
   scoped_particles *set = NULL;
   scoped_recorder *recorder = NULL;
   const double at[2] = {0.0, 0.0};
-  def.path = TEST_TMP "/recorder-sweep.vtkhdf";
-  def.compression = what;
+  DEF(recorder, def, .path = TEST_TMP "/recorder-sweep.vtkhdf", .compression = what);
   mps_status status = mps_particles_create(ctx, &set_def, &set);
   if (status == MPS_OK) status = mps_particles_append(set, 1, at);
   if (status == MPS_OK) status = mps_recorder_create(ctx, set, &def, &recorder);
@@ -589,15 +583,13 @@ TEST(frames_allocate_nothing) {
 
 /* Distinct contexts may write at once, from distinct threads. */
 static void *write_series(void *data) {
-  mps_recorder_def def = mps_recorder_defaults();
-  mps_particles_def set_def = mps_particles_defaults();
   mps_context *own = NULL;
   mps_particles *set = NULL;
   mps_recorder *recorder = NULL;
   const double at[4] = {0.0, 0.0, 1.0, 0.0};
   DEF(context, context_def, .executor = MPS_CONTEXT_EXECUTOR_SERIAL);
-  set_def.spacing = 1.0;
-  def.path = data;
+  DEF(particles, set_def, .spacing = 1.0);
+  DEF(recorder, def, .path = data);
   mps_status status = mps_context_create(&context_def, &own, NULL, 0);
   if (status == MPS_OK) status = mps_particles_create(own, &set_def, &set);
   if (status == MPS_OK) status = mps_particles_append(set, 2, at);

@@ -31,38 +31,30 @@ static void set_field(mps_particles *set, const char *name, double value) {
  * that times are rounded. `dt` NaN: the library's own choice. */
 static body build(const run *r, double dt) {
   body b = {NULL, NULL};
-  DEF(particles, set_def, .spacing = 1.0);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {8.0, 6.0};
-  OK(mps_particles_create(context, &set_def, &b.set));
-  OK(mps_particles_fill_box(b.set, lo, hi, NULL));
+  USING(particles, mps_particles_create(context, &given, &b.set), .spacing = 1.0);
+  OK(mps_particles_fill_box(b.set, AT(0.0, 0.0), AT(8.0, 6.0), NULL));
   set_field(b.set, "density", 1500.0);
   set_field(b.set, "shear_velocity", 100.0);
   set_field(b.set, "pressure_velocity", 200.0);
   set_field(b.set, "damping", r->damping);
   set_field(b.set, "velocity", 0.0);
-  mps_view x;
-  mps_edit v;
-  OK(mps_particles_view(b.set, "position", &x));
-  OK(mps_particles_edit(b.set, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
-  OK(mps_particles_commit(b.set, &v));
+  mps_view x = view_field(b.set, "position");
+  EDIT(v, b.set, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
   if (!r->driven) OK(mps_dynamics_add_free_field(b.set, MPS_SIDE_X_LOWER, 3));
   DEF(dynamics, def, .integrator = r->integrator, .rotation = r->rotation, .dt = dt);
   OK(mps_dynamics_create(context, b.set, &def, &b.solver));
   const double base_lo[2] = {-20.0, 0.0}, base_hi[2] = {20.0, 1.0};
   int64_t ids[64], count;
-  mps_signal *wave = NULL;
   OK(mps_particles_select_box(b.set, base_lo, base_hi, 64, &count, ids));
-  OK(mps_signal_create_ricker(context, 9.0, 0.05, 0.01, &wave));
+  MAKE(signal, wave, create_ricker, context, 9.0, 0.05, 0.01);
   if (r->driven) {
     OK(soil_add_held(b.solver, MPS_DOF_Y, count, ids));
     OK(soil_add_driven(b.solver, 0, wave, 1.0, count, ids));
   } else {
-    DEF(dynamics_boundary, viscous, .signal[0] = wave);
-    OK(soil_add_viscous(b.solver, &viscous, count, ids));
+    USING(dynamics_boundary, soil_add_viscous(b.solver, &given, count, ids), .signal[0] = wave);
   }
-  mps_signal_destroy(&wave);
   if (r->start != 0.0) OK(mps_dynamics_restart(b.solver, r->start));
   return b;
 }

@@ -173,6 +173,10 @@ TEST(none_is_a_solver_of_no_state) {
   assert_int_equal(mps_solver_set_dt(none, 1.0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_solver_get_totals(none, &totals), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_solver_get_reaction(none, 0, &reaction), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_solver_add(none, MPS_DEF_DYNAMICS_LOAD, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_solver_set(none, MPS_DEF_DYNAMICS_LOAD, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_solver_get_def(none, MPS_DEF_DYNAMICS, &totals, sizeof totals),
+                   MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_solver_remove_boundary(none, 0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_solver_remove_load(none, 0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_solver_snapshot(none, &snapshot), MPS_ERROR_ARGUMENT);

@@ -62,18 +62,13 @@ typedef struct host {
 /* ---- the scene ------------------------------------------------------------------------------- */
 
 static mps_particles *box(double spacing, double width, double height) {
-  DEF(particles, def, .spacing = spacing);
-  mps_particles *set = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  mps_particles *set = box_of(context, spacing, AT(0.0, 0.0), AT(width, height));
   OK(mps_particles_set(set, "density", 0, 2000.0));
   return set;
 }
 
 static mps_material *stuff(double young) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, young, 0.25, &material));
+  MAKE_KEPT(material, material, create_linear_elastic, context, young, 0.25);
   return material;
 }
 
@@ -81,11 +76,10 @@ static void make_soil(host *h) {
   scoped_particles *set = box(0.1, 1.0, 0.8);
   scoped_material *sand = stuff(2e6);
   DEF(mpm, def, .cell = 0.2, .gravity[1] = -9.81, .budget = 1);
-  mps_body_def place = mps_body_defaults();
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c ? 3.0 : 1.0;
   OK(mps_particles_add_field(set, "external_force", 0));
   OK(mps_mpm_create(context, set, sand, &def, (mps_mpm **)&h->solver[SOIL]));
-  place.position[0] = 0.5, place.position[1] = 1.05;
+  DEF(body, place, .position[0] = 0.5, .position[1] = 1.05);
   OK(mps_body_create_box(context, &place, 0.6, 0.5, &h->plate));
   OK(mps_mpm_add_contact(h->solver[SOIL], h->plate, NULL, &h->contact));
   h->boundary[SOIL] = MPS_SIDE_Y_LOWER;
@@ -106,12 +100,9 @@ static void make_ground(host *h) {
   DEF(dynamics, def, .dt = 2.5e-4, .material = stuff(5e7));
   OK(mps_particles_add_field(set, "external_force", 0));
   OK(mps_dynamics_create(context, set, &def, (mps_dynamics **)&h->solver[GROUND]));
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, shake, h, NULL, &h->shake));
-  base.kind = MPS_BOUNDARY_DRIVEN;
-  base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.3;
-  base.dofs = MPS_DOF_Y;
-  base.signal[0] = h->shake;
+  DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_DRIVEN, .lower[0] = base.lower[1] = -1.0,
+      .upper[0] = 9.0, .upper[1] = 0.3, .dofs = MPS_DOF_Y, .signal[0] = h->shake);
   OK(mps_dynamics_add_boundary(h->solver[GROUND], &base, &h->boundary[GROUND]));
   mps_material_destroy(&def.material);
 }
@@ -126,15 +117,12 @@ static void start_wall(host *h) {
 static void make_wall(host *h) {
   scoped_particles *set = box(0.1, 0.4, 1.2);
   DEF(elastic, def, .material = stuff(3e7));
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
-  mps_elastic_load_def pressure = mps_elastic_load_defaults();
   OK(mps_elastic_create(context, set, &def, (mps_elastic **)&h->solver[WALL]));
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
   OK(mps_elastic_add_boundary(h->solver[WALL], &foot, &h->boundary[WALL]));
   start_wall(h);
-  pressure.kind = MPS_ELASTIC_LOAD_PRESSURE;
-  pressure.ids = h->facets, pressure.id_count = h->facet_count;
-  OK(mps_elastic_add_load(h->solver[WALL], &pressure, &h->wall_load));
+  USING(elastic_load, mps_elastic_add_load(h->solver[WALL], &given, &h->wall_load),
+        .kind = MPS_ELASTIC_LOAD_PRESSURE, .ids = h->facets, .id_count = h->facet_count);
   mps_material_destroy(&def.material);
 }
 
@@ -156,18 +144,15 @@ static void make_water(host *h) {
 
 /* Forces (N) on the particles above `level`, shared evenly, times a factor by place. */
 static void push(mps_particles *set, double level, double fx, double fy) {
-  mps_view x;
-  mps_edit f;
   int64_t met = 0;
-  OK(mps_particles_view(set, "position", &x));
+  mps_view x = view_field(set, "position");
   for (int64_t k = 0; k < x.shape[0]; k++) met += *mps_view_f64(&x, k, 1) > level;
-  OK(mps_particles_edit(set, "external_force", &f));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double part = *mps_view_f64(&x, k, 1) > level ? 1.0 / (double)met : 0.0;
-    *mps_edit_f64(&f, k, 0) = fx * part;
-    *mps_edit_f64(&f, k, 1) = fy * part;
-  }
-  OK(mps_particles_commit(set, &f));
+  EDIT(f, set, "external_force")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double part = *mps_view_f64(&x, k, 1) > level ? 1.0 / (double)met : 0.0;
+      *mps_edit_f64(&f, k, 0) = fx * part;
+      *mps_edit_f64(&f, k, 1) = fy * part;
+    }
 }
 
 /* What the solvers feel now, to their input of the next step; `more` makes it another. */
@@ -183,10 +168,9 @@ static void exchange(host *h, double more) {
   WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = -1e-4 * (2e3 + more - plate.force[1]));
   OK(mps_body_set_motion(h->plate, &motion));
   /* water on the wall, the wall's velocity to the water */
-  DEF(elastic_load, pressure, .kind = MPS_ELASTIC_LOAD_PRESSURE, .ids = h->facets,
-      .id_count = h->facet_count,
-      .force[0] = (water.force[0] + more) / (0.1 * (double)h->facet_count));
-  OK(mps_elastic_set_load(h->solver[WALL], h->wall_load, &pressure));
+  USING(elastic_load, mps_elastic_set_load(h->solver[WALL], h->wall_load, &given),
+        .kind = MPS_ELASTIC_LOAD_PRESSURE, .ids = h->facets, .id_count = h->facet_count,
+        .force[0] = (water.force[0] + more) / (0.1 * (double)h->facet_count));
   double velocity[3 * 32], mean = 0.0;
   const mps_elastic_facet_arrays arrays = {.velocity = velocity};
   OK(mps_elastic_get_facets(h->solver[WALL], h->facets, h->facet_count, &arrays));
@@ -201,8 +185,7 @@ static void exchange(host *h, double more) {
 static void trade(host *h, int step) {
   mps_particles *soil = h->verb[SOIL]->particles(h->solver[SOIL]);
   mps_particles *ground = h->verb[GROUND]->particles(h->solver[GROUND]);
-  mps_view id, x;
-  OK(mps_particles_view(soil, "id", &id));
+  mps_view id = view_field(soil, "id");
   const int64_t gone[1] = {*mps_view_i64(&id, 3, 0)};
   const double back[2] = {0.1, 1.3 + 0.01 * step};
   OK(mps_particles_remove(soil, gone, 1));
@@ -210,7 +193,7 @@ static void trade(host *h, int step) {
   OK(mps_particles_set(soil, "density", 0, 2000.0));
   OK(mps_particles_view(ground, "id", &id));
   int64_t dug[1] = {-1};
-  OK(mps_particles_view(ground, "reference", &x));
+  mps_view x = view_field(ground, "reference");
   for (int64_t k = 0; k < x.shape[0] && dug[0] < 0; k++)
     if (*mps_view_f64(&x, k, 1) > 1.7) dug[0] = *mps_view_i64(&id, k, 0);
   OK(mps_particles_remove(ground, dug, 1));
@@ -252,9 +235,8 @@ static uint64_t look(const host *h, int k) {
   mps_reaction reaction;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
     mps_particles_field_info info;
-    mps_view view;
     OK(mps_particles_get_field_info(set, f, &info));
-    OK(mps_particles_view(set, info.name, &view));
+    mps_view view = view_field(set, info.name);
     for (int64_t c = 0; c < view.shape[1]; c++)
       mix(&hash, (const char *)view.data + 8 * c * view.stride[1], 8 * (size_t)view.shape[0]);
   }
@@ -267,9 +249,8 @@ static uint64_t look(const host *h, int k) {
 
 /* Largest rotation of a particle, rad. */
 static double largest_rotation(mps_particles *set) {
-  mps_view r;
   double largest = 0.0;
-  OK(mps_particles_view(set, "rotation", &r));
+  mps_view r = view_field(set, "rotation");
   for (int64_t k = 0; k < r.shape[0]; k++) largest = fmax(largest, fabs(*mps_view_f64(&r, k, 0)));
   return largest;
 }

@@ -40,8 +40,7 @@ TEST(mobility_is_what_a_kick_does) {
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE, .mass = 3.0, .inertia[0] = 0.2, .inertia[1] = 0.3,
       .inertia[2] = 0.4, .rotation[0] = 0.3, .rotation[1] = -0.5, .rotation[2] = 0.9,
       .gravity[1] = -9.81);
-  scoped_body *body = NULL;
-  OK(mps_body_create_sphere(context, &def, 0.5, &body));
+  MAKE(body, body, create_sphere, context, &def, 0.5);
   const double x[3] = {0.3, -0.2, 0.35}, along[3] = {0.48, 0.6, 0.64}, dt = 1e-2;
   double v[3], by[3], mobility = 0.0;
   mpsi_impulse_body b;
@@ -57,9 +56,8 @@ TEST(mobility_is_what_a_kick_does) {
 
 /* One mass on a driven floor: what it falls with is stopped, what it slides with by at most mu. */
 TEST(one_update_solves_one_contact) {
-  scoped_body *floor = NULL;
   const double up[] = {0.0, 1.0};
-  OK(mps_body_create_half_plane(context, NULL, up, &floor));
+  MAKE(body, floor, create_half_plane, context, NULL, up);
   mpsi_impulse_body b;
   mpsi_impulse_begin_body(&b, floor, 1e-3);
   const double m = 2.0, slides[] = {0.1, 5.0};
@@ -92,9 +90,8 @@ TEST(one_update_solves_one_contact) {
 
 /* Adhesion adds to mu P where P > 0, the strength bounds both. */
 TEST(shear_has_adhesion_and_strength) {
-  scoped_body *floor = NULL;
   const double up[] = {0.0, 1.0};
-  OK(mps_body_create_half_plane(context, NULL, up, &floor));
+  MAKE(body, floor, create_half_plane, context, NULL, up);
   mpsi_impulse_body b;
   mpsi_impulse_begin_body(&b, floor, 1e-3);
   const double adhesion[] = {0.2, 0.2, 0.2}, strength[] = {INFINITY, 0.5, 0.5};
@@ -142,9 +139,8 @@ static void drive(mps_body *body, double vx, double vy) {
 TEST(gives_force_and_moment) {
   scoped_body *plate = NULL;
   scoped_mpm_scene s = block_and_plate(false, 0.1, 0.0, &plate);
-  DEF(contact, def, .friction = 0.4);
   scoped_contact *contact = NULL;
-  OK(mps_mpm_add_contact(s.mpm, plate, &def, &contact));
+  USING(contact, mps_mpm_add_contact(s.mpm, plate, &given, &contact), .friction = 0.4);
   drive(plate, 0.3, -0.5);
   OK(mps_mpm_step(s.mpm, 1));
   int64_t count = 0, ids[64];
@@ -180,12 +176,10 @@ TEST(bodies_end_and_materials_differ) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
   mpm_scene_box(&s, 0.2, 0.0, 0.3, 0.1);
-  scoped_material *stiff = NULL;
-  OK(mps_material_create_linear_elastic(context, 3e6, 0.0, &stiff));
+  MAKE(material, stiff, create_linear_elastic, context, 3e6, 0.0);
   mps_material_destroy(&s.material);
   OK(mps_material_create_linear_elastic(context, 1e6, 0.0, &s.material));
-  DEF(mpm, def, .cell = 0.02, .lower[1] = 0.0, .viscous_damping = 200.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .lower[1] = 0.0, .viscous_damping = 200.0);
   int64_t ids[128], n = 0;
   mps_view x = mpm_scene_view(&s, "position");
   const int64_t *id = NULL;
@@ -250,18 +244,18 @@ TEST(shear_is_by_area) {
     scoped_mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
     OK(mps_particles_fill_box(s.particles, low, high, NULL));
     DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
-        .cell = 0.02, .lower[1] = 0.0, .origin[0] = -shift[k % 3], .origin[1] = -shift[k % 3]);
-    def.lower[1] = def.origin[1] + ceil(shift[k % 3] / 0.02) * 0.02 - 0.02;
+        .cell = 0.02, .lower[1] = 0.0, .origin[0] = -shift[k % 3], .origin[1] = -shift[k % 3],
+        .lower[1] = def.origin[1] + ceil(shift[k % 3] / 0.02) * 0.02 - 0.02);
     mpm_scene_solve(&s, &def);
     scoped_body *plate = NULL;
     DEF(body, body, .position[1] = 0.1);
     const double down[] = {0.0, -1.0, 0.0};
     OK(dim == 2 ? mps_body_create_half_plane(context, &body, down, &plate)
                 : mps_body_create_half_space(context, &body, down, &plate));
-    DEF(contact, contact, .friction = k % 6 < 3 ? 10.0 : 0.0, .strength = k % 6 < 3 ? tau : NAN,
-        .adhesion = k % 6 < 3 ? 0.0 : tau);
     scoped_contact *handle = NULL;
-    OK(mps_mpm_add_contact(s.mpm, plate, &contact, &handle));
+    USING(contact, mps_mpm_add_contact(s.mpm, plate, &given, &handle),
+          .friction = k % 6 < 3 ? 10.0 : 0.0, .strength = k % 6 < 3 ? tau : NAN,
+          .adhesion = k % 6 < 3 ? 0.0 : tau);
     drive(plate, 5.0, -1.0);
     OK(mps_mpm_run(s.mpm, 0.001, 1, NULL, NULL));
     mps_reaction before, after;
@@ -337,13 +331,10 @@ static int64_t too_deep(mpm_scene *s) {
 
 /* Brings the particle to the height y. */
 static void put_at(mpm_scene *s, int64_t name, double y) {
-  mps_edit x;
   mps_view id = mpm_scene_view(s, "id");
   int64_t k = 0;
   while (*mps_view_i64(&id, k, 0) != name) k++;
-  OK(mps_particles_edit(s->particles, "position", &x));
-  *mps_edit_f64(&x, k, 1) = y;
-  OK(mps_particles_commit(s->particles, &x));
+  EDIT(x, s->particles, "position") *mps_edit_f64(&x, k, 1) = y;
 }
 
 /* Particles too deep in a plate over many blocks of the grid: the step is refused as often as it is
@@ -354,12 +345,10 @@ TEST(depth_is_found_anew) {
     scoped_context *own = test_context(threads == 1 ? MPS_CONTEXT_EXECUTOR_SERIAL : 0, threads);
     scoped_mpm_scene s = mpm_scene_begin(own, 0.01, 0.0, 0.0, 1e6);
     mps_body_def at = mps_body_defaults();
-    scoped_body *plate = NULL;
-    DEF(mpm, def, .cell = 0.02);
     mpm_scene_box(&s, 0.0, 0.0, 1.2, 0.1); /* 60 cells, 8 blocks of them */
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
     at.position[0] = 0.6, at.position[1] = 0.22; /* no other contact */
-    OK(mps_body_create_box(own, &at, 1.4, 0.2, &plate));
+    MAKE(body, plate, create_box, own, &at, 1.4, 0.2);
     mpm_scene_contact(&s, plate, 0.3);
     OK(mps_mpm_step(s.mpm, 3));
     const double place[3] = {0.105, 0.605, 1.105};

@@ -23,12 +23,10 @@ TEST(definitions_start_from_their_defaults) {
 
 TEST(without_hdf5_every_function_says_so) {
   DEF(particles, set_def, .spacing = 1.0);
-  mps_recorder_def def = mps_recorder_defaults();
   mps_checkpoint info = mps_checkpoint_defaults();
-  scoped_particles *set = NULL;
   scoped_recorder *recorder = (mps_recorder *)&recorder;
-  OK(mps_particles_create(context, &set_def, &set));
-  def.path = TEST_TMP "/io.vtkhdf";
+  MAKE(particles, set, create, context, &set_def);
+  DEF(recorder, def, .path = TEST_TMP "/io.vtkhdf");
   const mps_status status = mps_recorder_create(context, set, &def, &recorder);
   if (status == MPS_OK) {
     mps_recorder_destroy(&recorder);

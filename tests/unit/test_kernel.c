@@ -6,8 +6,7 @@ static const int32_t kinds[] = {MPS_KERNEL_MPS, MPS_KERNEL_SPLINE2, MPS_KERNEL_S
                                 MPS_KERNEL_SMOOTH};
 
 static mps_kernel *make(int32_t kind, double radius) {
-  mps_kernel *kernel = NULL;
-  OK(mps_kernel_create(context, kind, radius, &kernel));
+  MAKE_KEPT(kernel, kernel, create, context, kind, radius);
   return kernel;
 }
 

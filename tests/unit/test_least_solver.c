@@ -182,10 +182,9 @@ static mps_status fall_rollback(fall *f, const mps_snapshot *snapshot) {
 #include "test_fixture.h"
 
 static mps_particles *make_set(void) {
-  DEF(particles, def, .spacing = 1.0);
   mps_particles *set = NULL;
   const double lo[2] = {0.0, 0.0}, hi[2] = {3.0, 50.0};
-  OK(mps_particles_create(context, &def, &set));
+  USING(particles, mps_particles_create(context, &given, &set), .spacing = 1.0);
   OK(mps_particles_fill_box(set, lo, hi, NULL));
   return set;
 }

@@ -33,11 +33,9 @@ typedef struct model {
 
 static model make_bar(int size, double tolerance) {
   model m = {.equation = STIFFNESS, .bar = test_body_begin(context, 2, 0.25)};
-  mps_elastic_def def = mps_elastic_defaults();
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   const double force[3] = {0.0, -1e-2, 0.0};
   int64_t count;
-  def.tolerance = tolerance;
+  DEF(elastic, def, .tolerance = tolerance);
   test_body_box(&m.bar, 0, 0, 0, size, 1, 0);
   test_body_finish(&m.bar, 1.0, 0.3, &def);
   int64_t *ids = test_select(&m.bar, 0, -1, 0.3, &count);
@@ -45,38 +43,33 @@ static model make_bar(int size, double tolerance) {
   free(ids);
   OK(test_body_force(m.bar.elastic, force));
   OK(mps_particles_set(m.bar.particles, "density", 0, 2.0));
-  motion.dt = 0.2;
-  OK(mps_elastic_start(m.bar.elastic, &motion));
+  USING(elastic_motion, mps_elastic_start(m.bar.elastic, &given), .dt = 0.2);
   m.solver = mps_elastic_solver(m.bar.elastic), m.set = m.bar.particles;
   return m;
 }
 
 static model make_wave(int size, double tolerance) {
   model m = {.equation = PRESSURE};
-  mps_signal *piston = NULL;
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   set.spacing = 0.025, def.dt = 2e-3, def.level = 0.2, def.tolerance = tolerance;
   OK(mps_particles_create(context, &set, &m.wave.water));
   tank_fill(m.wave.water, 0.2 * size, 0.2, NULL, NULL);
   OK(mps_fluid_create(context, m.wave.water, &def, &m.wave.fluid));
-  OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0, &piston));
+  MAKE(signal, piston, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 0.02, 0.0);
   tank_wall(m.wave.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(m.wave.fluid, 0.0, 0.0, 1.0, 0.0, piston);
   tank_wall(m.wave.fluid, 0.2 * size, 0.0, -1.0, 0.0, NULL);
-  mps_signal_destroy(&piston);
   m.solver = mps_fluid_solver(m.wave.fluid), m.set = m.wave.water;
   return m;
 }
 
 static model make_ground(int size) {
   model m = {.equation = PORES};
-  mps_pore_water_def water = mps_pore_water_defaults();
   m.ground = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 6 * size, 0.0, 0.0);
-  water.scheme = MPS_PORE_SCHEME_IMPLICIT;
-  water.porosity = 0.4, water.permeability = 1e-4;
-  water.bulk = 80.0 * m.ground.modulus;
-  OK(mps_mpm_add_pore_water(m.ground.s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(m.ground.s.mpm, &given),
+        .scheme = MPS_PORE_SCHEME_IMPLICIT, .porosity = 0.4, .permeability = 1e-4,
+        .bulk = 80.0 * m.ground.modulus);
   m.solver = mps_mpm_solver(m.ground.s.mpm), m.set = m.ground.s.particles;
   OK(mps_particles_set(m.set, "pore_pressure", 0, 1e3));
   OK(mps_particles_set(m.set, "stress", 1, -1e3));
@@ -104,8 +97,7 @@ static void put_in(model *m, linear_plug *p) {
 static mps_view solution(const model *m) {
   static const char *const name[] = {
       [STIFFNESS] = "displacement", [PRESSURE] = "pressure", [PORES] = "pore_pressure"};
-  mps_view v;
-  OK(mps_particles_view(m->set, name[m->equation], &v));
+  mps_view v = view_field(m->set, name[m->equation]);
   return v;
 }
 
@@ -338,17 +330,12 @@ TEST(solvers_without_the_equation_refuse_it) {
   OK(mps_fluid_begin_step(wave.wave.fluid, 2e-3));
   FAILS(mps_solver_set_linear_solver(wave.solver, PRESSURE, &def), MPS_ERROR_STATE, "open");
   end(&wave);
-  mps_particles_def set = mps_particles_defaults();
   mps_particles *particles = NULL;
-  mps_dynamics *dynamics = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 1.0};
-  set.spacing = 0.25;
-  OK(mps_particles_create(context, &set, &particles));
-  OK(mps_particles_fill_box(particles, lo, hi, NULL));
-  OK(mps_particles_set(particles, "density", 0, 2000.0));
-  OK(mps_particles_set(particles, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(particles, "pressure_velocity", 0, 200.0));
-  OK(mps_dynamics_create(context, particles, NULL, &dynamics));
+  USING(particles, mps_particles_create(context, &given, &particles), .spacing = 0.25);
+  OK(mps_particles_fill_box(particles, AT(0.0, 0.0), AT(1.0, 1.0), NULL));
+  SET_FIELDS(particles, {"density", 2000.0}, {"shear_velocity", 100.0},
+             {"pressure_velocity", 200.0});
+  MAKE_KEPT(dynamics, dynamics, create, context, particles, NULL);
   for (int equation = 0; equation <= PORES; equation++)
     FAILS(mps_solver_set_linear_solver(mps_dynamics_solver(dynamics), equation, &def),
           MPS_ERROR_ARGUMENT, "and the solver has none");

@@ -63,9 +63,8 @@ TEST(softening_needs_a_band_that_unloads) {
 }
 
 TEST(materials_answer_questions) {
-  mps_material *m = NULL;
   const mps_material_drucker_prager_def def = sand();
-  OK(mps_material_create_drucker_prager(context, &def, &m));
+  MAKE(material, m, create_drucker_prager, context, &def);
   assert_string_equal(mps_material_name(m), "drucker_prager");
   assert_int_equal(mps_material_history_count(m), 2);
   assert_string_equal(mps_material_history_name(m, 0), "plastic_strain");
@@ -82,7 +81,6 @@ TEST(materials_answer_questions) {
   mpsi_material_wave_moduli(m, &block, &modulus);
   NEAR(modulus, 1e6 * 0.7 / (1.3 * 0.4), 1e-9); /* E (1 - nu)/((1 + nu)(1 - 2 nu)) */
   NEAR(mps_material_wave_modulus(m), modulus, 0.0);
-  mps_material_destroy(&m);
   assert_string_equal(mps_material_name(NULL), "");
   assert_true(mps_material_wave_modulus(NULL) == 0.0);
   assert_int_equal(mps_material_history_count(NULL), 0);
@@ -131,8 +129,7 @@ static mps_material_user_def dashpot_def(calls *seen) {
 TEST(a_users_law_is_called_once_a_block) {
   calls seen = {0};
   mps_material_user_def def = dashpot_def(&seen);
-  scoped_material *m = NULL;
-  OK(mps_material_create_user(context, &def, &m));
+  MAKE(material, m, create_user, context, &def);
   assert_string_equal(mps_material_name(m), "dashpot");
   assert_string_equal(mps_material_history_name(m, 1), "steps");
   assert_true(mps_material_wave_modulus(m) == 5e5 && mpsi_material_viscosity(m) == 7.0);
@@ -184,8 +181,7 @@ TEST(a_users_law_gets_the_state_it_asks_for) {
       mps_material_user_def def = dashpot_def(&seen);
       def.turns_stress = turns;
       def.needs_deformation = deforms;
-      scoped_material *m = NULL;
-      OK(mps_material_create_user(context, &def, &m));
+      MAKE(material, m, create_user, context, &def);
       mps_material_point point = point_under(m, 0.0);
       assert_true(point.history[0] == 0.25);
       point.stress[0] = 1.0;
@@ -259,8 +255,7 @@ TEST(malformed_blocks_are_refused) {
 }
 
 TEST(malformed_paths_are_refused) {
-  scoped_material *m = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &m));
+  MAKE(material, m, create_linear_elastic, context, 1e6, 0.3);
   mps_material_point point = point_under(m, 1.0);
   double gradient[9] = {0};
 #define DRIVE(material, point, gradient, duration, steps, text)                                    \
@@ -301,8 +296,7 @@ TEST(refused_memory_leaves_nothing_behind) {
 TEST(a_material_outlives_its_context_and_first_owner) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
-  mps_material *m = NULL;
-  OK(mps_material_create_linear_elastic(own, 1e6, 0.3, &m));
+  MAKE_KEPT(material, m, create_linear_elastic, own, 1e6, 0.3);
   mps_material *second = mpsi_material_retain(m);
   mps_context_destroy(&own);
   mps_material_destroy(&m);

@@ -6,8 +6,7 @@
 #define ALL 63
 
 static mps_material *hooke(double nu) {
-  mps_material *m = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e7, nu, &m));
+  MAKE_KEPT(material, m, create_linear_elastic, context, 1e7, nu);
   return m;
 }
 
@@ -35,8 +34,7 @@ TEST(all_stresses_of_an_elastic_point) {
 /* Uniaxial stress of von Mises: s = sigma_Y + the hardening line, lateral strain free. */
 TEST(a_tension_test) {
   DEF(material_von_mises, def, .young = 2e11, .yield_stress = 2e8, .hardening = 1e10);
-  scoped_material *m = NULL;
-  OK(mps_material_create_von_mises(context, &def, &m));
+  MAKE(material, m, create_von_mises, context, &def);
   mps_material_point x = point_under(m, 0.0);
   const double pull[9] = {0.01}, target[6] = {0.0};
   OK(mps_material_point_control(context, m, &x, pull, MPS_MATERIAL_POINT_YY | MPS_MATERIAL_POINT_ZZ,

@@ -11,8 +11,7 @@
 
 /* ---- descriptors ----------------------------------------------------------------------------- */
 
-TEST(each_kind_has_its_descriptor) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(each_kind_has_its_descriptor) {
   static const int32_t levels[] = {MPSI_ALL_LEVELS(MPSI_LEVEL_VALUE, , )};
   for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
     const mpsi_law_type *type = &mpsi_law_types[kind];
@@ -70,9 +69,8 @@ static mps_material *make(mps_context *context, int way, hooke *law) {
   mps_material_destroy(&built_in);
   if (way == UMAT) {
     const double props[] = {m.shear, m.lambda};
-    DEF(material_umat, def, .umat = by_umat, .props = props, .props_count = 2,
-        .bulk_modulus = m.bulk, .shear_modulus = m.shear);
-    OK(mps_material_create_umat(context, &def, &out));
+    USING(material_umat, mps_material_create_umat(context, &given, &out), .umat = by_umat,
+          .props = props, .props_count = 2, .bulk_modulus = m.bulk, .shear_modulus = m.shear);
     return out;
   }
   DEF(material_user, def, .update = by_user, .user = law);
@@ -100,16 +98,12 @@ static void throw_block(mps_context *context, int way, result *out) {
   mpm_scene_box(&s, 0.25, 0.25, 0.5, 0.5);
   const double down[] = {0.4, -3.0}, none[4] = {0.0};
   mpm_scene_affine(&s, down, none);
-  DEF(mpm, def, .cell = 2.0 * spacing);
-  def.upper[0] = def.upper[1] = 1.0;
-  def.lower[0] = def.lower[1] = -0.5;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 2.0 * spacing, .upper[0] = given.upper[1] = 1.0,
+        .lower[0] = given.lower[1] = -0.5);
   const mps_body_def ground = mps_body_defaults();
   const double wedge[] = {0.0, 0.0, 0.75, 0.0, 0.75, 0.22, 0.0, 0.25};
-  mps_body *body = NULL;
-  OK(mps_body_create_polygon(context, &ground, 4, wedge, &body));
+  MAKE(body, body, create_polygon, context, &ground, 4, wedge);
   mpm_scene_contact(&s, body, 0.4);
-  mps_body_destroy(&body);
   OK(mps_mpm_step(s.mpm, 120));
   mps_view id = mpm_scene_view(&s, "id");
   mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
@@ -139,8 +133,7 @@ TEST(a_users_law_equals_the_built_in_one) {
   assert_memory_not_equal(&results[UNSTATED], &results[BUILT_IN], sizeof(result));
 }
 
-TEST(moduli_of_users_laws_are_checked) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(moduli_of_users_laws_are_checked) {
   mps_material_user_def def = mps_material_user_defaults();
   mps_material_umat_def umat = mps_material_umat_defaults();
   scoped_material *material = NULL;
@@ -183,8 +176,7 @@ static void expect_other_constants(const mps_material *a, mps_material **b, int3
   mps_material_destroy(b);
 }
 
-TEST(constants_tell_materials_apart) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(constants_tell_materials_apart) {
   mps_material *a = NULL, *b = NULL;
   DEF(material_von_mises, mises, .young = E, .yield_stress = 1e3);
   OK(mps_material_create_von_mises(context, &mises, &a));
@@ -246,8 +238,7 @@ static mps_material *make_spoiling(mps_context *context, spoil *s) {
   static const char *const names[] = {"age"};
   DEF(material_user, def, .update = spoiling, .user = s, .name = "mud", .history_count = 1,
       .history = names, .bulk_modulus = 1e5, .shear_modulus = 1e4);
-  mps_material *out = NULL;
-  OK(mps_material_create_user(context, &def, &out));
+  MAKE_KEPT(material, out, create_user, context, &def);
   return out;
 }
 
@@ -268,8 +259,7 @@ TEST(a_law_that_yields_no_number_is_an_error) {
       s.from = 0.02;
       scene.material = make_spoiling(context, &s);
       mpm_scene_box(&scene, 0.1, 0.1, 0.2, 0.2);
-      DEF(mpm, def, .cell = 0.02, .volumetric = volumetric);
-      mpm_scene_solve(&scene, &def);
+      USING(mpm, mpm_scene_solve(&scene, &given), .cell = 0.02, .volumetric = volumetric);
       mps_status status = MPS_OK;
       double before[100][4], time = 0.0;
       for (int step = 0; step < 100 && status == MPS_OK; step++) {
@@ -289,8 +279,7 @@ TEST(a_law_that_yields_no_number_is_an_error) {
 
 /* A fluid whose volume vanishes or turns over in a step, and a user's law that fails, at a point.
  */
-TEST(a_point_keeps_its_state) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_point_keeps_its_state) {
   DEF(material_newtonian, water, .bulk_modulus = 2e6);
   spoil s = {-1, 2, NAN, 0.5};
   scoped_material *fluid = NULL, *mud = make_spoiling(context, &s);
@@ -317,16 +306,13 @@ TEST(a_point_keeps_its_state) {
 /* ---- statuses that are none ------------------------------------------------------------------ */
 
 static mps_status odd_stress(void *user, const double *x, double *stress) {
-  (void)x, (void)stress;
   return (mps_status) * (const int *)user;
 }
 static mps_status odd_level(void *user, const double *x, double *level) {
-  (void)x, (void)level;
   return (mps_status) * (const int *)user;
 }
 
-TEST(a_status_that_is_none_is_an_argument) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_status_that_is_none_is_an_argument) {
   static const int odd[] = {-7, 4711};
   static const char *const texts[] = {"it returned status -7 (unknown status code)",
                                       "it returned status 4711 (unknown status code)"};

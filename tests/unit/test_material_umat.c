@@ -90,8 +90,7 @@ static mps_material_umat_def umat_of(mps_material_umat_fn call, int32_t statev_c
 
 static mps_material *make_umat(mps_material_umat_fn call, int32_t statev_count) {
   const mps_material_umat_def def = umat_of(call, statev_count);
-  mps_material *material = NULL;
-  OK(mps_material_create_umat(context, &def, &material));
+  MAKE_KEPT(material, material, create_umat, context, &def);
   return material;
 }
 
@@ -122,11 +121,11 @@ static mps_material_block block_of(state *s, const mps_material *material, int k
   memset(s, 0, sizeof *s);
   for (int c = 0; c < 9; c++) {
     const bool there = kind == 2 || c == 0 || c == 1 || c == 3 || c == 4 || (c == 8 && kind == 1);
-    for (int k = 0; k < COUNT; k++) s->gradient[c][k] = 2.0 * random_number(&seed);
+    for (int k = 0; k < COUNT; k++) s->gradient[c][k] = 2.0 * noise(&seed);
     if (there) block.gradient[c] = s->gradient[c];
   }
   for (int c = 0; c < 2 * dim; c++) {
-    for (int k = 0; k < COUNT; k++) s->stress[c][k] = 1e3 * random_number(&seed);
+    for (int k = 0; k < COUNT; k++) s->stress[c][k] = 1e3 * noise(&seed);
     block.stress[c] = s->stress[c];
   }
   for (int k = 0; k < COUNT; k++) s->volume[k] = 1.0;
@@ -248,10 +247,9 @@ TEST(arguments_are_those_of_abaqus) {
   static const char *const names[] = {"void_ratio", "calls"};
   static const double initial[] = {0.7, 0.0};
   mps_material_umat_def def = umat_of(spy_umat, 2);
-  scoped_material *material = NULL;
   def.name = "Clay_1", def.statev_names = names, def.statev_initial = initial;
   def.needs_deformation = 1, def.length = 0.25, def.temperature = 20.0;
-  OK(mps_material_create_umat(context, &def, &material));
+  MAKE(material, material, create_umat, context, &def);
   assert_string_equal(mps_material_name(material), "Clay_1");
   assert_int_equal(mps_material_history_count(material), 10);
   assert_string_equal(mps_material_history_name(material, 0), "void_ratio");
@@ -307,9 +305,8 @@ TEST(a_umat_may_refuse) {
   for (int what = 1; what <= 2; what++) {
     const double props[] = {what}, gradient[9] = {1.0};
     mps_material_umat_def def = umat_of(spy_umat, 2);
-    scoped_material *material = NULL;
     def.props = props, def.props_count = 1;
-    OK(mps_material_create_umat(context, &def, &material));
+    MAKE(material, material, create_umat, context, &def);
     mps_material_point point = point_under(material, 0.0), before = point;
     FAILS(mps_material_point_drive(context, material, &point, gradient, 1.0, 1), MPS_ERROR_NUMERIC,
           what == 1 ? "smaller step (PNEWDT)" : "STRESS or STATEV is not finite");

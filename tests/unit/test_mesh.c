@@ -1,5 +1,6 @@
 /* test_mesh.c - bodies from meshes and STL files: what is refused and why, both notations of a
  * file, parts, lack of memory. SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "mesh_shapes.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
@@ -195,11 +196,6 @@ TEST(refuses_bad_files) {
 }
 
 /* ---- corners that are nearly the same -------------------------------------------------------- */
-
-static double noise(uint64_t *state) { /* in [-1, 1) */
-  *state = *state * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*state >> 11) * 0x1p-52 - 1.0;
-}
 
 /* Every corner of every triangle is off by up to `off` along each axis. */
 static void shake_corners(mesh_shape *m, double off) {

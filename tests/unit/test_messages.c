@@ -12,13 +12,11 @@
 static mps_context *context;
 
 static int open_context(void **state) {
-  (void)state;
   context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   return context ? 0 : -1;
 }
 
 static int close_context(void **state) {
-  (void)state;
   mps_context_destroy(&context);
   return 0;
 }
@@ -115,10 +113,8 @@ TEST(digits_that_tell_nothing_are_left_out) {
 
 static mps_particles *block(int32_t dim) {
   DEF(particles, def, .dim = dim, .spacing = 0.1);
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.4, 0.4, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  MAKE_KEPT(particles, set, create, context, &def);
+  OK(mps_particles_fill_box(set, AT(0.0, 0.0, 0.0), AT(0.4, 0.4, 0.4), NULL));
   OK(mps_particles_set(set, "density", 0, 1000.0));
   return set;
 }
@@ -126,8 +122,6 @@ static mps_particles *block(int32_t dim) {
 TEST(values_just_outside) {
   const double above = nextafter(1.0, 2.0);
   mps_body_def place = mps_body_defaults();
-  mps_contact_def contact = mps_contact_defaults();
-  mps_material_mohr_coulomb_def soil = mps_material_mohr_coulomb_defaults();
   mps_coupling_def coupling = mps_coupling_defaults();
   mps_fluid_def water = mps_fluid_defaults();
   mps_mpm_def mpm_def = mps_mpm_defaults();
@@ -143,8 +137,8 @@ TEST(values_just_outside) {
   REFUSES(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT,
                                  nextafter(1e9, INFINITY), 1.0, 0.0, &signal),
           "1000000000.0000001 Hz");
-  soil.young = 1e6, soil.poisson = 0.3, soil.friction = 0.25, soil.cohesion = 1.0;
-  soil.dilation = nextafter(0.25, 1.0);
+  DEF(material_mohr_coulomb, soil, .young = 1e6, .poisson = 0.3, .friction = 0.25, .cohesion = 1.0,
+      .dilation = nextafter(0.25, 1.0));
   REFUSES(mps_material_create_mohr_coulomb(context, &soil, &material), "0.25000000000000006 rad");
   coupling.size = 1, coupling.relaxation = above;
   REFUSES(mps_coupling_create(context, &coupling, &coupled), "1.0000000000000002");
@@ -156,17 +150,15 @@ TEST(values_just_outside) {
   mpm_def.courant = 0.5;
   OK(mps_mpm_create(context, set, material, &mpm_def, &mpm));
   OK(mps_body_create_disc(context, &place, 0.1, &body));
-  contact.offset = nextafter(1e9, INFINITY);
+  DEF(contact, contact, .offset = nextafter(1e9, INFINITY));
   REFUSES(mps_mpm_add_contact(mpm, body, &contact, NULL), "1000000000.0000001 m");
 }
 
 TEST(values_of_dynamics_just_outside) {
   scoped_particles *set = block(2);
-  mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *dynamics = NULL;
-  OK(mps_particles_set(set, "shear_velocity", 0, 20.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 40.0));
-  def.courant = nextafter(1.0, 2.0);
+  SET_FIELDS(set, {"shear_velocity", 20.0}, {"pressure_velocity", 40.0});
+  DEF(dynamics, def, .courant = nextafter(1.0, 2.0));
   REFUSES(mps_dynamics_create(context, set, &def, &dynamics), "courant is 1.0000000000000002,");
   def = mps_dynamics_defaults();
   def.radius_ratio = nextafter(4.0, 5.0);
@@ -185,14 +177,11 @@ TEST(a_file_of_another_set_names_the_path) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   static const char *const path = TEST_TMP "/test_messages.h5";
   mps_particles *set = block(2), *other = NULL;
-  mps_particles_def def = mps_particles_defaults();
   mps_checkpoint info = mps_checkpoint_defaults();
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.8};
   OK(mpsi_checkpoint_write(set, path, &info));
-  def.spacing = 0.2;
-  OK(mps_particles_create(context, &def, &other));
+  USING(particles, mps_particles_create(context, &given, &other), .spacing = 0.2);
   REFUSES(mps_checkpoint_read(other, path, &info), "path: '" TEST_TMP "/test_messages.h5' has 16");
-  OK(mps_particles_fill_box(other, lo, hi, NULL));
+  OK(mps_particles_fill_box(other, AT(0.0, 0.0), AT(0.8, 0.8), NULL));
   REFUSES(mps_checkpoint_read(other, path, &info), "path: '");
   assert_non_null(strstr(message(), "has spacing 0.1"));
   mps_particles_destroy(&other);

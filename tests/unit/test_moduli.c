@@ -69,22 +69,18 @@ TEST(the_ends_of_the_ranges_are_sane) {
   static const double E[] = {1e-6, 1e18}, nu[] = {-0.999, 0.49999}, rho[] = {1e-9, 1e9};
   for (int k = 0; k < 8; k++) {
     mps_moduli m;
-    scoped_material *material = NULL;
     OK(mps_moduli_from_elastic(context, E[k & 1], nu[k >> 1 & 1], rho[k >> 2], &m));
     const double all[] = {m.shear, m.bulk, m.wave, m.shear_velocity, m.pressure_velocity};
     for (size_t c = 0; c < sizeof all / sizeof *all; c++)
       assert_true(all[c] > 1e-12 && all[c] < 1e24);
-    OK(mps_material_create_linear_elastic(context, E[k & 1], nu[k >> 1 & 1], &material));
+    MAKE(material, material, create_linear_elastic, context, E[k & 1], nu[k >> 1 & 1]);
     near_relative(mps_material_wave_modulus(material), m.wave);
   }
 }
 
 /* ---- materials ------------------------------------------------------------------------------- */
 
-static mps_status nothing(void *user, const mps_material_block *block) {
-  (void)user, (void)block;
-  return MPS_OK;
-}
+static mps_status nothing(void *user, const mps_material_block *block) { return MPS_OK; }
 
 TEST(materials_tell_their_moduli) {
   mps_moduli m, want;
@@ -109,20 +105,16 @@ TEST(materials_tell_their_moduli) {
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static double value_of(mps_particles *set, const char *name, int64_t id) {
-  mps_view view;
-  OK(mps_particles_view(set, name, &view));
+  mps_view view = view_field(set, name);
   return *mps_view_f64(&view, mps_particles_index(set, id), 0);
 }
 
 TEST(fields_say_what_particles_are_made_of) {
-  DEF(particles, def, .spacing = 1.0);
   const double lo[] = {0.0, 0.0}, hi[] = {4.0, 4.0};
-  scoped_particles *set = NULL;
   scoped_material *clay = NULL, *rock = NULL, *sand = NULL;
   DEF(material_drucker_prager, cone, .young = 1e7, .friction = 0.5);
   mps_moduli soft, hard;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  scoped_particles *set = box_of(context, 1.0, lo, hi);
   OK(mps_material_create_linear_elastic(context, 2e7, 0.4, &clay));
   OK(mps_material_create_linear_elastic(context, 3e10, 0.2, &rock));
   OK(mps_material_create_drucker_prager(context, &cone, &sand));
@@ -138,8 +130,7 @@ TEST(fields_say_what_particles_are_made_of) {
   REFUSES(mps_particles_set_material(set, clay, 1e3, NULL, 2), "count is 2");
   assert_int_equal(mps_particles_set_material(NULL, clay, 1e3, NULL, 0), MPS_ERROR_ARGUMENT);
   mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_material *foreign = NULL;
-  OK(mps_material_create_linear_elastic(other, 2e7, 0.4, &foreign));
+  MAKE_KEPT(material, foreign, create_linear_elastic, other, 2e7, 0.4);
   REFUSES(mps_particles_set_material(set, foreign, 1e3, NULL, 0), "another context");
   mps_material_destroy(&foreign);
   mps_context_destroy(&other);

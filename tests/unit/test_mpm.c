@@ -6,8 +6,7 @@
 #include "test_fixture.h"
 
 static mps_mpm_def small_def(void) {
-  DEF(mpm, def, .cell = 0.02);
-  def.lower[0] = def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0);
   return def;
 }
 
@@ -81,9 +80,8 @@ TEST(owns_its_bodies) {
   mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
   mpm_scene_solve(&other, &def);
-  mps_body *body = NULL;
-  DEF(body, disc, .position[0] = 0.3);
-  OK(mps_body_create_disc(context, &disc, 0.02, &body));
+  scoped_body *body = NULL;
+  USING(body, mps_body_create_disc(context, &given, 0.02, &body), .position[0] = 0.3);
   REFUSES(mpm_scene_try_contact(s.mpm, NULL, 0.0), "body is NULL");
   mpm_scene_contact(&s, body, 0.0);
   FAILS(mpm_scene_try_contact(s.mpm, body, 0.0), MPS_ERROR_STATE,
@@ -93,7 +91,6 @@ TEST(owns_its_bodies) {
   FAILS(mps_body_advance(body, 0.1), MPS_ERROR_STATE, "a solver moves");
   mps_mpm_destroy(&s.mpm);
   mpm_scene_contact(&other, body, 0.0); /* free again */
-  mps_body_destroy(&body);
   REFUSES(mps_mpm_step(other.mpm, -1), "count is -1");
   REFUSES(mps_mpm_run(other.mpm, NAN, 1, NULL, NULL), "t_end is nan");
   REFUSES(mps_mpm_run(other.mpm, 1.0, 0, NULL, NULL), "every is 0");
@@ -106,7 +103,6 @@ TEST(owns_its_bodies) {
 
 /* A run ends exactly at its end, calls back as requested, and dt is that of (49). */
 static mps_status count_calls(void *user, mps_mpm *mpm) {
-  (void)mpm;
   ++*(int *)user;
   return MPS_OK;
 }
@@ -139,11 +135,10 @@ static mps_status refusing(void *user, const mps_material_block *block) {
 static mps_material *refusing_material(mps_context *c, const int32_t *refuses_now) {
   static const char *const names[] = {"plastic_strain", "damage"};
   static const double initial[] = {0.5, 1.0};
-  mps_material *out = NULL;
   DEF(material_user, law, .update = refusing, .user = (void *)refuses_now, .name = "touchy",
       .wave_modulus = 1e5, .history_count = 2, .history = names, .history_initial = initial,
       .needs_deformation = 1);
-  OK(mps_material_create_user(c, &law, &out));
+  MAKE_KEPT(material, out, create_user, c, &law);
   return out;
 }
 
@@ -175,10 +170,8 @@ TEST(sets_materials) {
   }
   OK(mps_mpm_step(s.mpm, 5));
   for (int k = 2; k < 300; k++) { /* two there are */
-    mps_material *more = NULL;
-    OK(mps_material_create_linear_elastic(context, 1e5, 0.3, &more));
+    MAKE(material, more, create_linear_elastic, context, 1e5, 0.3);
     OK(mps_mpm_set_material(s.mpm, more, ids, 1));
-    mps_material_destroy(&more);
   }
   of = mpm_scene_view(&s, "material");
   assert_int_equal(*mps_view_i64(&of, mps_particles_index(s.particles, ids[0]), 0), 299);
@@ -198,16 +191,13 @@ TEST(inverted_deformations_are_refused) {
   mps_material *law = NULL;
   for (int dim = 2; dim <= 3; dim++) {
     DEF(particles, def, .dim = dim, .spacing = 0.1);
-    const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.3, 0.3, 0.3};
     DEF(mpm, solver, .cell = 0.2);
-    scoped_particles *set = NULL;
-    scoped_mpm *mpm = NULL;
     if (dim == 3) solver.geometry = MPS_MPM_GEOMETRY_SPACE;
     OK(mps_material_create_neo_hookean(context, 1e6, 0.3, &law));
-    OK(mps_particles_create(context, &def, &set));
-    OK(mps_particles_fill_box(set, lo, hi, NULL));
+    MAKE(particles, set, create, context, &def);
+    OK(mps_particles_fill_box(set, AT(0.0, 0.0, 0.0), AT(0.3, 0.3, 0.3), NULL));
     OK(mps_particles_set(set, "density", 0, 1000.0));
-    OK(mps_mpm_create(context, set, law, &solver, &mpm));
+    MAKE(mpm, mpm, create, context, set, law, &solver);
     OK(mps_particles_set(set, "deformation_gradient", 0, -0.14));
     FAILS(mps_mpm_step(mpm, 1), MPS_ERROR_STATE,
           "particle 0 has the determinant -0.14, must be above 0");
@@ -233,27 +223,19 @@ TEST(tells_what_left) {
 
 /* Syrup: viscosity, not sound, limits the step, and then shear dies out. */
 TEST(viscosity_limits_the_step) {
-  DEF(particles, set, .spacing = 0.01);
-  scoped_particles *particles = NULL;
-  scoped_material *material = NULL;
-  scoped_mpm *mpm = NULL;
-  mps_view x;
-  mps_edit v;
   mps_totals before, after;
   const double lo[] = {0.0, 0.0}, hi[] = {0.2, 0.2}, viscosity = 2000.0;
   DEF(material_newtonian, law, .bulk_modulus = 1e5, .viscosity = viscosity);
-  OK(mps_particles_create(context, &set, &particles));
-  OK(mps_particles_fill_box(particles, lo, hi, NULL));
+  scoped_particles *particles = box_of(context, 0.01, lo, hi);
   OK(mps_particles_set(particles, "density", 0, 1000.0));
   OK(mps_particles_add_field(particles, "velocity", 0));
-  OK(mps_particles_view(particles, "position", &x));
-  OK(mps_particles_edit(particles, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
-  OK(mps_particles_commit(particles, &v));
-  OK(mps_material_create_newtonian(context, &law, &material));
+  mps_view x = view_field(particles, "position");
+  EDIT(v, particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
+  MAKE(material, material, create_newtonian, context, &law);
   mps_mpm_def def = small_def();
-  OK(mps_mpm_create(context, particles, material, &def, &mpm));
+  MAKE(mpm, mpm, create, context, particles, material, &def);
   const double limit = 1000.0 * def.cell * def.cell / (4.0 * 2.0 * viscosity);
   assert_true(mps_mpm_limit(mpm) <= limit && mps_mpm_limit(mpm) > 0.9 * limit);
   OK(mps_mpm_get_totals(mpm, &before));
@@ -267,28 +249,21 @@ TEST(viscosity_limits_the_step) {
 
 /* A particle on a wall, near a corner, moves as the wall does. */
 static void keep_on_the_wall(int32_t walls) {
-  DEF(particles, set, .spacing = 0.01);
-  scoped_particles *particles = NULL;
-  scoped_material *material = NULL;
-  scoped_mpm *mpm = NULL;
-  mps_view v;
   mps_edit x;
   const double lo[] = {0.0, 0.0}, hi[] = {0.01, 0.01};
-  OK(mps_particles_create(context, &set, &particles));
-  OK(mps_particles_fill_box(particles, lo, hi, NULL));
-  OK(mps_particles_set(particles, "density", 0, 1000.0));
-  OK(mps_particles_set(particles, "velocity", 0, -1.0));
+  scoped_particles *particles = box_of(context, 0.01, lo, hi);
+  SET_FIELDS(particles, {"density", 1000.0}, {"velocity", -1.0});
   OK(mps_particles_edit(particles, "position", &x));
   *mps_edit_f64(&x, 0, 0) = 0.0;
   OK(mps_particles_commit(particles, &x));
-  OK(mps_material_create_linear_elastic(context, 1e5, 0.3, &material));
+  MAKE(material, material, create_linear_elastic, context, 1e5, 0.3);
   mps_mpm_def def = small_def();
   def.lower[0] = 0.0;
   def.edge = walls;
-  OK(mps_mpm_create(context, particles, material, &def, &mpm));
+  MAKE(mpm, mpm, create, context, particles, material, &def);
   OK(mps_mpm_step(mpm, 1));
   OK(mps_particles_view(particles, "position", &x.view));
-  OK(mps_particles_view(particles, "velocity", &v));
+  mps_view v = view_field(particles, "velocity");
   NEAR(*mps_view_f64(&v, 0, 0), 0.0, 1e-15);
   NEAR(*mps_view_f64(&x.view, 0, 0), 0.0, 1e-15);
 }
@@ -345,9 +320,8 @@ TEST(steady_steps_allocate_nothing) {
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
   mps_body *body = NULL;
-  DEF(body, plate, .position[1] = 0.002);
   const double normal[] = {0.0, 1.0};
-  OK(mps_body_create_half_plane(own, &plate, normal, &body));
+  USING(body, mps_body_create_half_plane(own, &given, normal, &body), .position[1] = 0.002);
   mpm_scene_contact(&s, body, 0.2);
   OK(mps_mpm_step(s.mpm, 100));
   const uint64_t epoch = mps_particles_epoch(s.particles);
@@ -365,8 +339,7 @@ TEST(steady_steps_allocate_nothing) {
 TEST(variants_are_chosen_first) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  DEF(mpm, def, .cell = 0.02, .lower[0] = 0.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .lower[0] = 0.0);
   REFUSES(mps_experimental_mpm_transfer(s.mpm, -1), "transfer is -1");
   REFUSES(mps_experimental_mpm_strain(s.mpm, 2), "strain is 2");
   REFUSES(mps_experimental_mpm_standard(s.mpm, 1.5), "flip is 1.5");
@@ -384,12 +357,11 @@ TEST(a_step_advances_the_time) {
   const double courants[] = {4.9e-324, 1e-20};
   for (int k = 0; k < 2; k++) {
     scoped_mpm_scene s = {.mpm = NULL};
-    const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
     mps_particles_def set = mps_particles_defaults();
     mps_mpm_def def = mps_mpm_defaults();
     set.spacing = 0.1, def.cell = 0.2, def.courant = courants[k];
     OK(mps_particles_create(context, &set, &s.particles));
-    OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
+    OK(mps_particles_fill_box(s.particles, AT(0.0, 0.0), AT(0.4, 0.4), NULL));
     OK(mps_particles_set(s.particles, "density", 0, 1000.0));
     OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &s.material));
     OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));

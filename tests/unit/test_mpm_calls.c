@@ -7,8 +7,7 @@
 #include "test_fixture.h"
 
 static mps_mpm_def small_def(void) {
-  DEF(mpm, def, .cell = 0.02);
-  def.lower[0] = def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0);
   return def;
 }
 
@@ -27,9 +26,8 @@ TEST(refused_creation_changes_nothing) {
   scoped_mpm_scene s = small_scene();
   OK(mps_particles_add_field(s.particles, "volume", 0));
   OK(mps_particles_add_field(s.particles, "volume_ratio", 0));
-  scoped_material *rubber = NULL;
   scoped_mpm *mpm = NULL;
-  OK(mps_material_create_neo_hookean(context, 1e5, 0.3, &rubber));
+  MAKE(material, rubber, create_neo_hookean, context, 1e5, 0.3);
   const uint64_t epoch = mps_particles_epoch(s.particles);
   const int32_t fields = mps_particles_field_count(s.particles);
   mps_mpm_def def = small_def();
@@ -93,7 +91,6 @@ static mps_status tries_everything(void *user, mps_mpm *mpm) {
 }
 
 static mps_status gives_up(void *user, mps_mpm *mpm) {
-  (void)user;
   return mps_mpm_steps(mpm) == 3 ? MPS_ERROR_IO : MPS_OK;
 }
 
@@ -195,10 +192,9 @@ TEST(forces_are_of_the_measure) {
     def.measure = k ? 2.0 : NAN;
     def.gravity[1] = -9.81;
     mpm_scene_solve(&s, &def);
-    scoped_body *plate = NULL;
     mps_body_def body = mps_body_defaults();
     body.position[1] = 0.1 + 0.049; /* presses 1 mm */
-    OK(mps_body_create_box(context, &body, 0.4, 0.1, &plate));
+    MAKE(body, plate, create_box, context, &body, 0.4, 0.1);
     mpm_scene_contact(&s, plate, 0.0);
     OK(mps_mpm_step(s.mpm, 20));
     mps_reaction r;

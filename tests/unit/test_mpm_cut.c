@@ -6,6 +6,7 @@
  */
 #define MPSI_LEVEL                                                                                 \
   1 /* of what is inline in the headers; nothing in them depends on it for memory */
+#include "kit/random.h"
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -37,13 +38,6 @@ static functions functions_of(const mps_mpm *mpm) {
 }
 
 /* ---- scenes ---------------------------------------------------------------------------------- */
-
-static uint64_t seed = 7;
-
-static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
 
 #define CELL 0x1p-6 /* m: places on edges of cells are exact */
 enum { CELLS = 20 };
@@ -304,18 +298,15 @@ TEST(vectors_do_as_the_reference) {
 /* A block of ground under a heavy body that comes down tilted. */
 static mpm_scene pressed(int dim, bool plane) {
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
-  const double lo[3] = {0.0}, hi[3] = {10 * CELL, 10 * CELL, dim == 3 ? 6 * CELL : 0.0};
-  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
-  DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
-      .cell = CELL);
-  mpm_scene_solve(&s, &def);
-  mps_body_def body = mps_body_defaults();
+  OK(mps_particles_fill_box(s.particles, AT(0.0),
+                            AT(10 * CELL, 10 * CELL, dim == 3 ? 6 * CELL : 0.0), NULL));
+  USING(mpm, mpm_scene_solve(&s, &given),
+        .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
+        .cell = CELL);
   scoped_body *made = NULL;
-  body.position[0] = body.position[1] = 5 * CELL;
-  body.position[dim - 1] = (dim == 3 ? 9.0 : 13.5) * CELL;
-  body.rotation[dim == 3 ? 0 : 2] = 0.2;
-  body.motion = MPS_BODY_MOTION_FREE;
-  body.mass = 1e6;
+  DEF(body, body, .position[0] = body.position[1] = 5 * CELL,
+      .position[dim - 1] = (dim == 3 ? 9.0 : 13.5) * CELL, .rotation[dim == 3 ? 0 : 2] = 0.2,
+      .motion = MPS_BODY_MOTION_FREE, .mass = 1e6);
   for (int c = dim == 2 ? 2 : 0; c < 3; c++) body.inertia[c] = 1e6;
   body.velocity[dim - 1] = -3.0;
   if (dim == 3)
@@ -351,8 +342,7 @@ TEST(solids_of_revolution_are_convex_or_not) {
     bool convex;
   } cases[] = {{cylinder, 4, true}, {cone, 3, true}, {hollow, 4, false}, {ring, 4, false}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    scoped_body *body = NULL;
-    OK(mps_body_create_revolution(context, NULL, cases[k].corners, cases[k].rz, &body));
+    MAKE(body, body, create_revolution, context, NULL, cases[k].corners, cases[k].rz);
     assert_true(mpsi_body_is_convex(body) == cases[k].convex);
   }
 }

@@ -23,8 +23,7 @@ static const double *column(mps_particles *set, const char *name, int32_t compon
 /* ---- balances -------------------------------------------------------------------------------- */
 
 /* Without particles nothing bounds the step that follows the limit, and its impulses. */
-TEST(nothing_settles_where_no_particle_is) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(nothing_settles_where_no_particle_is) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   DEF(mpm, def, .cell = 0.02, .gravity[1] = -9.81);
   int64_t ids[MOST];
@@ -41,8 +40,7 @@ TEST(nothing_settles_where_no_particle_is) {
   assert_true(isfinite(side.impulse[1]) && isfinite(side.work));
 }
 
-TEST(erosion_of_half_a_column_takes_its_mass_and_momentum) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(erosion_of_half_a_column_takes_its_mass_and_momentum) {
   SCOPED(drop) scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   int64_t ids[MOST];
   OK(mps_mpm_step(x.s.mpm, 100));
@@ -80,9 +78,7 @@ TEST(erosion_of_half_a_column_takes_its_mass_and_momentum) {
 /* A column of 1 m x 0.2 m between rollers. */
 static mpm_scene soil(mps_context *context, double height) {
   mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e6);
-  DEF(mpm, def, .cell = 0.05);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-  def.gravity[1] = -10.0;
+  DEF(mpm, def, .cell = 0.05, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.2, .gravity[1] = -10.0);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, height);
   mpm_scene_solve(&s, &def);
   return s;
@@ -91,22 +87,19 @@ static mpm_scene soil(mps_context *context, double height) {
 /* Steps, and now and then takes a part of the velocities away. */
 static void settle(mpm_scene *s, int times) {
   for (int k = 0; k < times; k++) {
-    mps_edit v;
     OK(mps_mpm_step(s->mpm, 10));
-    OK(mps_particles_edit(s->particles, "velocity", &v));
-    for (int64_t i = 0; i < v.view.shape[0]; i++)
-      for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) *= 0.7;
-    OK(mps_particles_commit(s->particles, &v));
+    EDIT(v, s->particles, "velocity")
+      for (int64_t i = 0; i < v.view.shape[0]; i++)
+        for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) *= 0.7;
   }
 }
 
-TEST(a_fed_column_bears_its_weight) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_fed_column_bears_its_weight) {
   scoped_mpm_scene fed = soil(context, 0.25), whole = soil(context, 1.0);
   for (int layer = 0; layer < 6; layer++) {
-    const double lo[2] = {0.0, 0.25 + 0.125 * layer}, hi[2] = {0.2, lo[1] + 0.125};
     int64_t added = 0;
-    OK(mps_particles_fill_box(fed.particles, lo, hi, &added));
+    OK(mps_particles_fill_box(fed.particles, AT(0.0, 0.25 + 0.125 * layer),
+                              AT(0.2, 0.25 + 0.125 * layer + 0.125), &added));
     assert_int_equal(added, 40);
     OK(mps_particles_set(fed.particles, "density", 0, 1000.0));
     settle(&fed, 10);
@@ -140,15 +133,12 @@ static void change_some(scene *x) {
   const int64_t count = above(set, 0.12, ids), first = mps_particles_count(set);
   for (int64_t k = 0; k < count; k += 7) ids[some++] = ids[k];
   OK(mps_particles_remove(set, ids, some));
-  const double lo[3] = {0.5, 0.1, 0.02}, hi[3] = {0.6, 0.2, 0.12};
   int64_t added = 0;
-  OK(mps_particles_fill_box(set, lo, hi, &added));
+  OK(mps_particles_fill_box(set, AT(0.5, 0.1, 0.02), AT(0.6, 0.2, 0.12), &added));
   OK(mps_particles_set(set, "density", 0, 1500.0));
   assert_true(added >= 100 && some > 20);
-  mps_edit v;
-  OK(mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = first - some; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = -1.0;
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "velocity")
+    for (int64_t k = first - some; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = -1.0;
 }
 
 TEST(same_bits_on_any_threads) {
@@ -173,8 +163,7 @@ TEST(same_bits_on_any_threads) {
 }
 
 /* A column, some of it removed before the first step; and one that never had it. */
-TEST(what_remains_moves_as_if_made_so) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(what_remains_moves_as_if_made_so) {
   scoped_mpm_scene eroded = soil(context, 1.0), fresh = soil(context, 0.5);
   int64_t ids[MOST];
   const int64_t count = above(eroded.particles, 0.5, ids);
@@ -186,9 +175,8 @@ TEST(what_remains_moves_as_if_made_so) {
     same_fields(&a, &b);
   }
   /* And one that got it after it was made, once all is in its place. */
-  const double lo[2] = {0.0, 0.5}, hi[2] = {0.2, 1.0};
   scoped_mpm_scene grown = soil(context, 0.5), whole = soil(context, 1.0);
-  OK(mps_particles_fill_box(grown.particles, lo, hi, NULL));
+  OK(mps_particles_fill_box(grown.particles, AT(0.0, 0.5), AT(0.2, 1.0), NULL));
   OK(mps_particles_set(grown.particles, "density", 0, 1000.0));
   for (int k = 0; k < 3; k++) {
     OK(mps_mpm_step(grown.mpm, 50));
@@ -238,12 +226,10 @@ TEST(goes_back_across_what_came_and_went) {
 
 /* ---- what new particles are ------------------------------------------------------------------ */
 
-TEST(new_particles_take_material_volume_and_mass) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(new_particles_take_material_volume_and_mass) {
   scoped_mpm_scene s = soil(context, 0.5);
   DEF(material_von_mises, def, .young = 1e6, .poisson = 0.3, .yield_stress = 1e3);
-  mps_material *clay = NULL;
-  OK(mps_material_create_von_mises(context, &def, &clay));
+  MAKE(material, clay, create_von_mises, context, &def);
   OK(mps_mpm_step(s.mpm, 30));
   const double places[4] = {0.05, 0.7, 0.15, 0.7};
   OK(mps_particles_append(s.particles, 2, places));
@@ -253,7 +239,6 @@ TEST(new_particles_take_material_volume_and_mass) {
   FAILS(mps_mpm_snapshot(s.mpm, &snapshot), MPS_ERROR_STATE, "has density 0");
   const int64_t last[1] = {161};
   OK(mps_mpm_set_material(s.mpm, clay, last, 1));
-  mps_material_destroy(&clay);
   mps_view mass;
   mps_edit rho, volume;
   const double heavy = column(s.particles, "mass", 0, &mass)[3];
@@ -289,15 +274,13 @@ TEST(new_particles_take_material_volume_and_mass) {
 }
 
 /* A boundary holds those of its list that there are. */
-TEST(held_particles_leave_the_list_and_come_back) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(held_particles_leave_the_list_and_come_back) {
   scoped_mpm_scene s = soil(context, 0.5);
   const int64_t ids[3] = {150, 151, 152}, gone[2] = {151, 3};
-  DEF(mpm_boundary, def, .ids = ids, .id_count = 3);
   scoped_snapshot *snapshot = NULL;
   mps_reaction r;
   int32_t number = -1;
-  OK(mps_mpm_add_boundary(s.mpm, &def, &number));
+  USING(mpm_boundary, mps_mpm_add_boundary(s.mpm, &given, &number), .ids = ids, .id_count = 3);
   OK(mps_mpm_step(s.mpm, 5));
   OK(mps_mpm_snapshot(s.mpm, &snapshot));
   OK(mps_particles_remove(s.particles, gone, 2));
@@ -323,20 +306,18 @@ static mps_status meddle(void *user, mps_mpm *mpm) {
   return MPS_OK;
 }
 
-TEST(refusals_change_nothing) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(refusals_change_nothing) {
   SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   OK(mps_mpm_step(x.s.mpm, 20));
   OK(mps_mpm_step(twin.s.mpm, 20));
   const double out[4] = {0.7, 0.7, 1.2, 0.7}, within[4] = {0.7, 0.7, 0.1, 0.03};
-  const double lo[2] = {0.9, 0.5}, hi[2] = {1.1, 0.6};
   const int64_t bad[2] = {7, 4711};
   int calls = 0;
   REFUSES(mps_particles_append(x.s.particles, 2, out), "outside the domain");
   REFUSES(mps_particles_append(x.s.particles, 2, within), "1 particles lie inside");
-  REFUSES(mps_particles_fill_box(x.s.particles, lo, hi, NULL), "outside the");
+  REFUSES(mps_particles_fill_box(x.s.particles, AT(0.9, 0.5), AT(1.1, 0.6), NULL), "outside the");
   REFUSES(mps_particles_remove(x.s.particles, bad, 2), "no such particle");
   same(&x, &twin);
   OK(mps_mpm_run(x.s.mpm, mps_mpm_time(x.s.mpm) + 1e-3, 1000, meddle, &calls));
@@ -346,8 +327,7 @@ TEST(refusals_change_nothing) {
 }
 
 /* All may be removed; time continues, and others may be added. */
-TEST(an_empty_solver_waits) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(an_empty_solver_waits) {
   scoped_mpm_scene s = soil(context, 0.5);
   int64_t ids[MOST];
   OK(mps_mpm_step(s.mpm, 5));
@@ -414,16 +394,14 @@ TEST(a_step_that_would_go_too_deep_does_not_begin) {
 
 /* Each allocation is refused in turn: all or nothing. */
 static mps_status come_and_go(mps_context *own, int what) {
-  (void)what;
   scene x;
   scoped_snapshot *snapshot = NULL;
-  const double lo[2] = {0.5, 0.1}, hi[2] = {0.9, 0.3};
   const int64_t ids[2] = {3, 400};
   mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
   if (status == MPS_OK) status = mps_particles_remove(x.s.particles, ids, 2);
   if (status == MPS_OK) {
-    status = mps_particles_fill_box(x.s.particles, lo, hi, NULL);
+    status = mps_particles_fill_box(x.s.particles, AT(0.5, 0.1), AT(0.9, 0.3), NULL);
     assert_int_equal(mps_particles_count(x.s.particles), status == MPS_OK ? 1598 : 798);
   }
   if (status == MPS_OK) status = mps_particles_set(x.s.particles, "density", 0, 1500.0);

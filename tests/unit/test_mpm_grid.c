@@ -23,7 +23,6 @@ static nodes *read_nodes(mps_mpm *mpm) {
 static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.05, 0.0, 0.0, 1e6);
-  mps_mpm_def def = mps_mpm_defaults();
   const double lo[3] = {corner ? 0.0 : 1.0, corner ? 0.0 : 1.0, corner ? 0.0 : 1.0};
   const double hi[3] = {lo[0] + 0.5, lo[1] + 0.7, lo[2] + 0.4};
   const double v0[3] = {0.3, -0.2, 0.1};
@@ -31,16 +30,14 @@ static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
   const double space[9] = {0.1, -0.4, 0.2, 0.3, 0.2, -0.1, 0.05, 0.15, -0.3};
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
-  def.geometry = geometry;
-  def.cell = 0.1;
+  DEF(mpm, def, .geometry = geometry, .cell = 0.1);
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = 4.0;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   return s;
 }
 
-TEST(nodes_have_the_particles_mass_and_momentum) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(nodes_have_the_particles_mass_and_momentum) {
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int corner = 0; corner < 2; corner++) {
       scoped_mpm_scene s = block(context, geometry, corner != 0);
@@ -67,8 +64,7 @@ TEST(nodes_have_the_particles_mass_and_momentum) {
 }
 
 /* Uniform stress: forces inside the block vanish, those at its upper face pull it down by s A. */
-TEST(forces_are_those_of_the_stress) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(forces_are_those_of_the_stress) {
   scoped_mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
   OK(mps_particles_set(s.particles, "stress", 1, 1000.0));
   nodes *n = read_nodes(s.mpm);
@@ -88,8 +84,7 @@ static double filling(int64_t k, int c) {
   return fmod((double)(k + 1) * step[c], 1.0);
 }
 
-TEST(linear_fields_are_reproduced) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(linear_fields_are_reproduced) {
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
       scoped_mpm_scene s = block(context, geometry, true);
@@ -131,8 +126,7 @@ TEST(linear_fields_are_reproduced) {
     }
 }
 
-TEST(points_know_where_they_are) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(points_know_where_they_are) {
   scoped_mpm_scene s =
       block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, true); /* 0.5 x 0.7 from the origin */
   mps_grid *grid = mps_mpm_grid(s.mpm);
@@ -193,10 +187,8 @@ TEST(asking_changes_nothing) {
 }
 
 /* The weights as an object. */
-TEST(weights_are_a_kernel) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(weights_are_a_kernel) {
   scoped_mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
-  mps_kernel *other = NULL;
   mps_mpm_def def;
   OK(mps_mpm_get_def(s.mpm, &def));
   mps_mpm_destroy(&s.mpm);
@@ -207,7 +199,7 @@ TEST(weights_are_a_kernel) {
   OK(mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.2, &def.kernel));
   REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "must be 1.5 cells");
   mps_kernel_destroy(&def.kernel);
-  OK(mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.15, &other));
+  MAKE_KEPT(kernel, other, create, context, MPS_KERNEL_SPLINE2, 0.15);
   def.kernel = other;
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_kernel_destroy(&def.kernel); /* the caller's share */

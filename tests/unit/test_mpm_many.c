@@ -10,8 +10,7 @@ static const double gravity = 10.0, cell = 0.02;
 static mpm_scene soil(double x0, double y0, double x1, double y1) {
   mpm_scene s = mpm_scene_begin(context, 0.5 * cell, 0.25 * cell, 0.25 * cell, 1e5);
   mpm_scene_box(&s, x0, y0, x1, y1);
-  DEF(mpm, def, .cell = cell, .gravity[1] = -gravity);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = cell, .gravity[1] = -gravity);
   return s;
 }
 

@@ -10,13 +10,10 @@
 /* A channel 1 m long; it is open to the right, and above there is nothing. */
 static mpm_scene channel(mps_context *context, double gravity) {
   mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, 0.0, 1e5);
-  DEF(mpm, def, .cell = 2.0 * SPACING);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.0;
-  def.gravity[1] = gravity;
-  def.budget = 1;
+  DEF(mpm, def, .cell = 2.0 * SPACING, .lower[0] = def.lower[1] = 0.0, .upper[0] = 1.0,
+      .gravity[1] = gravity, .budget = 1);
   mpm_scene_box(&s, 0.5, 0.25, 1.0, 0.375);
-  OK(mps_particles_set(s.particles, "density", 0, 1024.0));
-  OK(mps_particles_set(s.particles, "velocity", 0, 2.0));
+  SET_FIELDS(s.particles, {"density", 1024.0}, {"velocity", 2.0});
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mpm_scene_side(&s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_OPEN, 0.0);
   return s;
@@ -43,8 +40,7 @@ static void check_balance(mpm_scene *s, int64_t came, double momentum, double an
   NEAR(t.angular[2] - out.moment_impulse[2], angular, 1e-3 * momentum);
 }
 
-TEST(a_jet_leaves_the_channel) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_jet_leaves_the_channel) {
   scoped_mpm_scene s = channel(context, 0.0);
   int64_t came = mps_particles_count(s.particles);
   assert_int_equal(came, 32 * 8);
@@ -58,10 +54,8 @@ TEST(a_jet_leaves_the_channel) {
     const int64_t first = mps_particles_count(s.particles);
     OK(mps_particles_append(s.particles, 8, place));
     OK(mps_particles_set(s.particles, "density", 0, 1024.0));
-    mps_edit v;
-    OK(mps_particles_edit(s.particles, "velocity", &v));
-    for (int64_t p = first; p < first + 8; p++) *mps_edit_f64(&v, p, 0) = 2.0;
-    OK(mps_particles_commit(s.particles, &v));
+    EDIT(v, s.particles, "velocity")
+      for (int64_t p = first; p < first + 8; p++) *mps_edit_f64(&v, p, 0) = 2.0;
     came += 8, momentum += 2.0 * MASS * 8;
     for (int i = 0; i < 8; i++) angular -= MASS * 2.0 * place[2 * i + 1];
     check_balance(&s, came, momentum, angular);
@@ -79,10 +73,9 @@ TEST(a_jet_leaves_the_channel) {
 }
 
 /* Before, the side failed the step. A rollback restores removed particles. */
-TEST(goes_back_and_leaves_again) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(goes_back_and_leaves_again) {
   scoped_mpm_scene s = channel(context, -9.81), other = channel(context, -9.81);
-  mps_snapshot *snapshot = NULL;
+  scoped_snapshot *snapshot = NULL;
   OK(mps_mpm_run(s.mpm, 0.02, 1, NULL, NULL));
   OK(mps_mpm_snapshot(s.mpm, &snapshot));
   const int64_t before = mps_particles_count(s.particles);
@@ -105,15 +98,13 @@ TEST(goes_back_and_leaves_again) {
   NEAR(losses.residual, 0.0, 1e-12 * fabs(again.work));
   NEAR(t[1].kinetic + t[1].strain + t[1].dissipated - t[1].work_loads - t[1].work_boundaries,
        2.0 * MASS * 256, 1e-9);
-  mps_snapshot_destroy(&snapshot);
   /* What a roller holds, and an open side that is not passed, change nothing. */
   mpm_scene_side(&other, MPS_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
   OK(mps_mpm_step(other.mpm, 20));
   assert_int_equal(side_of(&other, 1).removed, 0);
 }
 
-TEST(an_open_side_takes_no_motion) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(an_open_side_takes_no_motion) {
   scoped_mpm_scene s = channel(context, 0.0);
   DEF(mpm_boundary, def, .kind = MPS_BOUNDARY_OPEN);
   REFUSES(mps_mpm_set_boundary(s.mpm, MPS_SIDE_Y_UPPER, &def), "no boundary of this number");
@@ -128,17 +119,15 @@ TEST(an_open_side_takes_no_motion) {
 
 /* ---- bodies ---------------------------------------------------------------------------------- */
 
-TEST(a_body_takes_away_what_it_finds) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_body_takes_away_what_it_finds) {
   scoped_mpm_scene s = channel(context, 0.0);
   const int64_t all = mps_particles_count(s.particles);
   OK(mps_particles_set(s.particles, "velocity", 0, 0.0));
   DEF(body, def, .position[0] = 0.75, .position[1] = 0.375);
   mps_contact_def contact = mps_contact_defaults();
-  scoped_body *body = NULL;
   scoped_contact *handle = NULL;
   mps_reaction r;
-  OK(mps_body_create_box(context, &def, 0.125, 0.125, &body));
+  MAKE(body, body, create_box, context, &def, 0.125, 0.125);
   OK(mps_mpm_add_contact(s.mpm, body, &contact, &handle));
   REFUSES(mps_mpm_step(s.mpm, 1), "32 particles");
   mps_contact_destroy(&handle);

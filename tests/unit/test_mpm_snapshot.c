@@ -47,8 +47,7 @@ TEST(goes_back_bit_for_bit_on_any_threads) {
 }
 
 /* Walls that look for their forces at rest, boxes of nodes, loads, two materials. */
-TEST(goes_back_with_walls_and_loads) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(goes_back_with_walls_and_loads) {
   SCOPED(drop)
   scene x = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN),
         twin = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
@@ -67,8 +66,7 @@ TEST(goes_back_with_walls_and_loads) {
 }
 
 /* A step that fails half way is forgotten. */
-TEST(mends_a_failed_step) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(mends_a_failed_step) {
   SCOPED(drop)
   scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
         twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
@@ -129,8 +127,7 @@ TEST(a_removed_field_comes_back) {
 }
 
 /* What the caller has built since is not undone: it is named. */
-TEST(another_build_is_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(another_build_is_refused) {
   change c = none;
   c.bodies = 1;
   SCOPED(drop)
@@ -149,7 +146,6 @@ TEST(another_build_is_refused) {
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 static mps_status snapshot_once(mps_context *own, int what) {
-  (void)what;
   scene x;
   scoped_snapshot *snapshot = NULL;
   mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
@@ -190,13 +186,12 @@ TEST(refused_allocations_change_nothing) {
       if (what) assert_int_equal(allocator.live, live);
       follows(&x, &twin, 1);
       if (!what) { /* still the first state */
-        mps_snapshot *second = NULL;
+        scoped_snapshot *second = NULL;
         OK(mps_mpm_snapshot(x.s.mpm, &second));
         OK(roll(&x, snapshot));
         assert_int_equal(mps_mpm_steps(x.s.mpm), 0);
         same_bodies(&x, &first);
         OK(roll(&x, second));
-        mps_snapshot_destroy(&second);
       }
     }
     if (what == 0) { /* the snapshot is now of here, and rollback has to undo a sort */

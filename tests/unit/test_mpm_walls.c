@@ -25,8 +25,7 @@ TEST(refuses_bad_sides) {
   mps_mpm *m = s.mpm;
   const int64_t ids[] = {1};
   mps_reaction r;
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_ramp(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 1.0, 1.0, &signal));
+  MAKE(signal, signal, create_ramp, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, 1.0, 1.0);
   REFUSES(mps_mpm_set_side(m, MPS_SIDE_Z_LOWER, 0, 0.0), "number is 4");
   REFUSES(mps_mpm_set_side(m, -1, 0, 0.0), "number is -1");
   REFUSES(mps_mpm_set_side(m, MPS_SIDE_X_UPPER, 0, 0.0), "number is 1");
@@ -134,14 +133,11 @@ TEST(refuses_bad_loads) {
 TEST(drives_particles) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-  DEF(mpm, solver, .cell = 0.02);
-  mpm_scene_solve(&s, &solver);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
   const double t[] = {0.0, 1.0}, v[] = {0.2, 0.2};
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &signal));
-  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
   const int64_t ids[] = {0, 17, 99};
-  def.ids = ids, def.id_count = 3, def.dofs = MPS_DOF_X, def.signal[0] = signal;
+  DEF(mpm_boundary, def, .ids = ids, .id_count = 3, .dofs = MPS_DOF_X, .signal[0] = signal);
   REFUSES(mps_mpm_add_boundary(s.mpm, &def, NULL), "make its kind MPS_BOUNDARY_DRIVEN");
   def.kind = MPS_BOUNDARY_DRIVEN;
   int32_t number = -1;
@@ -210,14 +206,11 @@ TEST(tells_of_large_particles) {
     heard h = {0};
     scoped_context *own = listening(&h);
     scoped_mpm_scene s = mpm_scene_begin(own, k % 2 ? 0.02 : 0.01, 0.0, 0.0, 1e6);
-    DEF(mpm, def, .cell = 0.02);
     mps_contact_def contact = mps_contact_defaults();
-    mps_body_def place = mps_body_defaults();
     scoped_body *body = NULL;
     mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-    mpm_scene_solve(&s, &def);
-    place.position[0] = 0.3;
-    OK(mps_body_create_disc(own, &place, 0.1, &body));
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
+    USING(body, mps_body_create_disc(own, &given, 0.1, &body), .position[0] = 0.3);
     if (k > 1) contact.strength = 1e3;
     OK(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
     if (k == 3)
@@ -275,9 +268,8 @@ TEST(tells_of_steps) {
   OK(mps_mpm_create(own, s.particles, s.material, &def, &s.mpm));
   OK(mps_mpm_step(s.mpm, 3));
   assert_int_equal(h.warnings, 0);
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = 3.0; /* c = 11.6 m/s */
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = 3.0; /* c = 11.6 m/s */
   OK(mps_mpm_step(s.mpm, 3));
   expect_warning(&h, 1, "above the fraction courant = 0.5");
 }
@@ -305,7 +297,6 @@ TEST(tells_of_nan) {
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 static mps_status make(mps_context *c, int what) {
-  (void)what;
   DEF(particles, set, .spacing = 0.01);
   scoped_particles *particles = NULL;
   scoped_material *material = NULL;

@@ -33,10 +33,9 @@ static mps_status update(void *user, const mps_material_block *b) {
 
 static mps_material *law_of(mps_context *own, touchy *t) {
   static const char *const names[] = {"work"};
-  mps_material *out = NULL;
   DEF(material_user, law, .update = update, .user = t, .name = "touchy", .wave_modulus = 1.5e5,
       .history_count = 1, .history = names, .needs_deformation = 1);
-  OK(mps_material_create_user(own, &law, &out));
+  MAKE_KEPT(material, out, create_user, own, &law);
   return out;
 }
 
@@ -123,13 +122,10 @@ TEST(a_refused_step_has_not_happened) {
 /* Soil that flies towards the free end of the domain. */
 static mpm_scene flying(int32_t volumetric) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
-  mps_mpm_def def = mps_mpm_defaults();
   mpm_scene_box(&s, 0.1, 0.1, 0.28, 0.2);
-  def.cell = 0.02;
-  def.volumetric = volumetric;
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.3, def.upper[1] = 0.4;
   OK(mps_particles_set(s.particles, "velocity", 0, 3.0));
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .volumetric = volumetric,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.3, .upper[1] = 0.4);
   mpm_scene_side(&s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0);
   return s;
 }
@@ -182,11 +178,9 @@ TEST(a_step_that_loses_a_particle_is_whole) {
     OK(mps_mpm_get_totals(s.mpm, &t));
     NEAR(t.linear[0], 180 * 0.1 * 3.0, 1e-12 * 54.0); /* free flight: all have it */
     no_step_until_it_is_mended(&s);
-    mps_edit x;
-    OK(mps_particles_edit(s.particles, "position", &x));
-    for (int64_t k = 0; k < x.view.shape[0]; k++)
-      if (*mps_view_f64(&x.view, k, 0) > 0.3) *mps_edit_f64(&x, k, 0) = 0.2999;
-    OK(mps_particles_commit(s.particles, &x));
+    EDIT(x, s.particles, "position")
+      for (int64_t k = 0; k < x.view.shape[0]; k++)
+        if (*mps_view_f64(&x.view, k, 0) > 0.3) *mps_edit_f64(&x, k, 0) = 0.2999;
     OK(mps_mpm_step(s.mpm, 1));               /* put back by hand */
     for (int round = 0; round < 3; round++) { /* taken away */
       lose_one(&s);

@@ -11,8 +11,7 @@ static mps_view view_of(const double *xy, int64_t n, int32_t dim) {
                     .dtype = {2, 64, 1}};
 }
 
-TEST(bad_arguments_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(bad_arguments_are_refused) {
   mps_neighbours_def good = mps_neighbours_defaults();
   mps_neighbours *nb = NULL;
   assert_int_equal(good.dim, 2);
@@ -29,11 +28,10 @@ TEST(bad_arguments_are_refused) {
 TEST(bad_positions_leave_the_former_list) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   DEF(neighbours, def, .radius = 1.0);
-  mps_neighbours *nb = NULL;
   double xy[] = {0, 0, 0.5, 0, 3, 0};
   const int64_t *offsets, *indices;
   int64_t n = -1;
-  OK(mps_neighbours_create(context, &def, &nb));
+  MAKE_KEPT(neighbours, nb, create, context, &def);
   OK(mps_neighbours_lists(nb, &n, &offsets, NULL));
   assert_int_equal(n, 0);
   assert_int_equal(offsets[0], 0);
@@ -71,21 +69,16 @@ TEST(bad_positions_leave_the_former_list) {
 
 /* On the lattice with radius 1.5 D an inner particle has 8 neighbours in 2D, 18 in 3D; with
  * exactly D none: the radius itself is outside. */
-TEST(lattice_particles_have_the_neighbours_known_by_hand) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(lattice_particles_have_the_neighbours_known_by_hand) {
   for (int32_t dim = 2; dim <= 3; dim++) {
     DEF(particles, def, .dim = dim, .spacing = 1.0);
-    scoped_particles *set = NULL;
-    const double lo[3] = {-4, -4, -4}, hi[3] = {5, 5, 5};
-    OK(mps_particles_create(context, &def, &set));
-    OK(mps_particles_fill_box(set, lo, hi, NULL));
-    mps_view x;
-    OK(mps_particles_view(set, "position", &x));
+    MAKE(particles, set, create, context, &def);
+    OK(mps_particles_fill_box(set, AT(-4, -4, -4), AT(5, 5, 5), NULL));
+    mps_view x = view_field(set, "position");
     for (int ring = 0; ring < 2; ring++) {
       DEF(neighbours, nd, .dim = dim, .radius = ring ? 1.5 : 1.0);
-      mps_neighbours *nb = NULL;
       const int64_t *offsets, *indices, middle = mps_particles_count(set) / 2;
-      OK(mps_neighbours_create(context, &nd, &nb));
+      MAKE(neighbours, nb, create, context, &nd);
       OK(mps_neighbours_build(nb, &x));
       OK(mps_neighbours_lists(nb, NULL, &offsets, &indices));
       assert_int_equal(offsets[middle + 1] - offsets[middle], !ring ? 0 : dim == 2 ? 8 : 18);
@@ -95,7 +88,6 @@ TEST(lattice_particles_have_the_neighbours_known_by_hand) {
           assert_int_equal(indices[offsets[middle] + k], middle + expected[k]);
         assert_int_equal(offsets[1], 3); /* a corner */
       }
-      mps_neighbours_destroy(&nb);
     }
   }
 }
@@ -150,7 +142,7 @@ TEST(building_again_allocates_nothing) {
   test_allocator memory = {0};
   mps_context_def def = mps_context_defaults();
   scoped_context *context = NULL;
-  mps_neighbours *nb = NULL;
+  scoped_neighbours *nb = NULL;
   char text[128];
   double x[2000];
   test_allocator_use(&def, &memory);
@@ -169,5 +161,4 @@ TEST(building_again_allocates_nothing) {
     OK(mps_neighbours_build(nb, &view));
   }
   assert_int_equal(memory.calls, calls);
-  mps_neighbours_destroy(&nb);
 }

@@ -32,12 +32,9 @@ static const int64_t some[3] = {3, 4, 9};
 static const double nowhere[4] = {0.05, 0.62, 0.75, 0.62};
 
 static void make_set(scene *s, double spacing, double height) {
-  DEF(particles, def, .spacing = spacing);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, height};
-  OK(mps_particles_create(s->own, &def, &s->set));
-  OK(mps_particles_fill_box(s->set, lo, hi, NULL));
-  OK(mps_particles_set(s->set, "density", 0, 2000.0));
-  OK(mps_particles_set(s->set, "velocity", 0, 0.01));
+  USING(particles, mps_particles_create(s->own, &given, &s->set), .spacing = spacing);
+  OK(mps_particles_fill_box(s->set, AT(0.0, 0.0), AT(0.8, height), NULL));
+  SET_FIELDS(s->set, {"density", 2000.0}, {"velocity", 0.01});
   OK(mps_material_create_linear_elastic(s->own, 1e6, 0.25, &s->material));
   OK(mps_material_create_linear_elastic(s->own, 2e6, 0.25, &s->second));
 }
@@ -55,13 +52,10 @@ static void make_set(scene *s, double spacing, double height) {
 /* ---- WLS-MPM --------------------------------------------------------------------------------- */
 
 static void make_mpm(scene *s) {
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_body_def place = mps_body_defaults();
   mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
   mps_mpm_load_def load = mps_mpm_load_defaults();
   make_set(s, 0.1, 0.4);
-  def.cell = 0.2;
-  def.gravity[1] = -9.81;
+  DEF(mpm, def, .cell = 0.2, .gravity[1] = -9.81);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
   OK(mps_mpm_create(s->own, s->set, s->material, &def, &s->mpm));
   side.kind = MPS_BOUNDARY_ABSORBING;
@@ -71,7 +65,7 @@ static void make_mpm(scene *s) {
   OK(mps_mpm_add_boundary(s->mpm, &side, &s->number));
   load.ids = some + 1, load.id_count = 1, load.traction[0] = 10.0;
   OK(mps_mpm_add_load(s->mpm, &load, NULL));
-  place.position[0] = 0.4, place.position[1] = 0.57;
+  DEF(body, place, .position[0] = 0.4, .position[1] = 0.57);
   OK(mps_body_create_disc(s->own, &place, 0.15, &s->body));
   OK(mps_mpm_add_contact(s->mpm, s->body, NULL, &s->contact));
   place.position[0] = 0.1, place.position[1] = 0.7;
@@ -86,10 +80,8 @@ static void make_mpm(scene *s) {
 static void make_edited_mpm(scene *s) {
   make_mpm(s);
   OK(mps_particles_append(s->set, 2, nowhere));
-  mps_edit edit;
-  OK(mps_particles_edit(s->set, "density", &edit));
-  for (int64_t k = 0; k < edit.view.shape[0]; k++) *mps_edit_f64(&edit, k, 0) = 2000.0;
-  OK(mps_particles_commit(s->set, &edit));
+  EDIT(edit, s->set, "density")
+    for (int64_t k = 0; k < edit.view.shape[0]; k++) *mps_edit_f64(&edit, k, 0) = 2000.0;
   OK(mps_particles_set(s->set, "velocity", 1, 5.0));
 }
 
@@ -152,8 +144,7 @@ static mps_status append(scene *s) {
   return mps_particles_append(s->set, 200, x);
 }
 static mps_status fill_box(scene *s) {
-  const double lo[2] = {0.0, 0.6}, hi[2] = {0.2, 0.8};
-  return mps_particles_fill_box(s->set, lo, hi, NULL);
+  return mps_particles_fill_box(s->set, AT(0.0, 0.6), AT(0.2, 0.8), NULL);
 }
 static mps_status fill_ball(scene *s) {
   const double centre[2] = {0.3, 0.63};
@@ -171,7 +162,7 @@ static mps_status add_field(scene *s) { return mps_particles_add_field(s->set, "
 static mps_status set_field(scene *s) {
   return mps_particles_set(s->set, "external_force", 1, 2.0);
 }
-static mps_status edit_field(scene *s) {
+static mps_status edit_velocity(scene *s) {
   mps_edit edit;
   const mps_status status = mps_particles_edit(s->set, "velocity", &edit);
   if (status != MPS_OK) return status;
@@ -196,7 +187,6 @@ static mps_status set_geostatic(scene *s) {
   return mps_particles_set_geostatic(s->set, &def);
 }
 static mps_status no_stress(void *user, const double *x, double *stress) {
-  (void)user, (void)x;
   for (int c = 0; c < 6; c++) stress[c] = -1.0;
   return MPS_OK;
 }
@@ -244,14 +234,12 @@ static mps_status add_free_field(scene *s) {
 /* ---- explicit dynamics ----------------------------------------------------------------------- */
 
 static void make_dynamics(scene *s) {
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
   make_set(s, 0.1, 0.4);
   OK(create_dynamics(s));
-  base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.1;
-  base.dofs = MPS_DOF_X | MPS_DOF_Y;
+  DEF(dynamics_boundary, base, .lower[0] = base.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1,
+      .dofs = MPS_DOF_X | MPS_DOF_Y);
   OK(mps_dynamics_add_boundary(s->dynamics, &base, &s->number));
-  load.ids = some, load.id_count = 2, load.traction[0] = 10.0;
+  DEF(dynamics_load, load, .ids = some, .id_count = 2, .traction[0] = 10.0);
   OK(mps_dynamics_add_load(s->dynamics, &load, NULL));
   OK(mps_dynamics_step(s->dynamics, 3));
   OK(mps_dynamics_snapshot(s->dynamics, &s->snapshot));
@@ -264,8 +252,7 @@ static void make_hard_ground(scene *s) {
   const double lone[2] = {0.85, 0.05};
   make_set(s, 0.1, 0.4);
   OK(mps_particles_append(s->set, 1, lone));
-  OK(mps_particles_set(s->set, "density", 0, 1500.0));
-  OK(mps_particles_set(s->set, "damping", 0, 0.05));
+  SET_FIELDS(s->set, {"density", 1500.0}, {"damping", 0.05});
   OK(mps_dynamics_add_free_field(s->set, MPS_SIDE_X_LOWER, 3));
 }
 static void make_dug(scene *s) {
@@ -318,13 +305,11 @@ static mps_status dynamics_set_dt(scene *s) { return mps_dynamics_set_dt(s->dyna
 /* ---- implicit elasticity --------------------------------------------------------------------- */
 
 static void make_held_elastic(scene *s) {
-  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
-  mps_elastic_load_def weight = mps_elastic_load_defaults();
   make_set(s, 0.1, 0.4);
   OK(create_elastic(s));
-  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
   OK(mps_elastic_add_boundary(s->elastic, &foot, &s->number));
-  weight.kind = MPS_ELASTIC_LOAD_BODY, weight.all = 1, weight.force[1] = -9.81;
+  DEF(elastic_load, weight, .kind = MPS_ELASTIC_LOAD_BODY, .all = 1, .force[1] = -9.81);
   OK(mps_elastic_add_load(s->elastic, &weight, NULL));
 }
 static void make_solved_elastic(scene *s) {
@@ -333,10 +318,8 @@ static void make_solved_elastic(scene *s) {
   OK(mps_particles_set(s->set, "external_force", 0, 1.0));
 }
 static void make_moving_elastic(scene *s) {
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   make_held_elastic(s);
-  motion.dt = 4e-3;
-  OK(mps_elastic_start(s->elastic, &motion));
+  USING(elastic_motion, mps_elastic_start(s->elastic, &given), .dt = 4e-3);
   OK(mps_elastic_step(s->elastic, 2));
   OK(mps_elastic_snapshot(s->elastic, &s->snapshot));
   OK(mps_elastic_save(s->elastic, file, NULL));
@@ -417,7 +400,6 @@ static mps_status elastic_restore(scene *s) { return mps_elastic_restore(s->elas
 
 static void make_fluid(scene *s) {
   const double wall[3][4] = {{0, 0, 0, 1}, {0, 0, 1, 0}, {0.8, 0, -1, 0}};
-  mps_fluid_load_def load = mps_fluid_load_defaults();
   make_set(s, 0.05, 0.4);
   OK(create_fluid(s));
   DEF(material_newtonian, oil, .bulk_modulus = 1e6, .viscosity = 0.1);
@@ -431,7 +413,7 @@ static void make_fluid(scene *s) {
   }
   DEF(body, place, .position[0] = 0.4, .position[1] = 0.8);
   OK(mps_body_create_box(s->own, &place, 0.3, 0.2, &s->other));
-  load.ids = some, load.id_count = 2, load.acceleration[0] = 0.1;
+  DEF(fluid_load, load, .ids = some, .id_count = 2, .acceleration[0] = 0.1);
   OK(mps_fluid_add_load(s->fluid, &load, NULL));
   OK(mps_fluid_step(s->fluid, 3));
   OK(mps_fluid_snapshot(s->fluid, &s->snapshot));
@@ -499,7 +481,6 @@ typedef struct row {
 } row;
 
 static mps_status everywhere(void *user, const double *x, int32_t *inside) {
-  (void)user, (void)x;
   *inside = 1;
   return MPS_OK;
 }
@@ -532,7 +513,7 @@ static const row rows[] = {
     {make_bare, remove_some, "mps_particles_remove", false},
     {make_bare, add_field, "mps_particles_add_field", false},
     {make_bare, set_field, "mps_particles_set", false},
-    {make_bare, edit_field, "mps_particles_edit", false},
+    {make_bare, edit_velocity, "mps_particles_edit", false},
     {make_bare, set_array, "mps_particles_set_array", false},
     {make_bare, copy_set, "mps_particles_copy", false},
     {make_bare, set_geostatic, "mps_particles_set_geostatic", false},

@@ -7,10 +7,7 @@
 static const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 1.0};
 
 static mps_particles *block(void) {
-  DEF(particles, def, .spacing = 0.1);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  mps_particles *set = box_of(context, 0.1, lo, hi);
   OK(mps_particles_set(set, "density", 0, 1000.0));
   return set;
 }
@@ -34,9 +31,8 @@ TEST(of_the_set_alone) {
   assert_int_equal(count, -7);
   assert_int_equal(mps_particles_nearest(set, lo), -1);
   REFUSED(mps_particles_set_table(set, "temperature", 3, points, 1, values, NULL, NULL));
-  mps_geostatic_def rest = mps_geostatic_defaults();
   const mps_geostatic_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 1000.0};
-  rest.layer_count = 1, rest.layers = &layer;
+  DEF(geostatic, rest, .layer_count = 1, .layers = &layer);
   REFUSED(mps_particles_set_geostatic(set, &rest));
   mps_checkpoint info = mps_checkpoint_defaults();
   const mps_status written = mpsi_checkpoint_write(set, "open_edits.h5", &info);
@@ -53,11 +49,9 @@ TEST(of_the_set_alone) {
 
 TEST(of_wls_mpm) {
   scoped_particles *set = block();
-  scoped_material *law = NULL;
   scoped_mpm *mpm = NULL;
-  DEF(mpm, def, .cell = 0.2);
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
-  OK(mps_mpm_create(context, set, law, &def, &mpm));
+  MAKE(material, law, create_linear_elastic, context, 1e6, 0.3);
+  USING(mpm, mps_mpm_create(context, set, law, &given, &mpm), .cell = 0.2);
   mps_totals totals;
   mps_snapshot *kept = NULL;
   double value = -7.0;
@@ -77,12 +71,9 @@ TEST(of_wls_mpm) {
 
 TEST(of_dynamics) {
   scoped_particles *set = block();
-  scoped_dynamics *solver = NULL;
   mps_dynamics_def def = mps_dynamics_defaults();
-  OK(mps_particles_set(set, "shear_velocity", 0, 100.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  OK(mps_particles_set(set, "damping", 0, 0.0));
-  OK(mps_dynamics_create(context, set, &def, &solver));
+  SET_FIELDS(set, {"shear_velocity", 100.0}, {"pressure_velocity", 200.0}, {"damping", 0.0});
+  MAKE(dynamics, solver, create, context, set, &def);
   mps_totals totals;
   DEF(dynamics_boundary, base, .lower[0] = 0.0, .upper[0] = 2.0, .lower[1] = 0.0, .upper[1] = 0.1);
   mps_edit edit = open_field(set, "velocity");
@@ -96,9 +87,8 @@ TEST(of_dynamics) {
 
 TEST(of_the_fluid) {
   scoped_particles *set = block();
-  scoped_fluid *fluid = NULL;
   mps_fluid_def def = mps_fluid_defaults();
-  OK(mps_fluid_create(context, set, &def, &fluid));
+  MAKE(fluid, fluid, create, context, set, &def);
   DEF(fluid_boundary, bed, .kind = MPS_BOUNDARY_ROLLER, .normal[1] = 1.0);
   OK(mps_fluid_add_boundary(fluid, &bed, NULL));
   mps_totals totals;

@@ -9,8 +9,7 @@
 
 static mps_particles *make_set(int32_t dim) {
   DEF(particles, def, .dim = dim, .spacing = 0.5);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
+  MAKE_KEPT(particles, set, create, context, &def);
   return set;
 }
 
@@ -20,12 +19,6 @@ static mps_particles *make_five(void) {
   mps_particles *set = make_set(2);
   OK(mps_particles_append(set, 5, xy));
   return set;
-}
-
-static mps_view view_of(mps_particles *set, const char *name) {
-  mps_view view;
-  OK(mps_particles_view(set, name, &view));
-  return view;
 }
 
 TEST(bad_definitions_are_refused) {
@@ -55,7 +48,7 @@ TEST(a_new_set_is_empty_and_has_id_and_position) {
   assert_int_equal(info.flags, 0);
   REFUSES(mps_particles_get_field_info(set, 2, &info), "index is 2");
   REFUSES(mps_particles_get_field_info(set, -1, &info), "index is -1");
-  assert_int_equal(view_of(set, "position").shape[0], 0);
+  assert_int_equal(view_field(set, "position").shape[0], 0);
   const double x[3] = {0, 0, 0};
   assert_int_equal(mps_particles_nearest(set, x), -1);
   mps_particles_destroy(&set);
@@ -92,8 +85,8 @@ TEST(appending_keeps_what_was_there_and_zeroes_what_is_new) {
   }
   OK(mps_particles_append(set, 0, NULL));
   assert_int_equal(mps_particles_epoch(set), epoch);
-  const mps_view id = view_of(set, "id"), x = view_of(set, "position"),
-                 density = view_of(set, "density");
+  const mps_view id = view_field(set, "id"), x = view_field(set, "position"),
+                 density = view_field(set, "density");
   assert_int_equal(x.shape[0], 3000);
   assert_int_equal(x.shape[1], 2);
   assert_int_equal(x.epoch, epoch);
@@ -135,8 +128,7 @@ TEST(every_component_is_aligned_padded_and_staggered) {
       for (int d = 0; d < c; d++)
         assert_true((uintptr_t)column[c] % 4096 != (uintptr_t)column[d] % 4096);
     }
-    const double lo[3] = {0, 0, 0}, hi[3] = {8, 8, 4.0 * (round + 1)};
-    OK(mps_particles_fill_box(set, lo, hi, NULL));
+    OK(mps_particles_fill_box(set, AT(0, 0, 0), AT(8, 8, 4.0 * (round + 1)), NULL));
   }
   assert_null(mpsi_particles_column(set, "velocity", 3));
   assert_null(mpsi_particles_column(set, "velocity", -1));
@@ -152,15 +144,15 @@ TEST(fields_of_the_table_get_their_documented_shape) {
 #define CHECK(field, type, comps, unit_, meaning_, writer, valid, since)                           \
   OK(mps_particles_add_field(set, #field, 0));                                                     \
   OK(mps_particles_add_field(set, #field, mpsi_field_components(comps, dim)));                     \
-  assert_int_equal(view_of(set, #field).dtype.code, type);                                         \
-  assert_int_equal(view_of(set, #field).dtype.bits, 64);                                           \
-  assert_int_equal(view_of(set, #field).shape[1], mpsi_field_components(comps, dim));
+  assert_int_equal(view_field(set, #field).dtype.code, type);                                      \
+  assert_int_equal(view_field(set, #field).dtype.bits, 64);                                        \
+  assert_int_equal(view_field(set, #field).shape[1], mpsi_field_components(comps, dim));
     MPSI_FIELD_TABLE(CHECK)
 #undef CHECK
 #undef I64
 #undef F64
-    assert_int_equal(view_of(set, "rotation").shape[1], dim == 2 ? 1 : 3);
-    assert_int_equal(view_of(set, "restoring_old").shape[1], dim == 2 ? 3 : 6);
+    assert_int_equal(view_field(set, "rotation").shape[1], dim == 2 ? 1 : 3);
+    assert_int_equal(view_field(set, "restoring_old").shape[1], dim == 2 ? 3 : 6);
     FAILS(mps_particles_add_field(set, "velocity", 1), MPS_ERROR_FIELD,
           "components of field 'velocity' is 1");
     mps_particles_destroy(&set);
@@ -186,7 +178,7 @@ TEST(the_callers_own_fields_follow_their_rules) {
   REFUSES(mps_particles_add_field(set, "user._T2", 0), "is 0");
   REFUSES(mps_particles_add_field(set, "user.new", 17), "is 17");
   assert_int_equal(mps_particles_epoch(set), epoch);
-  const mps_view t = view_of(set, "user._T2");
+  const mps_view t = view_field(set, "user._T2");
   assert_int_equal(t.shape[0], 5);
   for (int c = 0; c < 2; c++)
     for (int i = 0; i < 5; i++) assert_true(*mps_view_f64(&t, i, c) == 0.0);
@@ -230,7 +222,7 @@ TEST(an_unknown_field_is_an_error_that_lists_the_known) {
 TEST(setting_adds_a_known_field_and_fills_one_component) {
   scoped_particles *set = make_five();
   OK(mps_particles_set(set, "velocity", 1, -2.5));
-  const mps_view v = view_of(set, "velocity");
+  const mps_view v = view_field(set, "velocity");
   for (int i = 0; i < 5; i++) {
     assert_true(*mps_view_f64(&v, i, 0) == 0.0);
     assert_true(*mps_view_f64(&v, i, 1) == -2.5);
@@ -264,7 +256,7 @@ TEST(sorting_takes_every_field_along) {
   const uint64_t epoch = mps_particles_epoch(set);
   OK(mpsi_particles_permute(set, __func__, order));
   assert_true(mps_particles_epoch(set) != epoch);
-  const mps_view id = view_of(set, "id"), x = view_of(set, "position");
+  const mps_view id = view_field(set, "id"), x = view_field(set, "position");
   for (int k = 0; k < 5; k++) {
     assert_int_equal(*mps_view_i64(&id, k, 0), order[k]);
     assert_int_equal(*mps_view_i64(&group.view, k, 0), 100 + order[k]);
@@ -370,13 +362,11 @@ TEST(every_allocation_failure_is_reported_and_changes_nothing) {
     }
     memory.refuse_at = 0;
     if (set) { /* the set is whole: the same goes well now, up to the sites already taken */
-      mps_view x;
-      OK(mps_particles_view(set, "position", &x));
+      mps_view x = view_field(set, "position");
       for (int64_t i = 0; i < x.shape[0]; i++) assert_true(isfinite(*mps_view_f64(&x, i, 1)));
-      const double lo[2] = {0, 0}, hi[2] = {40, 80};
       int64_t added = -1;
       const int64_t before = mps_particles_count(set);
-      OK(mps_particles_fill_box(set, lo, hi, &added));
+      OK(mps_particles_fill_box(set, AT(0, 0), AT(40, 80), &added));
       assert_int_equal(added, before >= 3203 ? 0 : 3200);
     }
     mps_particles_destroy(&set);

@@ -18,19 +18,13 @@ static mpm_scene begin(int32_t geometry, int cells, double high, double stiffnes
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double h = 1.0 / cells, lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, high * h, 1.0};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * h, 0.0, 0.0, YOUNG);
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_pore_water_def water = mps_pore_water_defaults();
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   OK(mps_particles_set(s.particles, "density", 0, 2000.0));
-  def.geometry = geometry;
-  def.cell = h, def.courant = 0.5;
+  DEF(mpm, def, .geometry = geometry, .cell = h, .courant = 0.5);
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  water.scheme = MPS_PORE_SCHEME_IMPLICIT;
-  water.porosity = 0.4;
-  water.bulk = 0.4 * stiffness * MODULUS;
-  water.permeability = 1e-4;
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .scheme = MPS_PORE_SCHEME_IMPLICIT,
+        .porosity = 0.4, .bulk = 0.4 * stiffness * MODULUS, .permeability = 1e-4);
   OK(mps_particles_set(s.particles, "pore_pressure", 0, 1e3));
   OK(mps_particles_set(s.particles, "stress", 1, -1e3));
   return s;
@@ -191,8 +185,7 @@ TEST(reports_errors) {
   assert_true(report.iterations > 0 && report.iterations <= 16);
   mpm_scene_end(&s);
   s = mpm_scene_begin(context, 0.1, 0.0, 0.0, YOUNG);
-  DEF(mpm, def, .cell = 0.2);
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 1.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.2);
   assert_int_equal(mps_mpm_get_pore_report(s.mpm, &report), MPS_ERROR_STATE);
 }

@@ -38,10 +38,9 @@ TEST(fields_are_checked) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
   OK(mps_particles_set(c.s.particles, "porosity", 0, 0.4));
   OK(mps_particles_add_field(c.s.particles, "permeability", 0));
-  mps_edit k = mpm_scene_edit(&c.s, "permeability");
-  for (int64_t i = 0; i < mps_particles_count(c.s.particles); i++)
-    *mps_edit_f64(&k, i, 0) = i == 3 ? 0.0 : 1e-4; /* one undrained among drained ones */
-  mpm_scene_commit(&c.s, &k);
+  EDIT(k, c.s.particles, "permeability")
+    for (int64_t i = 0; i < mps_particles_count(c.s.particles); i++)
+      *mps_edit_f64(&k, i, 0) = i == 3 ? 0.0 : 1e-4; /* one undrained among drained ones */
   mps_pore_water_def def = mps_pore_water_defaults();
   refused(&c, &def, MPS_ERROR_ARGUMENT, "'permeability' of particle");
   OK(mps_particles_set(c.s.particles, "permeability", 0, 1e-4));
@@ -58,10 +57,8 @@ TEST(fields_are_checked) {
 TEST(faces_are_checked) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
   mps_pore_face_def face = mps_pore_face_defaults();
-  mps_pore_water_def water = mps_pore_water_defaults();
   assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_STATE);
-  water.porosity = 0.4;
-  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(c.s.mpm, &given), .porosity = 0.4);
   for (int32_t k = 0; k < MPS_PORE_MAX_FACES; k++) OK(mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
   assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_mpm_set_pore_face(c.s.mpm, MPS_PORE_MAX_FACES, &face), MPS_ERROR_ARGUMENT);
@@ -75,13 +72,10 @@ TEST(faces_are_checked) {
 static mpm_scene block(mps_context *where, int32_t scheme) {
   mpm_scene s = mpm_scene_begin(where, 0.01, 0.0, 0.03, 1e5);
   mpm_scene_box(&s, 0.1, 0.03, 0.9, 0.73);
-  DEF(mpm, def, .cell = 0.02);
-  def.lower[0] = def.lower[1] = 0.0;
-  def.gravity[1] = -9.81;
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0, .gravity[1] = -9.81);
   mpm_scene_solve(&s, &def);
-  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .permeability = 1e-4, .exponent = 2.0,
-      .ratio_slope = 0.5);
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .scheme = scheme, .porosity = 0.4,
+        .permeability = 1e-4, .exponent = 2.0, .ratio_slope = 0.5);
   return s;
 }
 
@@ -152,9 +146,8 @@ typedef struct touchy {
 static touchy touchy_begin(int32_t scheme, const bool *refuses) {
   static const int64_t ids[] = {7, 1000, 2000};
   touchy t = {.s = block(context, scheme)};
-  mps_material_user_def law = mps_material_user_defaults();
   mps_body_def def = mps_body_defaults(); /* stands still */
-  law.update = refusing, law.user = (void *)refuses, law.wave_modulus = 1e5;
+  DEF(material_user, law, .update = refusing, .user = (void *)refuses, .wave_modulus = 1e5);
   OK(mps_material_create_user(context, &law, &t.law));
   OK(mps_mpm_set_material(t.s.mpm, t.law, ids, 3));
   def.position[0] = 0.5, def.position[1] = 0.03 - 0.05;
@@ -238,8 +231,8 @@ TEST(undrained_ground_settles) {
 static void lets_water_out(bool lid, int32_t scheme) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 8.0, 0.0, 10.0);
   DEF(pore_water, water, .porosity = 0.4, .permeability = 1e-3, .scheme = scheme);
-  mps_body *body = NULL;
-  mps_contact *contact = NULL;
+  scoped_body *body = NULL;
+  scoped_contact *contact = NULL;
   mps_pore_budget budget;
   OK(mps_mpm_add_pore_water(c.s.mpm, &water));
   OK(mps_particles_set(c.s.particles, "pore_pressure", 0, 1000.0));
@@ -256,8 +249,6 @@ static void lets_water_out(bool lid, int32_t scheme) {
     NEAR(budget.left + budget.entered, 0.0, 0.0);
   else
     assert_true(budget.drained > 0.0);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&body);
   mpm_scene_end(&c.s);
 }
 
@@ -301,18 +292,15 @@ TEST(scenes_without_a_matrix_are_refused) {
     pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
     DEF(pore_water, water, .porosity = 0.4, .scheme = MPS_PORE_SCHEME_IMPLICIT);
     DEF(body, def, .position[1] = 1.5);
-    mps_body *body = NULL;
-    mps_contact *contact = NULL;
+    scoped_contact *contact = NULL;
     OK(mps_mpm_add_pore_water(c.s.mpm, &water));
-    OK(mps_body_create_box(context, &def, 1.0, which == 0 ? 0.3 : 0.6, &body));
+    MAKE(body, body, create_box, context, &def, 1.0, which == 0 ? 0.3 : 0.6);
     OK(mps_mpm_add_contact(c.s.mpm, body, NULL, &contact));
     const mps_status status = mps_mpm_step(c.s.mpm, 1);
     assert_int_equal(status, which == 0 ? MPS_ERROR_STATE : MPS_OK);
     if (which == 0)
       assert_non_null(strstr(mps_context_error(context)->message, "thinner than 2 cells"));
     assert_int_equal(mps_mpm_steps(c.s.mpm), which == 0 ? 0 : 1);
-    mps_contact_destroy(&contact);
-    mps_body_destroy(&body);
     mpm_scene_end(&c.s);
   }
 }
@@ -326,14 +314,13 @@ TEST(impossible_steps_change_no_bit) {
     for (int which = 0; which < 2; which++) { /* a fast particle; all of them towards the floor */
       const bool no = false;
       touchy a = touchy_begin(scheme, &no), b = touchy_begin(scheme, &no);
-      mps_view v;
       mps_edit edit;
       OK(mps_mpm_step(a.s.mpm, 8));
       OK(mps_mpm_step(b.s.mpm, 8));
       const double dt = mps_mpm_dt(b.s.mpm), fast = which == 0 ? 1e5 : 1e4;
       OK(mps_mpm_set_dt(a.s.mpm, dt));
       OK(mps_mpm_set_dt(b.s.mpm, dt));
-      OK(mps_particles_view(a.s.particles, "velocity", &v));
+      mps_view v = view_field(a.s.particles, "velocity");
       OK(mps_particles_edit(b.s.particles, "velocity", &edit));
       for (int64_t k = 0; k < v.shape[0]; k++)
         if (which == 1 || k == v.shape[0] / 2) *mps_edit_f64(&edit, k, 1) = -fast;

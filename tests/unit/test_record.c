@@ -8,7 +8,6 @@
 
 #include <locale.h>
 
-#define PI 3.14159265358979323846
 #define G 9.80665
 #define FILE_TMP TEST_TMP "/record.tmp"
 
@@ -71,10 +70,9 @@ TEST(the_samples_in_three_formats_are_the_known_motion) {
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     for (int automatic = 0; automatic < 2; automatic++) {
-      DEF(signal_record, def,
-          .format = automatic ? MPS_SIGNAL_RECORD_FORMAT_AUTO : files[i].format);
       scoped_signal *signal = NULL;
-      OK(mps_signal_create_record(context, files[i].path, &def, &signal));
+      USING(signal_record, mps_signal_create_record(context, files[i].path, &given, &signal),
+            .format = automatic ? MPS_SIGNAL_RECORD_FORMAT_AUTO : files[i].format);
       check_known(signal, 0.01, files[i].last, files[i].extra);
     }
   scoped_signal *signal = NULL; /* without a definition: the defaults */
@@ -292,108 +290,86 @@ TEST(numbers_are_rounded_correctly) {
 
 typedef struct bad_file {
   const char *content;
-  int32_t format;
   const char *reason; /* what follows the path */
+  int32_t format;     /* 0: recognised */
 } bad_file;
 
 #define AT2(npts, data) "A\nB\nUNITS OF G\n" npts "\n" data
 #define DIGITS_32 "11111111111111111111111111111111"
 
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 static const bad_file bad_files[] = {
-    {"", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: not recognised as AT2"},
-    {"\n\n \n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: not recognised as AT2"},
-    {"hello\nworld\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: not recognised as AT2"},
+    {"", ":1: not recognised as AT2"},
+    {"\n\n \n", ":1: not recognised as AT2"},
+    {"hello\nworld\n", ":1: not recognised as AT2"},
     /* AT2 */
-    {"A\nB\n", MPS_SIGNAL_RECORD_FORMAT_AT2, ":2: no line with NPTS= and DT= ends the header"},
-    {"A\nB\nVELOCITY TIME SERIES\nNPTS= 2, DT= 1\n1 2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {"A\nB\n", ":2: no line with NPTS= and DT= ends the header", MPS_SIGNAL_RECORD_FORMAT_AT2},
+    {"A\nB\nVELOCITY TIME SERIES\nNPTS= 2, DT= 1\n1 2\n",
      ":3: \"VELOCITY TIME SERIES\": an AT2 file of accelerations"},
-    {"A\nB\nIN UNITS OF FURLONGS\nNPTS= 2, DT= 1\n1 2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {"A\nB\nIN UNITS OF FURLONGS\nNPTS= 2, DT= 1\n1 2\n",
      ":3: the unit \"FURLONGS\" is not known: accelerations are in m/s2, g"},
-    {AT2("no numbers", ""), MPS_SIGNAL_RECORD_FORMAT_AT2, ":4: no line with NPTS= and DT="},
-    {AT2("NPTS= 4000, DT= fast", ""), MPS_SIGNAL_RECORD_FORMAT_AT2,
-     ":4: \"NPTS= 4000, DT= fast\": NPTS="},
-    {AT2("NPTS= 1, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":4: NPTS is 1, must be a whole number in 2 to "},
-    {AT2("NPTS= 2.5, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is 2.5"},
-    {AT2("NPTS= 1e99, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is 1e+99"},
-    {AT2("NPTS= 1e999, DT= 1", "1"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: NPTS is inf"},
-    {AT2("NPTS= 2, DT= 0 SEC", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: DT is 0 s"},
-    {AT2("NPTS= 2, DT= -.5 SEC", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: DT is -0.5 s"},
-    {AT2("NPTS= 5, DT= 1", "1 2\n3 4\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {AT2("no numbers", ""), ":4: no line with NPTS= and DT=", MPS_SIGNAL_RECORD_FORMAT_AT2},
+    {AT2("NPTS= 4000, DT= fast", ""),
+     ":4: \"NPTS= 4000, DT= fast\": NPTS=", MPS_SIGNAL_RECORD_FORMAT_AT2},
+    {AT2("NPTS= 1, DT= 1", "1"), ":4: NPTS is 1, must be a whole number in 2 to "},
+    {AT2("NPTS= 2.5, DT= 1", "1"), ":4: NPTS is 2.5"},
+    {AT2("NPTS= 1e99, DT= 1", "1"), ":4: NPTS is 1e+99"},
+    {AT2("NPTS= 1e999, DT= 1", "1"), ":4: NPTS is inf"},
+    {AT2("NPTS= 2, DT= 0 SEC", "1 2"), ":4: DT is 0 s"},
+    {AT2("NPTS= 2, DT= -.5 SEC", "1 2"), ":4: DT is -0.5 s"},
+    {AT2("NPTS= 5, DT= 1", "1 2\n3 4\n"),
      ":6: the file ends after 4 values, the header announces 5"},
-    {AT2("NPTS= 3, DT= 1", "1 2\n3 4\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":6: more values than the 3 that the header"},
-    {AT2("NPTS= 3, DT= 1", "1 2\n.1234E-\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {AT2("NPTS= 3, DT= 1", "1 2\n3 4\n"), ":6: more values than the 3 that the header"},
+    {AT2("NPTS= 3, DT= 1", "1 2\n.1234E-\n"),
      ":6: the acceleration is \".1234E-\", which is not a number"},
-    {AT2("NPTS= 3, DT= 1", "1 nan 3\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the acceleration is \"nan\""},
-    {AT2("NPTS= 3, DT= 1", "1 2\n-inf"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":6: the acceleration is \"-inf\""},
-    {AT2("NPTS= 3, DT= 1", "1 0x10 3"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the acceleration is \"0x10\""},
-    {AT2("NPTS= 3, DT= 1", "1 1e999 3"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the acceleration is 1e999, which"},
-    {AT2("NPTS= 3, DT= 1", "1 . 3"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the acceleration is \".\", which"},
-    {AT2("NPTS= 3, DT= 1", "1 \x01\xff 3"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the acceleration is \"??\""},
+    {AT2("NPTS= 3, DT= 1", "1 nan 3\n"), ":5: the acceleration is \"nan\""},
+    {AT2("NPTS= 3, DT= 1", "1 2\n-inf"), ":6: the acceleration is \"-inf\""},
+    {AT2("NPTS= 3, DT= 1", "1 0x10 3"), ":5: the acceleration is \"0x10\""},
+    {AT2("NPTS= 3, DT= 1", "1 1e999 3"), ":5: the acceleration is 1e999, which"},
+    {AT2("NPTS= 3, DT= 1", "1 . 3"), ":5: the acceleration is \".\", which"},
+    {AT2("NPTS= 3, DT= 1", "1 \x01\xff 3"), ":5: the acceleration is \"??\""},
     {AT2("NPTS= 2, DT= 1", "1 " DIGITS_32 DIGITS_32 DIGITS_32 DIGITS_32),
-     MPS_SIGNAL_RECORD_FORMAT_AUTO, ":5: the acceleration is \"" DIGITS_32 "1111...\", which"},
+     ":5: the acceleration is \"" DIGITS_32 "1111...\", which"},
     /* K-NET */
-    {"Origin Time\nScale Factor 1(gal)/1\n1 2 3", MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":3: no \"Memo.\" line"},
-    {"Origin Time\nScale Factor 1(gal)/1\nMemo.\n1 2", MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {"Origin Time\nScale Factor 1(gal)/1\n1 2 3", ":3: no \"Memo.\" line"},
+    {"Origin Time\nScale Factor 1(gal)/1\nMemo.\n1 2",
      ":3: the header ends without \"Sampling Freq\""},
-    {"Origin Time\nSampling Freq(Hz) 100Hz\nMemo.\n1 2", MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {"Origin Time\nSampling Freq(Hz) 100Hz\nMemo.\n1 2",
      ":3: the header ends without \"Scale Factor\""},
-    {KNET("fast", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":3: Sampling Freq is \"fast\", a number > 0"},
-    {KNET("0Hz", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":3: Sampling Freq is \"0Hz\""},
-    {KNET("1e-320Hz", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO, "too small"},
-    {KNET("1Hz", "-2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":4: Duration Time is \"-2\""},
-    {KNET("1Hz", "2", "(gal)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: Scale Factor is \"(gal)/1\""},
-    {KNET("1Hz", "2", "1(cm)/1", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {KNET("fast", "2", "1(gal)/1", "1 2"), ":3: Sampling Freq is \"fast\", a number > 0"},
+    {KNET("0Hz", "2", "1(gal)/1", "1 2"), ":3: Sampling Freq is \"0Hz\""},
+    {KNET("1e-320Hz", "2", "1(gal)/1", "1 2"), "too small"},
+    {KNET("1Hz", "-2", "1(gal)/1", "1 2"), ":4: Duration Time is \"-2\""},
+    {KNET("1Hz", "2", "(gal)/1", "1 2"), ":5: Scale Factor is \"(gal)/1\""},
+    {KNET("1Hz", "2", "1(cm)/1", "1 2"),
      ":5: the unit of Scale Factor is \"(cm)\", (gal)/counts is expected"},
-    {KNET("1Hz", "2", "1(gal)/x", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: the divisor of Scale Factor is"},
-    {KNET("1Hz", "2", "1e300(gal)/1e-300", "1 2"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":5: Scale Factor is 1e+300/1e-300, outside"},
-    {KNET("1Hz", "4", "1(gal)/1", "1 2\n3\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":8: the file has 3 values, 4 s at 1 Hz announce 4"},
-    {KNET("2Hz", "1", "1(gal)/1", "1 2 3 4\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
+    {KNET("1Hz", "2", "1(gal)/x", "1 2"), ":5: the divisor of Scale Factor is"},
+    {KNET("1Hz", "2", "1e300(gal)/1e-300", "1 2"), ":5: Scale Factor is 1e+300/1e-300, outside"},
+    {KNET("1Hz", "4", "1(gal)/1", "1 2\n3\n"), ":8: the file has 3 values, 4 s at 1 Hz announce 4"},
+    {KNET("2Hz", "1", "1(gal)/1", "1 2 3 4\n"),
      ":7: the file has 4 values, 1 s at 2 Hz announce 2"},
-    {KNET("1Hz", "2", "1(gal)/1", "1\n2.5\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":8: the count is \"2.5\", a whole number"},
-    {KNET("1Hz", "2", "1(gal)/1", "1\n2147483649\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":8: the count is \"2147483649\""},
-    {KNET("1Hz", "2", "1(gal)/1", "1 x\n"), MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":7: the count is \"x\""},
+    {KNET("1Hz", "2", "1(gal)/1", "1\n2.5\n"), ":8: the count is \"2.5\", a whole number"},
+    {KNET("1Hz", "2", "1(gal)/1", "1\n2147483649\n"), ":8: the count is \"2147483649\""},
+    {KNET("1Hz", "2", "1(gal)/1", "1 x\n"), ":7: the count is \"x\""},
     /* CSV */
-    {"", MPS_SIGNAL_RECORD_FORMAT_CSV, ":0: the file has no samples, at least 2 are needed"},
-    {"t,a\n0,1\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":2: the file has 1 sample, at least 2 are needed"},
-    {"t,a\nu,b\n0,1\n", MPS_SIGNAL_RECORD_FORMAT_CSV, ":2: no column is named time or t"},
-    {"0,1\n1,x\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the value is \"x\", which is not a number"},
-    {"0,1\n1\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the value is missing"},
-    {"0,1\n1,\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the value is missing"},
-    {"0,1\n1,,2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the value is missing"},
-    {"0,1\n,2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the time is missing"},
-    {"0 1 2\n1 2 3\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":1: without names two columns are expected, time and value: \"2\""},
-    {"0,01;1,5\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: the file has 1 sample"},
-    {"0,1\n1,1\n#\n1,2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":4: time 1 does not come after 1"},
-    {"0,1\n1,1\n0.5,2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":3: time 0.5 does not come after 1"},
-    {"-1e16,1\n0,1\n0.25,2\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":3: time 0.25 does not come after 0"},
-    {"-1e308,1\n1e308,1\n", MPS_SIGNAL_RECORD_FORMAT_AUTO,
-     ":2: time 1e+308 is too far from the first"},
-    {"nan,1\n1,1\n", MPS_SIGNAL_RECORD_FORMAT_CSV, ":1: the time is \"nan\""},
-    {"0,1\n1,-Infinity\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":2: the value is \"-Infinity\""},
-    {"0.1.2,1\n1,1\n", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: the time is \"0.1.2\""},
-    {"0,1\r1,1\r", MPS_SIGNAL_RECORD_FORMAT_AUTO, ":1: lines end with CR alone"},
+    {"", ":0: the file has no samples, at least 2 are needed", MPS_SIGNAL_RECORD_FORMAT_CSV},
+    {"t,a\n0,1\n", ":2: the file has 1 sample, at least 2 are needed"},
+    {"t,a\nu,b\n0,1\n", ":2: no column is named time or t", MPS_SIGNAL_RECORD_FORMAT_CSV},
+    {"0,1\n1,x\n", ":2: the value is \"x\", which is not a number"},
+    {"0,1\n1\n", ":2: the value is missing"},
+    {"0,1\n1,\n", ":2: the value is missing"},
+    {"0,1\n1,,2\n", ":2: the value is missing"},
+    {"0,1\n,2\n", ":2: the time is missing"},
+    {"0 1 2\n1 2 3\n", ":1: without names two columns are expected, time and value: \"2\""},
+    {"0,01;1,5\n", ":1: the file has 1 sample"},
+    {"0,1\n1,1\n#\n1,2\n", ":4: time 1 does not come after 1"},
+    {"0,1\n1,1\n0.5,2\n", ":3: time 0.5 does not come after 1"},
+    {"-1e16,1\n0,1\n0.25,2\n", ":3: time 0.25 does not come after 0"},
+    {"-1e308,1\n1e308,1\n", ":2: time 1e+308 is too far from the first"},
+    {"nan,1\n1,1\n", ":1: the time is \"nan\"", MPS_SIGNAL_RECORD_FORMAT_CSV},
+    {"0,1\n1,-Infinity\n", ":2: the value is \"-Infinity\""},
+    {"0.1.2,1\n1,1\n", ":1: the time is \"0.1.2\""},
+    {"0,1\r1,1\r", ":1: lines end with CR alone"},
 };
 
 TEST(every_malformed_file_is_refused_with_its_line) {

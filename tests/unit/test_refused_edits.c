@@ -9,28 +9,20 @@
 SEEN_SOLVER(dynamics)
 
 static mps_particles *block(mps_context *own, double velocity) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_particles_set(set, "velocity", 0, velocity));
-  OK(mps_particles_set(set, "shear_velocity", 0, 20.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 40.0));
+  mps_particles *set = box_of(own, 0.1, AT(0.0, 0.0), AT(0.4, 0.4));
+  SET_FIELDS(set, {"density", 1000.0}, {"velocity", velocity}, {"shear_velocity", 20.0},
+             {"pressure_velocity", 40.0});
   return set;
 }
 
 /* Its lowest row is held at a place that a signal gives. */
 static mps_dynamics *held_block(mps_context *own, mps_particles *set, bool watch) {
   DEF(dynamics, def, .watch_damping = watch);
-  mps_dynamics_boundary_def bottom = mps_dynamics_boundary_defaults();
-  mps_dynamics *made = NULL;
   if (watch) OK(mps_particles_set(set, "damping", 0, 0.0)); /* there, and of no effect so far */
-  bottom.lower[0] = bottom.lower[1] = 0.0, bottom.upper[0] = 0.4, bottom.upper[1] = 0.1;
-  bottom.dofs = MPS_DOF_X | MPS_DOF_Y;
-  OK(mps_dynamics_create(own, set, &def, &made));
-  OK(mps_dynamics_add_boundary(made, &bottom, NULL));
+  MAKE_KEPT(dynamics, made, create, own, set, &def);
+  USING(dynamics_boundary, mps_dynamics_add_boundary(made, &given, NULL),
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.4, .upper[1] = 0.1,
+        .dofs = MPS_DOF_X | MPS_DOF_Y);
   OK(mps_dynamics_set_dt(made, 1e-4));
   return made;
 }
@@ -94,7 +86,6 @@ static mps_status to_stiff(mps_dynamics *dynamics, const mps_material *stiff) {
 
 /* Its field "damping" is zero: only now does the solver need memory to watch what damping takes. */
 static mps_status to_damped(mps_dynamics *dynamics, const mps_material *stiff) {
-  (void)stiff;
   return mps_particles_set(mps_dynamics_particles(dynamics), "damping", 0, 0.05);
 }
 
@@ -106,9 +97,8 @@ static void refuse_memory_within(mps_status (*change)(mps_dynamics *, const mps_
     mps_context *own = on(&memory);
     mps_particles *set = block(own, 0.1);
     mps_dynamics *dynamics = held_block(own, set, true);
-    mps_material *stiff = NULL;
     mps_totals totals;
-    OK(mps_material_create_linear_elastic(own, 4e6, 0.3, &stiff));
+    MAKE_KEPT(material, stiff, create_linear_elastic, own, 4e6, 0.3);
     OK(mps_dynamics_step(dynamics, 3));
     OK(mps_dynamics_get_totals(dynamics, &totals));
     const uint64_t before = seen_dynamics(dynamics, false);
@@ -135,12 +125,10 @@ TEST(fields_of_a_material_that_is_refused_stay) {
   scoped_particles *set = block(own, 0.0);
   DEF(mpm, def, .cell = 0.2);
   scoped_material *law = NULL, *other = NULL;
-  scoped_mpm *mpm = NULL;
-  mps_view view;
   OK(mps_material_create_linear_elastic(own, 1e6, 0.3, &law));
   OK(mps_material_create_linear_elastic(own, 2e6, 0.2, &other));
-  OK(mps_mpm_create(own, set, law, &def, &mpm));
-  OK(mps_particles_view(set, "volume", &view));
+  MAKE(mpm, mpm, create, own, set, law, &def);
+  mps_view view = view_field(set, "volume");
   *(double *)(uintptr_t)mps_view_f64(&view, 2, 0) = -1.0; /* as a run leaves it that has diverged */
   const uint64_t before = seen_values(set);
   FAILS_ON(own, mps_particles_set_material(set, other, 1500.0, NULL, 0), MPS_ERROR_ARGUMENT,
@@ -161,8 +149,7 @@ TEST(no_motion_begins_at_a_speed_without_an_energy) {
   scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scoped_particles *set = block(own, 0.0);
   scoped_dynamics *dynamics = held_block(own, set, false);
-  mps_view view;
-  OK(mps_particles_view(set, "velocity", &view));
+  mps_view view = view_field(set, "velocity");
   *(double *)(uintptr_t)mps_view_f64(&view, 12, 0) = 1.1e100; /* as a run leaves it */
   FAILS_ON(own, mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_ARGUMENT, "beyond 1e+100 m/s");
   OK(mps_particles_set(set, "velocity", 0, 1.0));
@@ -175,9 +162,8 @@ TEST(accelerations_that_are_not_finite_are_not_shown) {
   scoped_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scoped_particles *set = block(own, 0.0);
   scoped_dynamics *dynamics = held_block(own, set, false);
-  mps_view view;
   OK(mps_dynamics_refresh(dynamics));
-  OK(mps_particles_view(set, "displacement", &view));
+  mps_view view = view_field(set, "displacement");
   for (int64_t i = 0; i < view.shape[0]; i++) /* as a run leaves it */
     *(double *)(uintptr_t)mps_view_f64(&view, i, 0) = i % 2 ? 1e308 : -1e308;
   OK(mps_dynamics_restart(dynamics, 0.0));
@@ -196,13 +182,11 @@ TEST(ids_to_come_follow_those_that_are_gone) {
   team t;
   team_begin(&t, 1);
   const mps_domain_def def = team_domain_def(&t, 0);
-  scoped_domain *domain = NULL;
-  OK(mps_domain_create(own, &def, &domain));
+  MAKE(domain, domain, create, own, &def);
   for (int again = 0; again < 2; again++) {
-    DEF(particles, set_def, .spacing = 0.1);
     const double places[20] = {0};
     scoped_particles *set = NULL, *whole = NULL;
-    OK(mps_particles_create(own, &set_def, &set));
+    USING(particles, mps_particles_create(own, &given, &set), .spacing = 0.1);
     for (int part = 0; part < 2; part++) {
       OK(mps_particles_append(set, 5, places));
       /* `again`: it has the same particles already when more were added and removed */

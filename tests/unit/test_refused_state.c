@@ -6,22 +6,15 @@
 #include "unchanged.h"
 
 static mps_particles *block(double velocity) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_particles_set(set, "velocity", 0, velocity));
+  mps_particles *set = box_of(context, 0.1, AT(0.0, 0.0), AT(0.4, 0.4));
+  SET_FIELDS(set, {"density", 1000.0}, {"velocity", velocity});
   return set;
 }
 
 static mps_dynamics *dynamics_on(mps_particles *set, int32_t integrator, double divergence) {
   DEF(dynamics, def, .integrator = integrator, .divergence = divergence);
-  mps_dynamics *made = NULL;
-  OK(mps_particles_set(set, "shear_velocity", 0, 20.0));
-  OK(mps_particles_set(set, "pressure_velocity", 0, 40.0));
-  OK(mps_dynamics_create(context, set, &def, &made));
+  SET_FIELDS(set, {"shear_velocity", 20.0}, {"pressure_velocity", 40.0});
+  MAKE_KEPT(dynamics, made, create, context, set, &def);
   return made;
 }
 
@@ -37,9 +30,8 @@ TEST(explicit_dynamics_ends_with_divergence) {
   for (int k = 0; k < 9; k++) {
     scoped_particles *set = block(0.0);
     const int64_t id = 5;
-    mps_dynamics_load_def load = mps_dynamics_load_defaults();
     scoped_dynamics *dynamics = dynamics_on(set, integrators[k % 3], 1e300);
-    load.ids = &id, load.id_count = 1, load.traction[0] = strong[k / 3];
+    DEF(dynamics_load, load, .ids = &id, .id_count = 1, .traction[0] = strong[k / 3]);
     OK(mps_dynamics_add_load(dynamics, &load, NULL));
     OK(mps_dynamics_set_dt(dynamics, 1e-4));
     const mps_status status = mps_dynamics_step(dynamics, 1);
@@ -52,14 +44,11 @@ TEST(explicit_dynamics_ends_with_divergence) {
 TEST(mpm_ends_with_divergence) {
   for (int k = 0; k < 3; k++) {
     DEF(mpm, def, .cell = 0.2);
-    mps_mpm_load_def load = mps_mpm_load_defaults();
-    scoped_material *law = NULL;
-    scoped_mpm *mpm = NULL;
     scoped_particles *set = block(0.0);
     const int64_t id = 5;
-    load.ids = &id, load.id_count = 1, load.traction[0] = strong[k];
-    OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
-    OK(mps_mpm_create(context, set, law, &def, &mpm));
+    DEF(mpm_load, load, .ids = &id, .id_count = 1, .traction[0] = strong[k]);
+    MAKE(material, law, create_linear_elastic, context, 1e6, 0.3);
+    MAKE(mpm, mpm, create, context, set, law, &def);
     OK(mps_mpm_set_dt(mpm, 1e-4));
     OK(mps_mpm_add_load(mpm, &load, NULL));
     assert_int_equal(mps_mpm_step(mpm, 1), MPS_ERROR_DIVERGED);
@@ -72,11 +61,10 @@ TEST(mpm_ends_with_divergence) {
 /* Without gravity a long step is allowed. */
 TEST(fluid_ends_with_divergence) {
   DEF(fluid, def, .gravity[1] = 0.0, .dt = 1e6);
-  scoped_fluid *fluid = NULL;
   scoped_particles *set = block(0.0);
   mps_totals totals;
   OK(mps_particles_set(set, "external_force", 0, 1e100));
-  OK(mps_fluid_create(context, set, &def, &fluid));
+  MAKE(fluid, fluid, create, context, set, &def);
   assert_int_equal(mps_fluid_step(fluid, 1), MPS_ERROR_DIVERGED);
   OK(mps_fluid_get_totals(fluid, &totals));
   assert_true(totals.kinetic == 0.0); /* the step has not happened */
@@ -85,22 +73,17 @@ TEST(fluid_ends_with_divergence) {
 TEST(elasticity_ends_with_an_error) {
   for (int k = 0; k < 3; k++) {
     mps_elastic_def def = mps_elastic_defaults();
-    DEF(elastic_motion, motion, .dt = 1e-3);
-    mps_elastic_load_def load = mps_elastic_load_defaults();
     const int64_t id = 10;
     double force[3] = {0.0, 0.0, 0.0};
-    mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
     scoped_particles *set = block(0.0);
-    scoped_elastic *e = NULL;
-    foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
-    OK(mps_particles_set(set, "young", 0, 1e6));
-    OK(mps_particles_set(set, "poisson", 0, 0.3));
-    OK(mps_elastic_create(context, set, &def, &e));
+    DEF(elastic_boundary, foot, .lower[0] = foot.lower[1] = -1.0, .upper[0] = 9.0, .upper[1] = 0.1);
+    SET_FIELDS(set, {"young", 1e6}, {"poisson", 0.3});
+    MAKE(elastic, e, create, context, set, &def);
     OK(mps_elastic_add_boundary(e, &foot, NULL));
-    OK(mps_elastic_start(e, &motion));
+    USING(elastic_motion, mps_elastic_start(e, &given), .dt = 1e-3);
     force[0] = strong[k];
-    load.kind = MPS_ELASTIC_LOAD_FORCE, load.ids = &id, load.id_count = 1;
-    load.values = force;
+    DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_FORCE, .ids = &id, .id_count = 1,
+        .values = force);
     OK(mps_elastic_add_load(e, &load, NULL));
     FAILS(mps_elastic_step(e, 1), MPS_ERROR_DIVERGED, "velocity");
     assert_int_equal(mps_elastic_steps(e), 0);
@@ -120,10 +103,7 @@ static uint64_t pressures(mps_particles *set) {
 TEST(totals_of_dynamics_write_no_pressure) {
   scoped_particles *set = block(0.1);
   mps_totals totals;
-  mps_edit v;
-  OK(mps_particles_edit(set, "velocity", &v));
-  *mps_edit_f64(&v, 5, 1) = 0.3;
-  OK(mps_particles_commit(set, &v));
+  EDIT(v, set, "velocity") *mps_edit_f64(&v, 5, 1) = 0.3;
   scoped_dynamics *dynamics = dynamics_on(set, MPS_DYNAMICS_INTEGRATOR_VERLET, 1e15);
   OK(mps_dynamics_set_dt(dynamics, 1e-4));
   OK(mps_dynamics_step(dynamics, 5));
@@ -148,17 +128,14 @@ TEST(a_step_without_dt_moves_nothing) {
 
 TEST(a_rollback_brings_back_what_a_free_side_shows) {
   DEF(mpm, def, .cell = 0.2, .gravity[1] = -9.81);
-  mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
-  scoped_material *law = NULL;
-  scoped_mpm *mpm = NULL;
   scoped_snapshot *snapshot = NULL;
   mps_reaction before, after, back;
   scoped_particles *set = block(0.0);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
-  OK(mps_mpm_create(context, set, law, &def, &mpm));
+  MAKE(material, law, create_linear_elastic, context, 1e6, 0.3);
+  MAKE(mpm, mpm, create, context, set, law, &def);
   OK(mps_mpm_step(mpm, 20));
-  side.kind = MPS_BOUNDARY_FREE;
+  DEF(mpm_boundary, side, .kind = MPS_BOUNDARY_FREE);
   OK(mps_mpm_set_boundary(mpm, MPS_SIDE_Y_LOWER, &side));
   OK(mps_mpm_get_reaction(mpm, MPS_SIDE_Y_LOWER, &before));
   assert_true(before.force[1] > 0.0 && before.count > 0);

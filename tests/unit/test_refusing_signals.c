@@ -28,9 +28,8 @@ static mps_status shake(void *user, double t, double motion[3]) {
 static source from;
 
 static mps_signal *shaking_as(int32_t quantity) {
-  mps_signal *signal = NULL;
   from = (source){.with = MPS_ERROR_IO};
-  OK(mps_signal_create_user(context, quantity, shake, &from, NULL, &signal));
+  MAKE_KEPT(signal, signal, create_user, context, quantity, shake, &from, NULL);
   return signal;
 }
 
@@ -47,32 +46,24 @@ typedef struct scene {
 } scene;
 
 static mps_particles *block(double spacing) {
-  DEF(particles, def, .spacing = spacing);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 2000.0));
-  OK(mps_particles_set(set, "velocity", 0, 0.0));
+  mps_particles *set = box_of(context, spacing, AT(0.0, 0.0), AT(0.8, 0.4));
+  SET_FIELDS(set, {"density", 2000.0}, {"velocity", 0.0});
   return set;
 }
 
 static mps_material *stuff(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
+  MAKE_KEPT(material, material, create_linear_elastic, context, 1e6, 0.25);
   return material;
 }
 
 static const int64_t some_ids[2] = {20, 21};
 
 static mps_mpm *begin_mpm(scene *s) {
-  mps_material *material = stuff();
-  mps_mpm_def def = mps_mpm_defaults();
+  scoped_material *material = stuff();
   s->set = block(0.1);
-  def.cell = 0.2;
+  DEF(mpm, def, .cell = 0.2);
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
   OK(mps_mpm_create(context, s->set, material, &def, (mps_mpm **)&s->solver));
-  mps_material_destroy(&material);
   return s->solver;
 }
 
@@ -97,40 +88,32 @@ static void mpm_body(scene *s) {
 }
 
 static void begin_dynamics(scene *s) {
-  mps_dynamics_def def = mps_dynamics_defaults();
   s->set = block(0.1);
-  def.material = stuff();
+  DEF(dynamics, def, .material = stuff());
   OK(mps_dynamics_create(context, s->set, &def, (mps_dynamics **)&s->solver));
   mps_material_destroy(&def.material);
 }
 
 static void dynamics_boundary(scene *s) {
-  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   begin_dynamics(s);
-  base.kind = MPS_BOUNDARY_DRIVEN;
-  base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.1;
-  base.dofs = MPS_DOF_Y;
-  base.signal[1] = s->signal;
+  DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_DRIVEN, .lower[0] = base.lower[1] = -1.0,
+      .upper[0] = 9.0, .upper[1] = 0.1, .dofs = MPS_DOF_Y, .signal[1] = s->signal);
   OK(mps_dynamics_add_boundary(s->solver, &base, NULL));
   s->object = "boundary 0", s->signal_name = "signal[1] of boundary 0";
 }
 
 static void dynamics_load(scene *s) {
-  mps_dynamics_load_def def = mps_dynamics_load_defaults();
   begin_dynamics(s);
-  def.ids = some_ids, def.id_count = 2;
-  def.traction[0] = 1e3, def.signal[0] = s->factor;
-  OK(mps_dynamics_add_load(s->solver, &def, NULL));
+  USING(dynamics_load, mps_dynamics_add_load(s->solver, &given, NULL), .ids = some_ids,
+        .id_count = 2, .traction[0] = 1e3, .signal[0] = s->factor);
   s->object = "load 0", s->signal_name = "signal[0] of load 0";
 }
 
 static void begin_elastic(scene *s, mps_signal *base, mps_signal *load) {
-  mps_elastic_def def = mps_elastic_defaults();
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
   mps_elastic_load_def weight = mps_elastic_load_defaults();
   s->set = block(0.1);
-  def.material = stuff();
+  DEF(elastic, def, .material = stuff());
   OK(mps_elastic_create(context, s->set, &def, (mps_elastic **)&s->solver));
   foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
   foot.kind = base ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD;
@@ -139,8 +122,7 @@ static void begin_elastic(scene *s, mps_signal *base, mps_signal *load) {
   weight.kind = MPS_ELASTIC_LOAD_BODY, weight.all = 1;
   weight.force[1] = -9.81, weight.signal[1] = load;
   OK(mps_elastic_add_load(s->solver, &weight, NULL));
-  motion.dt = 4e-3;
-  OK(mps_elastic_start(s->solver, &motion));
+  USING(elastic_motion, mps_elastic_start(s->solver, &given), .dt = 4e-3);
   mps_material_destroy(&def.material);
 }
 
@@ -173,11 +155,9 @@ static void fluid_boundary(scene *s) {
 }
 
 static void fluid_load(scene *s) {
-  mps_fluid_load_def def = mps_fluid_load_defaults();
   begin_fluid(s, NULL);
-  def.kind = MPS_FLUID_LOAD_BODY, def.all = 1;
-  def.acceleration[0] = 1.0, def.signal[0] = s->factor;
-  OK(mps_fluid_add_load(s->solver, &def, NULL));
+  USING(fluid_load, mps_fluid_add_load(s->solver, &given, NULL), .kind = MPS_FLUID_LOAD_BODY,
+        .all = 1, .acceleration[0] = 1.0, .signal[0] = s->factor);
   s->object = "load 0", s->signal_name = "signal[0] of load 0";
 }
 
@@ -318,7 +298,7 @@ TEST(bodies_stay_where_they_are) {
 
 TEST(boundaries_of_mpm_are_not_made) {
   scene s = {.signal = shaking(), .factor = shaking_as(MPS_SIGNAL_QUANTITY_VALUE)};
-  mps_mpm *mpm = begin_mpm(&s);
+  scoped_mpm *mpm = begin_mpm(&s);
   DEF(mpm_boundary, def, .kind = MPS_BOUNDARY_DRIVEN, .signal[1] = s.signal, .ids = some_ids,
       .id_count = 2);
   int32_t number = -5;
@@ -333,7 +313,6 @@ TEST(boundaries_of_mpm_are_not_made) {
   int64_t count = 0;
   REFUSED(&s, mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL), "mps_grid_get_nodes",
           seen_mpm(mpm, false));
-  mps_mpm_destroy(&mpm);
   mps_signal_destroy(&s.signal);
   mps_signal_destroy(&s.factor);
   mps_particles_destroy(&s.set);

@@ -9,15 +9,13 @@
 static void count(void *user) { ++*(int *)user; }
 
 static mps_particles *square(void) {
-  const double lower[2] = {0.0, 0.0}, upper[2] = {2.0, 2.0};
   static const struct {
     const char *name;
     double value;
   } fields[] = {{"density", 2000.0}, {"young", 1e7}, {"poisson", 0.3}};
-  DEF(particles, def, .spacing = 0.5);
   mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lower, upper, NULL));
+  USING(particles, mps_particles_create(context, &given, &set), .spacing = 0.5);
+  OK(mps_particles_fill_box(set, AT(0.0, 0.0), AT(2.0, 2.0), NULL));
   for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
     OK(mps_particles_set(set, fields[k].name, 0, fields[k].value));
   return set;
@@ -25,16 +23,14 @@ static mps_particles *square(void) {
 
 static mps_mpm *ground(mps_material *law) {
   scoped_particles *set = square();
-  DEF(mpm, def, .cell = 1.0);
   mps_mpm *mpm = NULL;
-  OK(mps_mpm_create(context, set, law, &def, &mpm));
+  USING(mpm, mps_mpm_create(context, set, law, &given, &mpm), .cell = 1.0);
   return mpm;
 }
 
 /* ---- laws ------------------------------------------------------------------------------------ */
 
 static mps_status stay(void *user, const mps_material_block *block) {
-  (void)block;
   return *(int *)user == 0 ? MPS_OK : MPS_ERROR_STATE; /* not released yet */
 }
 
@@ -76,7 +72,6 @@ TEST(a_umat_ends_with_its_law) {
 /* ---- signals --------------------------------------------------------------------------------- */
 
 static mps_status rest(void *user, double t, double motion[3]) {
-  (void)user, (void)t;
   motion[0] = motion[1] = motion[2] = 0.0;
   return MPS_OK;
 }
@@ -94,9 +89,7 @@ TEST(a_signal_ends_with_the_last_condition_that_has_it) {
                             &signal));
   OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &law));
   mps_mpm *mpm = ground(law);
-  DEF(mpm_boundary, def, .kind = MPS_BOUNDARY_DRIVEN, .lower[0] = 0.0, .upper[0] = 2.0,
-      .lower[1] = 0.0, .upper[1] = 0.6, .signal[0] = signal);
-  OK(mps_mpm_add_boundary(mpm, &def, &number));
+  USING(mpm_boundary, mps_mpm_add_boundary(mpm, &given, &number), .kind = MPS_BOUNDARY_DRIVEN, .lower[0] = 0.0, .upper[0] = 2.0, .lower[1] = 0.0, .upper[1] = 0.6, .signal[0] = signal);
   mps_signal_destroy(&signal);
   OK(mps_mpm_step(mpm, 1));
   assert_int_equal(released, 0);
@@ -110,10 +103,8 @@ TEST(a_signal_ends_with_the_last_condition_that_has_it) {
 /* ---- hooks of a context ---------------------------------------------------------------------- */
 
 static void write_nothing(void *user, int32_t level, const char *message) {
-  (void)user, (void)level, (void)message;
 }
 static void show_nothing(void *user, const mps_context_progress *progress) {
-  (void)user;
   assert_int_equal(progress->struct_size, sizeof *progress);
 }
 static int32_t go_on(void *user) { return *(int *)user; }
@@ -176,20 +167,17 @@ TEST(hooks_end_with_the_last_object_of_their_context) {
 /* ---- foreign solvers ------------------------------------------------------------------------- */
 
 static mps_status no_matrix(void *user, const mps_linear_matrix *matrix) {
-  (void)user, (void)matrix;
   return MPS_OK;
 }
 static mps_status no_solution(void *user, const double *b, double tolerance, double *x,
                               mps_linear_result *result) {
-  (void)user, (void)b, (void)tolerance, (void)x, (void)result;
   return MPS_OK;
 }
 
 /* A linear solver that fails to be set, is replaced, is taken away, and ends with its owner. */
 static void try_linear(mps_solver *owner, int32_t equation) {
   int first = 0, second = 0, third = 0;
-  mps_linear_solver_def def = mps_linear_solver_defaults();
-  def.user = &first, def.release = count, def.matrix = no_matrix;
+  DEF(linear_solver, def, .user = &first, .release = count, .matrix = no_matrix);
   REFUSES(mps_solver_set_linear_solver(owner, equation, &def), "NULL");
   assert_int_equal(first, 0);
   def.solve = no_solution;
@@ -214,8 +202,7 @@ TEST(foreign_solvers_end_when_others_take_their_place) {
   scoped_material *law = NULL;
   OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &law));
   mps_mpm *mpm = ground(law);
-  DEF(pore_water, water, .porosity = 0.4);
-  OK(mps_mpm_add_pore_water(mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(mpm, &given), .porosity = 0.4);
   try_linear(mps_mpm_solver(mpm), MPS_LINEAR_EQUATION_PORE_PRESSURE);
 
   if (!mps_library_has(MPS_FEATURE_CHOLMOD)) return;
@@ -230,7 +217,6 @@ TEST(foreign_solvers_end_when_others_take_their_place) {
 static team alone;
 static int ended;
 static void end_transport(void *user) {
-  (void)user;
   ended++;
 }
 
@@ -238,7 +224,6 @@ TEST(a_transport_ends_with_the_last_solver_on_it) {
   team_begin(&alone, 1);
   mps_domain_def def = team_domain_def(&alone, 0);
   mps_domain *domain = NULL;
-  mps_fluid_def fluid_def = mps_fluid_defaults();
   mps_fluid *fluid = NULL;
   scoped_particles *set = square();
   def.release = end_transport;
@@ -247,8 +232,7 @@ TEST(a_transport_ends_with_the_last_solver_on_it) {
   assert_int_equal(ended, 0);
   def.rank = 0;
   OK(mps_domain_create(context, &def, &domain));
-  fluid_def.domain = domain;
-  OK(mps_fluid_create(context, set, &fluid_def, &fluid));
+  USING(fluid, mps_fluid_create(context, set, &given, &fluid), .domain = domain);
   mps_domain_destroy(&domain);
   assert_int_equal(ended, 0);
   mps_fluid_destroy(&fluid);

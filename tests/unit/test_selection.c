@@ -1,49 +1,10 @@
 /* test_selection.c - one rule in all definitions that act on particles, nodes or facets: a list of
  * ids, or a box, or all; nothing chosen, two ways at once, and a choice that holds nothing are
  * refused by a message that says what to give. SPDX-License-Identifier: BSD-3-Clause */
-#include "test_fixture.h"
+#define FOUR_SOLVERS
+#include "kit/block.h"
 
 #define HINT "give ids and id_count, or a box (lower, upper), or all = 1"
-
-/* A block of 0.8 m by 0.4 m: 32 particles, whose lowest row is particles 0 to 7. */
-static mps_particles *block(void) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  return set;
-}
-
-static mps_mpm *mpm;
-static mps_dynamics *dynamics;
-static mps_elastic *elastic;
-static mps_fluid *fluid;
-
-static void begin(void) {
-  mps_particles *set[4] = {block(), block(), block(), block()};
-  mps_material *material = NULL;
-  mps_mpm_def mpm_def = mps_mpm_defaults();
-  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
-  mps_elastic_def elastic_def = mps_elastic_defaults();
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
-  mpm_def.cell = 0.2, mpm_def.lower[1] = 0.0;
-  dynamics_def.material = elastic_def.material = material;
-  OK(mps_mpm_create(context, set[0], material, &mpm_def, &mpm));
-  OK(mps_dynamics_create(context, set[1], &dynamics_def, &dynamics));
-  OK(mps_elastic_create(context, set[2], &elastic_def, &elastic));
-  OK(mps_fluid_create(context, set[3], NULL, &fluid));
-  mps_material_destroy(&material);
-  for (int k = 0; k < 4; k++) mps_particles_destroy(&set[k]);
-}
-
-static void end(void) {
-  mps_mpm_destroy(&mpm);
-  mps_dynamics_destroy(&dynamics);
-  mps_elastic_destroy(&elastic);
-  mps_fluid_destroy(&fluid);
-}
 
 /* ---- the definitions, each as far as it is without a selection ------------------------------- */
 
@@ -200,11 +161,10 @@ TEST(ways_select_what_they_say) {
 TEST(explicit_loads_select_what_they_say) {
   for (int how = 0; how < 3; how++) {
     const int64_t row[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    mps_mpm_load_def def = mps_mpm_load_defaults();
     mps_dynamics_load_def other = mps_dynamics_load_defaults();
     mps_totals sum;
     begin();
-    def.traction[0] = other.traction[0] = 5.0;
+    DEF(mpm_load, def, .traction[0] = other.traction[0] = 5.0);
     if (how == 0) def.ids = other.ids = row, def.id_count = other.id_count = 8;
     if (how == 1) def.upper[1] = other.upper[1] = 0.1;
     if (how == 2) def.all = other.all = 1;

@@ -1,31 +1,18 @@
 /* test_set_table.c - fields from a table of points: the nearest point's value and the linear fit,
  * places outside the points, refusals.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "kit/random.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 
 enum { POINTS = 500 };
 
-/* A repeatable number in [0, 1). */
-static double any(uint64_t *seed) {
-  *seed = *seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return (double)(*seed >> 11) * 0x1p-53;
-}
-
 /* A block of lattice sites on [lo, hi]^dim. */
 static mps_particles *block(mps_context *own, int32_t dim, double spacing, double lo, double hi) {
-  const double low[3] = {lo, lo, lo}, high[3] = {hi, hi, hi};
   DEF(particles, def, .dim = dim, .spacing = spacing);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(own, &def, &set));
-  OK(mps_particles_fill_box(set, low, high, NULL));
+  MAKE_KEPT(particles, set, create, own, &def);
+  OK(mps_particles_fill_box(set, AT(lo, lo, lo), AT(hi, hi, hi), NULL));
   return set;
-}
-
-static mps_view view_of(mps_particles *set, const char *name) {
-  mps_view view;
-  OK(mps_particles_view(set, name, &view));
-  return view;
 }
 
 /* A linear field, another for each component. */
@@ -37,7 +24,7 @@ static double linear(int c, const double *x, int dim) {
 
 static void scatter(int dim, int count, double *x, double *values, int components) {
   uint64_t seed = 7;
-  for (int k = 0; k < count * dim; k++) x[k] = any(&seed);
+  for (int k = 0; k < count * dim; k++) x[k] = random_part(&seed);
   for (int k = 0; k < count; k++)
     for (int c = 0; c < components; c++) values[k * components + c] = linear(c, x + k * dim, dim);
 }
@@ -50,7 +37,7 @@ static mps_table_def by_linear(void) {
 /* Largest error of the stress against the linear field, Pa. */
 static double stress_error(mps_particles *set) {
   const int dim = mps_particles_dim(set);
-  const mps_view x = view_of(set, "position"), s = view_of(set, "stress");
+  const mps_view x = view_field(set, "position"), s = view_field(set, "stress");
   double error = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++) {
     double at[3] = {0.0};
@@ -99,15 +86,14 @@ TEST(a_smooth_field_converges) {
       x[2 * k] = (double)(k % n) / (n - 1), x[2 * k + 1] = (double)(k / n) / (n - 1);
       p[k] = sin(3.0 * x[2 * k]) * cos(2.0 * x[2 * k + 1]);
     }
-    mps_particles *set = block(context, 2, 0.03, 0.0, 1.0);
+    scoped_particles *set = block(context, 2, 0.03, 0.0, 1.0);
     OK(mps_particles_set_table(set, "pore_pressure", count, x, 1, p, &def, NULL));
-    const mps_view at = view_of(set, "position"), found = view_of(set, "pore_pressure");
+    const mps_view at = view_field(set, "position"), found = view_field(set, "pore_pressure");
     for (int64_t k = 0; k < at.shape[0]; k++) {
       const double exact =
           sin(3.0 * *mps_view_f64(&at, k, 0)) * cos(2.0 * *mps_view_f64(&at, k, 1));
       error[level] = fmax(error[level], fabs(*mps_view_f64(&found, k, 0) - exact));
     }
-    mps_particles_destroy(&set);
     free(x);
   }
   print_message("smooth field, spacing 1/10 and 1/40: errors %.3g, %.3g\n", error[0], error[1]);
@@ -138,7 +124,7 @@ TEST(the_nearest_point_is_found) {
       OK(mps_particles_add_field(set, "user.number", 1));
       OK(mps_particles_set_table(set, "user.number", POINTS, x, 1, number, NULL, &outside));
       assert_int_equal(outside, 0);
-      const mps_view at = view_of(set, "position"), found = view_of(set, "user.number");
+      const mps_view at = view_field(set, "position"), found = view_field(set, "user.number");
       for (int64_t k = 0; k < at.shape[0]; k++) {
         double place[3] = {0.0};
         for (int c = 0; c < dim; c++) place[c] = *mps_view_f64(&at, k, c);
@@ -155,7 +141,7 @@ TEST(a_column_of_points_is_a_profile) {
   scoped_particles *set = block(context, 2, 0.1, 0.0, 1.0);
   OK(mps_particles_set_table(set, "pore_pressure", 3, x, 1, p, &def, &outside));
   assert_int_equal(outside, 0);
-  const mps_view at = view_of(set, "position"), found = view_of(set, "pore_pressure");
+  const mps_view at = view_field(set, "position"), found = view_field(set, "pore_pressure");
   for (int64_t k = 0; k < at.shape[0]; k++)
     NEAR(*mps_view_f64(&found, k, 0), 100.0 * (1.0 - *mps_view_f64(&at, k, 1)), 1e-10);
   OK(mps_particles_set_table(set, "pore_pressure", 1, one, 1, p, &def, NULL));
@@ -173,7 +159,7 @@ TEST(particles_outside_are_counted) {
   int64_t outside = -1, beyond = 0;
   scoped_particles *set = block(context, 2, 0.1, 0.0, 1.0);
   OK(mps_particles_set_table(set, "pore_pressure", 49, x, 1, p, &def, &outside));
-  const mps_view at = view_of(set, "position"), found = view_of(set, "pore_pressure");
+  const mps_view at = view_field(set, "position"), found = view_field(set, "pore_pressure");
   for (int64_t k = 0; k < at.shape[0]; k++) {
     const double place[2] = {*mps_view_f64(&at, k, 0), *mps_view_f64(&at, k, 1)};
     const bool inside = fabs(place[0] - 0.5) < 0.3 && fabs(place[1] - 0.5) < 0.3;
@@ -201,13 +187,13 @@ TEST(points_keep_their_values) {
   const double middle[2] = {0.5, 0.5};
   const mps_table_def def = by_linear();
   scatter(2, POINTS, x, values, 4);
-  for (int k = 0; k < POINTS; k++) p[k] = floor(2.0 * any(&seed));
+  for (int k = 0; k < POINTS; k++) p[k] = floor(2.0 * random_part(&seed));
   x[0] = x[2] = x[1] = x[3] = 0.5, p[0] = 0.0, p[1] = 1.0;
   scoped_particles *set = block(context, 2, 0.02, 0.0, 1.0);
   OK(mps_particles_append(set, 1, middle));
   OK(mps_particles_append(set, POINTS - 2, x + 4));
   OK(mps_particles_set_table(set, "pore_pressure", POINTS, x, 1, p, &def, NULL));
-  const mps_view found = view_of(set, "pore_pressure");
+  const mps_view found = view_field(set, "pore_pressure");
   const int64_t first = found.shape[0] - (POINTS - 2);
   NEAR(*mps_view_f64(&found, first - 1, 0), 0.5, 1e-6);
   for (int k = 2; k < POINTS; k++) NEAR(*mps_view_f64(&found, first + k - 2, 0), p[k], 1e-6);
@@ -226,9 +212,8 @@ TEST(neither_other_particles_nor_threads_matter) {
   scatter(2, POINTS, x, values, 4);
   OK(mps_particles_set_table(whole, "stress", POINTS, x, 4, values, &def, NULL));
   OK(mps_particles_set_table(part, "stress", POINTS, x, 4, values, &def, NULL));
-  const mps_view all = view_of(whole, "stress"), place = view_of(part, "position");
-  mps_view some;
-  OK(mps_particles_view(part, "stress", &some));
+  const mps_view all = view_field(whole, "stress"), place = view_field(part, "position");
+  mps_view some = view_field(part, "stress");
   for (int64_t k = 0; k < some.shape[0]; k++) {
     const double at[2] = {*mps_view_f64(&place, k, 0), *mps_view_f64(&place, k, 1)};
     const int64_t same = mps_particles_index(whole, mps_particles_nearest(whole, at));
@@ -240,7 +225,6 @@ TEST(neither_other_particles_nor_threads_matter) {
 TEST(refusals_change_nothing) {
   scoped_particles *set = block(context, 2, 0.25, 0.0, 1.0);
   mps_view view;
-  mps_edit edit;
 #define REFUSED(change, status, text)                                                              \
   do {                                                                                             \
     double x[8] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0}, v[16] = {0.0}, *places = x;            \
@@ -277,10 +261,9 @@ TEST(refusals_change_nothing) {
                    MPS_ERROR_ARGUMENT);
   const double x[2] = {0.0, 0.0}, v[4] = {-1.0, -2.0, -3.0, -4.0};
   OK(mps_particles_add_field(set, "stress", 0));
-  OK(mps_particles_edit(set, "stress", &edit));
-  FAILS(mps_particles_set_table(set, "stress", 1, x, 4, v, NULL, NULL), MPS_ERROR_STATE,
-        "being edited");
-  OK(mps_particles_commit(set, &edit));
+  EDIT(edit, set, "stress")
+    FAILS(mps_particles_set_table(set, "stress", 1, x, 4, v, NULL, NULL), MPS_ERROR_STATE,
+          "being edited");
   OK(mps_particles_set_table(set, "stress", 1, x, 4, v, NULL, NULL));
 }
 
@@ -299,14 +282,12 @@ TEST(points_near_a_line_are_refused) {
 
 static mps_status set_and_destroy(mps_context *own, int what) {
   const double x[8] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0}, v[4] = {1.0, 2.0, 3.0, 4.0};
-  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 1.0};
-  mps_particles_def def = mps_particles_defaults();
   mps_table_def how = by_linear();
   scoped_particles *set = NULL;
   how.interpolation = what;
-  def.spacing = 0.25;
+  DEF(particles, def, .spacing = 0.25);
   mps_status status = mps_particles_create(own, &def, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_fill_box(set, AT(0.0, 0.0), AT(1.0, 1.0), NULL);
   if (status == MPS_OK)
     status = mps_particles_set_table(set, "pore_pressure", 4, x, 1, v, &how, NULL);
   return status;

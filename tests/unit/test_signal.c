@@ -6,8 +6,6 @@
 
 #include "core/context/retain.h"
 
-#define PI 3.14159265358979323846
-
 typedef double (*function_of_time)(const mps_signal *signal, double t);
 
 /* Eighth-order central difference: error h^8/630 f^(9). */
@@ -32,8 +30,7 @@ static void check_derivatives(const mps_signal *signal, double start, double end
 
 TEST(a_ricker_wavelet_is_the_papers_acceleration_and_its_integrals) {
   const double fc = 4.0, tp = 0.25, amplitude = -3.0, c = PI * fc * PI * fc;
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_ricker(context, fc, tp, amplitude, &signal));
+  MAKE(signal, signal, create_ricker, context, fc, tp, amplitude);
   for (int i = 0; i <= 100; i++) { /* Yoshida (9) */
     const double t = 0.006 * i, x = c * (t - tp) * (t - tp);
     NEAR(mps_signal_acceleration(signal, t), amplitude * (2.0 * x - 1.0) * exp(-x), 1e-14);
@@ -97,8 +94,7 @@ TEST(a_ramp_begins_and_ends_at_rest) {
 TEST(a_table_of_accelerations_is_integrated_exactly) {
   /* a = 0, 6, 6, -12, 0 at uneven times; by hand: v = 3 t^2, u = t^3 in the first second, ... */
   const double times[] = {10.0, 11.0, 13.0, 13.5, 17.5}, values[] = {0.0, 6.0, 6.0, -12.0, 0.0};
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, 5, times, values, &signal));
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_ACCELERATION, 5, times, values);
   for (int i = 0; i <= 100; i++) {
     double s = 0.01 * i;
     NEAR(mps_signal_displacement(signal, 10.0 + s), s * s * s, 1e-14);
@@ -126,8 +122,7 @@ TEST(a_table_of_accelerations_is_integrated_exactly) {
 
 TEST(a_table_of_velocities_is_linear_between_samples) {
   const double times[] = {0.0, 1.0, 3.0}, values[] = {2.0, 4.0, 1.0};
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, times, values, &signal));
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, times, values);
   NEAR(mps_signal_velocity(signal, 0.0), 2.0, 0.0);
   NEAR(mps_signal_velocity(signal, -1e-9), 0.0, 0.0);
   NEAR(mps_signal_displacement(signal, 0.5), 1.25, 1e-15); /* 2 s + s^2 */
@@ -175,8 +170,7 @@ TEST(a_table_of_displacements_is_a_natural_spline_of_fourth_order) {
 
 TEST(a_spline_is_smooth_on_uneven_samples_and_a_line_stays_a_line) {
   const double times[] = {0.0, 0.1, 1.0, 1.3, 3.0}, values[] = {1.0, -1.0, 2.0, 0.0, 0.5};
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 5, times, values, &signal));
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 5, times, values);
   for (int i = 1; i < 4; i++) {
     const double before = nextafter(times[i], -1.0), at = times[i];
     NEAR(mps_signal_displacement(signal, before), values[i], 1e-13);
@@ -213,8 +207,8 @@ TEST(every_piece_of_a_table_is_found) {
 
 TEST(the_table_is_a_copy_and_owners_share_it) {
   double times[] = {0.0, 1.0}, values[] = {1.0, 1.0};
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, 2, times, values, &signal));
+  MAKE_KEPT(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_ACCELERATION, 2, times,
+            values);
   values[0] = values[1] = times[1] = 99.0;
   mps_signal *other = mpsi_signal_retain(signal);
   mps_signal_destroy(&signal);
@@ -331,8 +325,8 @@ TEST(a_refused_allocation_leaks_nothing) {
 TEST(a_signal_outlives_its_context) {
   test_allocator allocator = {0};
   mps_context *owner = test_allocator_context(&allocator);
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_sine(owner, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 2.0, 0.5 * PI, &signal));
+  MAKE_KEPT(signal, signal, create_sine, owner, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0, 2.0,
+            0.5 * PI);
   mps_context_destroy(&owner);
   NEAR(mps_signal_displacement(signal, 0.0), 2.0, 0.0);
   mps_signal_destroy(&signal);
@@ -343,8 +337,7 @@ TEST(a_signal_outlives_its_context) {
 
 TEST(what_lies_before_zero_displaces_nothing_at_the_start) {
   const double times[] = {-2.0, -1.0, 1.0, 3.0}, values[] = {1.0, 1.0, 1.0, -0.5};
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 4, times, values, &signal));
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 4, times, values);
   NEAR(mps_signal_displacement(signal, 0.0), 0.0, 1e-15);
   NEAR(mps_signal_displacement(signal, 1.0), 1.0, 1e-15);
   NEAR(mps_signal_displacement(signal, -2.0), -2.0, 1e-15);

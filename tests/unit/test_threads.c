@@ -20,8 +20,7 @@ static void weigh(void *data, int64_t i, int32_t worker) {
 
 TEST(workers_share_a_kernel_and_have_numbers_of_their_own) {
   scoped_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  scoped_kernel *kernel = NULL;
-  OK(mps_kernel_create(serial, MPS_KERNEL_MPS, 1.5, &kernel));
+  MAKE(kernel, kernel, create, serial, MPS_KERNEL_MPS, 1.5);
   for (int32_t threads = 1; threads <= THREADS; threads++) {
     const mps_context_def def = pthread_executor_def(&threads);
     scoped_context *context = NULL;

@@ -48,8 +48,7 @@ static mps_material *make_law(mps_context *context, const char *name, int32_t co
                               const char *const *names, seen *s) {
   DEF(material_user, def, .update = elastic, .user = s, .name = name, .history_count = columns,
       .history = names, .wave_modulus = K + 4.0 / 3.0 * G);
-  mps_material *out = NULL;
-  OK(mps_material_create_user(context, &def, &out));
+  MAKE_KEPT(material, out, create_user, context, &def);
   return out;
 }
 
@@ -64,20 +63,17 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
   if (warm) {
     OK(mps_particles_add_field(s.particles, "temperature", 0));
     mps_view id = mpm_scene_view(&s, "id");
-    mps_edit T = mpm_scene_edit(&s, "temperature");
-    for (int64_t k = 0; k < T.view.shape[0]; k++)
-      *mps_edit_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
-    mpm_scene_commit(&s, &T);
+    EDIT(T, s.particles, "temperature")
+      for (int64_t k = 0; k < T.view.shape[0]; k++)
+        *mps_edit_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
   }
-  DEF(mpm, def, .cell = 0.02);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
   return s;
 }
 
 /* ---- members of a block ---------------------------------------------------------------------- */
 
-TEST(a_block_tells_ids_places_time_and_temperature) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_block_tells_ids_places_time_and_temperature) {
   for (int warm = 0; warm < 2; warm++) {
     static seen told;
     told = (seen){.bad = -1000};
@@ -104,8 +100,7 @@ static void same_column(mpm_scene *a, mpm_scene *b, const char *name) {
 }
 
 /* A column called as a field of the library is neither that field nor disturbs it. */
-TEST(names_of_the_field_table_do_no_harm) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(names_of_the_field_table_do_no_harm) {
   static const char *const table[] = {"group",  "volume",   "density", "mass",
                                       "stress", "velocity", "id",      "position"};
   static const char *const plain[] = {"a", "b", "c", "d", "e", "f", "g", "h"};
@@ -129,8 +124,7 @@ TEST(names_of_the_field_table_do_no_harm) {
 }
 
 /* Two laws with a column of the same name, and a caller's field so called. */
-TEST(laws_do_not_share_columns) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(laws_do_not_share_columns) {
   static const char *const names[] = {"damage"};
   scoped_mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
   scoped_material *silt = make_law(context, "silt", 1, names, NULL);
@@ -146,8 +140,7 @@ TEST(laws_do_not_share_columns) {
   }
 }
 
-TEST(histories_may_be_long) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(histories_may_be_long) {
   static char text[MOST][8];
   const char *names[MOST];
   for (int c = 0; c < MOST; c++) {
@@ -194,8 +187,7 @@ TEST(a_refusal_names_the_particle) {
 }
 
 /* Time, steps and shortest remainder of a run whose only step is refused are as before it. */
-TEST(a_run_that_is_refused_takes_no_time) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_run_that_is_refused_takes_no_time) {
   static seen told;
   told = (seen){.bad = 30, .from = -1.0};
   scoped_mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
@@ -210,8 +202,7 @@ TEST(a_run_that_is_refused_takes_no_time) {
 }
 
 /* A result of no bytes is refused before anything is settled. */
-TEST(settling_looks_at_its_result_first) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(settling_looks_at_its_result_first) {
   static seen told;
   told = (seen){.bad = -1000};
   scoped_mpm_scene s = begin(context, make_law(context, "mild", 0, NULL, &told), false);
@@ -226,15 +217,13 @@ TEST(settling_looks_at_its_result_first) {
 static int32_t cancel_third(void *user) { return ++*(int *)user >= 3; }
 
 /* Settling that was cut leaves particles that move; a step starts them from rest, if it happens. */
-TEST(a_refused_step_leaves_settling_as_it_was_cut) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_refused_step_leaves_settling_as_it_was_cut) {
   static seen told;
   told = (seen){.bad = -1000};
   scoped_mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
-  mps_mpm_settle_def def = mps_mpm_settle_defaults();
   int asked = 0;
   OK(mps_particles_set(mps_mpm_particles(s.mpm), "external_force", 1, -0.1));
-  def.max_steps = 100;
+  DEF(mpm_settle, def, .max_steps = 100);
   mps_context_set_cancel(context, cancel_third, &asked, NULL);
   FAILS(mps_mpm_settle(s.mpm, &def, NULL), MPS_ERROR_CANCELLED, "cancel");
   mps_context_set_cancel(context, NULL, NULL, NULL);

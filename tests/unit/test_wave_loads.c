@@ -5,8 +5,6 @@
 #include "waves_theory.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
-
 /* ---- Sainflou -------------------------------------------------------------------------------- */
 
 TEST(sainflou_is_his_trapezium) {
@@ -136,10 +134,9 @@ TEST(slopes_have_published_discharges) {
 
 static double plain(double height, double depth, double crest, double period, int32_t foreshore,
                     int32_t *formula) {
-  DEF(eurotop, def, .height = height, .period = period, .depth = depth, .crest = crest,
-      .foreshore = foreshore);
   mps_eurotop r;
-  OK(mps_eurotop_evaluate(context, &def, &r));
+  USING(eurotop, mps_eurotop_evaluate(context, &given, &r), .height = height, .period = period,
+        .depth = depth, .crest = crest, .foreshore = foreshore);
   assert_true(r.low < r.discharge && r.discharge < r.high);
   *formula = r.formula;
   return r.discharge / sqrt(9.81 * height * height * height);
@@ -205,7 +202,6 @@ typedef struct level_record {
 /* Half sine waves of the heads given, of .5 s each, from 1, 3 and 5 s on; `passed` (m2) in the
  * middle of each. */
 static mps_overtopping_def record_of(level_record *r, const double *heads, const double *passed) {
-  mps_overtopping_def def = mps_overtopping_defaults();
   for (int k = 0; k < RECORD; k++) {
     const double t = r->t[k] = 0.02 * k;
     r->head[k] = -0.05, r->volume[k] = k ? r->volume[k - 1] : 0.0;
@@ -215,8 +211,8 @@ static mps_overtopping_def record_of(level_record *r, const double *heads, const
       if (fabs(since - 0.26) < 1e-9) r->volume[k] += passed[n];
     }
   }
-  def.samples = RECORD, def.times = r->t, def.heads = r->head, def.volumes = r->volume;
-  def.resolved = 0.025;
+  DEF(overtopping, def, .samples = RECORD, .times = r->t, .heads = r->head, .volumes = r->volume,
+      .resolved = 0.025);
   return def;
 }
 

@@ -8,7 +8,6 @@
 
 #include <complex.h>
 
-#define PI 3.14159265358979323846
 #define G 9.81
 
 static mps_waves_def regular(double depth, double height, double period) {
@@ -23,8 +22,7 @@ static mps_waves_def sea(int32_t kind, double depth, double height, double perio
 }
 
 static mps_waves *make(const mps_waves_def *def) {
-  mps_waves *w = NULL;
-  OK(mps_waves_create(context, def, &w));
+  MAKE_KEPT(waves, w, create, context, def);
   return w;
 }
 
@@ -87,7 +85,7 @@ TEST(a_linear_wave_is_its_closed_form) {
   mps_waves_def def = regular(d, H, T);
   def.theory = MPS_WAVES_THEORY_LINEAR;
   def.ramp = 0.0;
-  mps_waves *sea_ = make(&def);
+  scoped_waves *sea_ = make(&def);
   double far, near;
   far = theory_far(T, d, G), near = theory_near(T, d, G);
   for (int n = 0; n < 20; n++) {
@@ -108,15 +106,13 @@ TEST(a_linear_wave_is_its_closed_form) {
   NEAR(r.stroke[0], -0.5 * H / far, 1e-4 * H);
   NEAR(r.speed, 0.5 * H / far * w, 1e-3 * H * w);
   NEAR(r.wave_number, 1.0 / d, 1e-9);
-  mps_waves_destroy(&sea_);
 }
 
 TEST(a_signal_is_the_motion_and_its_derivatives) {
   mps_waves_def def = sea(MPS_WAVES_JONSWAP, 0.5, 0.05, 1.5);
   def.repeat = 30.0;
   mps_waves *w = make(&def);
-  scoped_signal *signal = NULL;
-  OK(mps_signal_create_waves(context, w, &signal));
+  MAKE(signal, signal, create_waves, context, w);
   mps_waves_destroy(&w); /* the signal keeps it */
   const double h = 1e-4;
   for (int n = 0; n < 60; n++) {
@@ -149,7 +145,7 @@ TEST(spectra_have_their_height_and_shape) {
   for (int32_t kind = MPS_WAVES_JONSWAP; kind <= MPS_WAVES_PIERSON_MOSKOWITZ; kind++) {
     mps_waves_def def = sea(kind, 2.0, 0.2, 2.0);
     def.theory = MPS_WAVES_THEORY_LINEAR;
-    mps_waves *w = make(&def);
+    scoped_waves *w = make(&def);
     double f[4096], a[4096];
     int64_t count;
     NEAR(height_of(w), 0.2, 1e-12);
@@ -164,7 +160,6 @@ TEST(spectra_have_their_height_and_shape) {
     const double gamma = kind == MPS_WAVES_JONSWAP ? 3.3 : 1.0;
     const double ratio = pow(2.0, -5.0) * exp(1.25 * 15.0 / 16.0) / gamma;
     NEAR(a[twice] * a[twice] / (a[peak] * a[peak]), ratio, 1e-9);
-    mps_waves_destroy(&w);
   }
 }
 
@@ -175,12 +170,11 @@ TEST(random_amplitudes_scatter_about_the_height) {
     def.theory = MPS_WAVES_THEORY_LINEAR;
     def.phases = MPS_WAVES_PHASES_AMPLITUDES;
     def.seed = seed;
-    mps_waves *w = make(&def);
+    scoped_waves *w = make(&def);
     const double h = height_of(w);
     if (seed == 1) first = h;
     if (seed == 2) assert_true(h != first);
     sum += h * h / 40.0;
-    mps_waves_destroy(&w);
   }
   NEAR(sqrt(sum), 0.2, 0.006); /* some 25 components of weight, 40 seas: 1.6 % */
 }
@@ -190,13 +184,12 @@ TEST(a_focus_has_its_crest_where_and_when) {
   def.phases = MPS_WAVES_PHASES_FOCUSED;
   def.theory = MPS_WAVES_THEORY_LINEAR;
   def.crest = 0.06, def.position = 4.0, def.time = 12.0, def.repeat = 40.0;
-  mps_waves *w = make(&def);
+  scoped_waves *w = make(&def);
   double t[2001], eta[2001];
   for (int k = 0; k < 2001; k++) t[k] = 2.0 + 0.01 * k;
   OK(mps_waves_get_levels(w, 4.0, 2001, t, eta, NULL));
   NEAR(eta[1000], 0.06, 1e-14);
   for (int k = 0; k < 2001; k++) assert_true(eta[k] <= 0.06 + 1e-14);
-  mps_waves_destroy(&w);
 }
 
 TEST(a_table_and_a_record_are_reproduced) {
@@ -210,7 +203,7 @@ TEST(a_table_and_a_record_are_reproduced) {
   }
   DEF(waves, def, .kind = MPS_WAVES_RECORD, .depth = 0.5, .theory = MPS_WAVES_THEORY_LINEAR,
       .samples = N, .times = t, .levels = eta, .position = 2.5);
-  mps_waves *w = make(&def);
+  scoped_waves *w = make(&def);
   OK(mps_waves_get_levels(w, 2.5, N, t, back, NULL));
   for (int k = 0; k < N; k++) NEAR(back[k], eta[k], 1e-12);
   mps_waves_report r;
@@ -223,7 +216,6 @@ TEST(a_table_and_a_record_are_reproduced) {
   def.count = 3, def.frequency = f, def.density = S, def.repeat = 2000.0;
   w = make(&def);
   NEAR(height_of(w), 4.0 * sqrt(0.5 * 0.02 * 0.5), 1e-4); /* area of the triangle */
-  mps_waves_destroy(&w);
 }
 
 /* ---- second order ---------------------------------------------------------------------------- */
@@ -233,7 +225,7 @@ TEST(the_second_harmonic_is_stokes) {
   for (double kd = 0.6; kd < 3.0; kd += 0.4) {
     const double d = 0.4, T = period_of(kd, d), H = 0.02, k = kd / d, w = 2.0 * PI / T;
     const mps_waves_def def = regular(d, H, T);
-    mps_waves *s = make(&def);
+    scoped_waves *s = make(&def);
     const double c = cosh(kd), h = sinh(kd);
     const double second = H * H * k / 16.0 * c * (2.0 + cosh(2.0 * kd)) / (h * h * h);
     for (int n = 0; n < 10; n++) {
@@ -242,7 +234,6 @@ TEST(the_second_harmonic_is_stokes) {
       OK(mps_waves_get_levels(s, x, 1, &t, &linear, &level));
       NEAR(level - linear, second * cos(2.0 * (w * t - k * x)), 1e-9 * second);
     }
-    mps_waves_destroy(&s);
   }
 }
 
@@ -253,7 +244,7 @@ TEST(the_piston_of_long_waves_is_that_of_madsen) {
     const double d = 0.4, T = period_of(kd[n], d), H = 0.002;
     mps_waves_def def = regular(d, H, T);
     def.ramp = 0.0;
-    mps_waves *s = make(&def);
+    scoped_waves *s = make(&def);
     double far, sum_sin = 0.0, sum_cos = 0.0;
     far = theory_far(T, d, G);
     enum { M = 64 };
@@ -270,7 +261,6 @@ TEST(the_piston_of_long_waves_is_that_of_madsen) {
            sum_sin, sum_cos, madsen);
     NEAR(sum_sin / madsen, 1.0, bar[n]);
     NEAR(sum_cos / madsen, 0.0, 1e-3);
-    mps_waves_destroy(&s);
   }
 }
 
@@ -338,7 +328,7 @@ TEST(bound_waves_fulfil_the_surface_conditions) {
   const double d = 0.4, a = 0.004, kd = 0.9;
   const int first = 40, second = 53;
   const double span = first * period_of(kd, d);
-  mps_waves *s = pair(d, a, kd, first, second, MPS_WAVES_THEORY_SECOND);
+  scoped_waves *s = pair(d, a, kd, first, second, MPS_WAVES_THEORY_SECOND);
   const double w[2] = {2.0 * PI * first / span, 2.0 * PI * second / span};
   double k[2];
   for (int n = 0; n < 2; n++) k[n] = theory_number(2.0 * PI / w[n], d, G);
@@ -362,13 +352,12 @@ TEST(bound_waves_fulfil_the_surface_conditions) {
            sign < 0 ? "difference" : "sum", 1e3 * level, left, right);
     NEAR(left, right, 1e-9 * (fabs(W * level) + fabs(K * flux)));
   }
-  mps_waves_destroy(&s);
 }
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
 TEST(wrong_definitions_are_named) {
-  mps_waves *w = NULL;
+  scoped_waves *w = NULL;
   mps_waves_def def;
 #define REFUSED(change, text)                                                                      \
   do {                                                                                             \
@@ -407,23 +396,18 @@ TEST(wrong_definitions_are_named) {
   REFUSES(mps_waves_get_levels(w, -1.0, 0, NULL, NULL, NULL), "station");
   REFUSES(mps_waves_get_levels(w, 1.0, 1, &when, &value, NULL), "t[0]");
   REFUSES(mps_waves_get_piston(w, -1, NULL, NULL, NULL, NULL, NULL), "count");
-  mps_waves_destroy(&w);
 }
 
 static mps_status make_all(mps_context *own, int what) {
-  (void)what;
   mps_waves_def def = sea(MPS_WAVES_JONSWAP, 0.4, 0.04, 1.3);
   def.repeat = 10.0;
-  mps_waves *w = NULL;
+  scoped_waves *w = NULL;
   scoped_signal *signal = NULL;
-  mps_absorber *absorber = NULL;
-  mps_absorber_def end = mps_absorber_defaults();
+  scoped_absorber *absorber = NULL;
   mps_status status = mps_waves_create(own, &def, &w);
   if (status == MPS_OK) status = mps_signal_create_waves(own, w, &signal);
-  end.depth = 0.4, end.waves = w;
+  DEF(absorber, end, .depth = 0.4, .waves = w);
   if (status == MPS_OK) status = mps_absorber_create(own, &end, &absorber);
-  mps_absorber_destroy(&absorber);
-  mps_waves_destroy(&w);
   return status;
 }
 

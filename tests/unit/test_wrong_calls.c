@@ -9,11 +9,7 @@ static void said(mps_status status, const char *message) {
 }
 
 static mps_particles *square(void) {
-  const double lower[2] = {0.0, 0.0}, upper[2] = {1.0, 1.0};
-  DEF(particles, def, .spacing = 0.25);
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lower, upper, NULL));
+  mps_particles *set = box_of(context, 0.25, AT(0.0, 0.0), AT(1.0, 1.0));
   return set;
 }
 
@@ -49,14 +45,13 @@ TEST(bodies_name_the_member_that_is_wrong) {
 
 TEST(solvers_name_constants_and_one_argument) {
   scoped_particles *set = square();
-  scoped_material *law = NULL;
-  mps_mpm *mpm = NULL;
+  scoped_mpm *mpm = NULL;
   DEF(mpm, def, .cell = 0.5, .lower[0] = 0.0, .lower[1] = 0.0);
   double value;
   OK(mps_particles_set(set, "density", 0, 1800.0));
   said(mps_particles_set(set, "density", 1, 5.0),
        "component of field 'density' is 1, and the field has one alone: 0");
-  OK(mps_material_create_linear_elastic(context, 1e7, 0.3, &law));
+  MAKE(material, law, create_linear_elastic, context, 1e7, 0.3);
   OK(mps_mpm_create(context, set, law, &def, &mpm));
   said(mps_mpm_set_side(mpm, MPS_SIDE_X_LOWER, MPS_BOUNDARY_ROLLER, 0.4),
        "friction is 0.4, must be 0 where kind is MPS_BOUNDARY_ROLLER: make it "
@@ -68,8 +63,7 @@ TEST(solvers_name_constants_and_one_argument) {
   mps_geostatic_def ground = mps_geostatic_defaults();
   said(mps_particles_set_geostatic(set, &ground),
        "layers is NULL: give an array of mps_geostatic_layer, and layer_count");
-  scoped_fluid *fluid = NULL;
-  OK(mps_fluid_create(context, set, NULL, &fluid));
+  MAKE(fluid, fluid, create, context, set, NULL);
   said(mps_fluid_set_boundary_motion(fluid, 3, NULL, &value),
        "number is 3: there is no boundary of this number");
 }
@@ -81,8 +75,7 @@ TEST(a_set_without_moduli_is_told_how_to_get_them) {
   said(mps_elastic_create(context, set, NULL, &elastic),
        "the particle set has no field 'young': set it with mps_particles_set or "
        "mps_particles_set_material, or give the `material` of the definition");
-  OK(mps_particles_set(set, "young", 0, 1e7));
-  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  SET_FIELDS(set, {"young", 1e7}, {"poisson", 0.3});
   OK(mps_elastic_create(context, set, NULL, &elastic));
   DEF(elastic_load, load, .kind = 44);
   said(mps_elastic_add_load(elastic, &load, NULL),

@@ -2,15 +2,10 @@
  * (bench/plain_dynamics.h), for a jittered body of random materials that spins and shakes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "../../bench/plain_dynamics.h"
+#include "kit/random.h"
 #include "soil_column.h"
 
 enum { COLUMNS = 23, ROWS = 31, COUNT = COLUMNS * ROWS, STEPS = 300 };
-
-/* Uniform in [-1, 1), from a fixed seed. */
-static double uniform(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
 
 /* Position, density, Vs, Vp, velocity x and y, spin of each particle. */
 typedef struct sample {
@@ -20,15 +15,15 @@ typedef struct sample {
 static void draw(sample *s) {
   uint64_t seed = 20;
   for (int k = 0; k < COUNT; k++) {
-    s->xy[2 * k] = k % COLUMNS + 0.15 * uniform(&seed);
-    s->xy[2 * k + 1] = k / COLUMNS + 0.15 * uniform(&seed); /* NOLINT(bugprone-integer-division) */
-    s->rho[k] = 1500.0 + 300.0 * uniform(&seed);
-    s->vs[k] = 100.0 + 30.0 * uniform(&seed);
-    s->vp[k] = s->vs[k] * (1.9 + 0.3 * uniform(&seed));
+    s->xy[2 * k] = k % COLUMNS + 0.15 * noise(&seed);
+    s->xy[2 * k + 1] = k / COLUMNS + 0.15 * noise(&seed); /* NOLINT(bugprone-integer-division) */
+    s->rho[k] = 1500.0 + 300.0 * noise(&seed);
+    s->vs[k] = 100.0 + 30.0 * noise(&seed);
+    s->vp[k] = s->vs[k] * (1.9 + 0.3 * noise(&seed));
     /* a slow solid-body spin of the whole, so that rotations become large, and noise */
-    s->v[3 * k] = -0.8 * s->xy[2 * k + 1] + 0.3 * uniform(&seed);
-    s->v[3 * k + 1] = 0.8 * s->xy[2 * k] + 0.3 * uniform(&seed);
-    s->v[3 * k + 2] = 0.8 + 0.2 * uniform(&seed);
+    s->v[3 * k] = -0.8 * s->xy[2 * k + 1] + 0.3 * noise(&seed);
+    s->v[3 * k + 1] = 0.8 * s->xy[2 * k] + 0.3 * noise(&seed);
+    s->v[3 * k + 2] = 0.8 + 0.2 * noise(&seed);
   }
 }
 
@@ -50,11 +45,10 @@ static plain_body plain_from(mps_context *context, const sample *s, int integrat
     }
   }
   DEF(neighbours, def, .radius = 1.5);
-  mps_neighbours *lists = NULL;
   const mps_view view = {
       .data = (void *)s->xy, .shape = {COUNT, 2, 1}, .stride = {2, 1, 1}, .dtype = {2, 64, 1}};
   const int64_t *first, *index;
-  OK(mps_neighbours_create(context, &def, &lists));
+  MAKE(neighbours, lists, create, context, &def);
   OK(mps_neighbours_build(lists, &view));
   OK(mps_neighbours_lists(lists, NULL, &first, &index));
   b.first = malloc((COUNT + 1) * sizeof *b.first);
@@ -62,14 +56,12 @@ static plain_body plain_from(mps_context *context, const sample *s, int integrat
   assert_true(b.first && b.neighbour);
   memcpy(b.first, first, (COUNT + 1) * sizeof *b.first);
   for (int64_t k = 0; k < first[COUNT]; k++) b.neighbour[k] = (int32_t)index[k];
-  mps_neighbours_destroy(&lists);
   return b;
 }
 
 static mps_dynamics *solver_from(mps_context *context, const sample *s, int integrator, int removal,
                                  double damping, double dt, mps_particles **particles) {
-  DEF(particles, set, .spacing = 1.0);
-  OK(mps_particles_create(context, &set, particles));
+  USING(particles, mps_particles_create(context, &given, particles), .spacing = 1.0);
   OK(mps_particles_append(*particles, COUNT, s->xy));
   const char *const names[] = {"density", "shear_velocity", "pressure_velocity",
                                "damping", "velocity",       "spin"};
@@ -92,8 +84,7 @@ static mps_dynamics *solver_from(mps_context *context, const sample *s, int inte
       .rotation =
           removal == 12 ? MPS_DYNAMICS_ROTATION_MEAN_MATRIX : MPS_DYNAMICS_ROTATION_MEAN_ANGLE,
       .dt = dt);
-  mps_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *particles, &def);
   return dynamics;
 }
 

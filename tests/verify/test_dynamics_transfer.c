@@ -5,7 +5,6 @@
 
 #include <complex.h>
 
-#define PI 3.14159265358979323846
 #define FREQUENCIES 1170
 #define EVERY 4 /* steps a sample */
 
@@ -84,9 +83,8 @@ static mps_dynamics *build(mps_context *context, bool viscous, double spacing, m
   DEF(dynamics, def, .f1 = f1, .f2 = f2);
   def.courant = 0.5; /* damping is one-sided in time: its error is of the order of dt */
   def.period_x = 4.0 * spacing;
-  mps_dynamics *dynamics = NULL;
   *particles = soil_particles(context, spacing, 4.0 * spacing, height, 3, layers);
-  OK(mps_dynamics_create(context, *particles, &def, &dynamics));
+  MAKE_KEPT(dynamics, dynamics, create, context, *particles, &def);
   int64_t count;
   int64_t *base = soil_select(*particles, -1.0, -1.0, 100.0, spacing, &count);
   if (viscous) {
@@ -104,8 +102,7 @@ static mps_dynamics *build(mps_context *context, bool viscous, double spacing, m
 static void compare(bool viscous, double spacing, double duration) {
   scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scoped_particles *particles = NULL;
-  scoped_signal *input = NULL;
-  OK(mps_signal_create_ricker(context, 4.0, 0.5, 1.0, &input));
+  MAKE(signal, input, create_ricker, context, 4.0, 0.5, 1.0);
   scoped_dynamics *dynamics = build(context, viscous, spacing, input, &particles);
   const double dt = EVERY * mps_dynamics_dt(dynamics); /* of the samples */
   const int64_t steps = (int64_t)(duration / dt) + 4;

@@ -123,8 +123,7 @@ static double four_unknown_difference(mps_context *context, double ratio, test_m
   return worst / largest;
 }
 
-TEST(the_condensed_form_is_the_papers_four_unknown_form) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_condensed_form_is_the_papers_four_unknown_form) {
   for (int k = 0; k < 2; k++) {
     const double difference = four_unknown_difference(context, k ? 2.1 : 3.0, TEST_PUBLISHED);
     print_message("condensed and four-unknown form differ by %.1e\n", difference);
@@ -135,8 +134,7 @@ TEST(the_condensed_form_is_the_papers_four_unknown_form) {
 
 /* ---- sections and stresses ------------------------------------------------------------------- */
 
-TEST(sections_carry_shear_and_moment) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(sections_carry_shear_and_moment) {
   for (test_method method = TEST_CONSERVATIVE; method <= TEST_PUBLISHED; method++) {
     mps_elastic_def def = mps_elastic_defaults();
     cantilever c = {.nu = 0.3, .height = 2.0};
@@ -178,8 +176,7 @@ static double stress_error(mps_context *context, int size) {
   return 100 * sqrt(wrong / all);
 }
 
-TEST(stress_errors_are_the_reference_values) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(stress_errors_are_the_reference_values) {
   const double expected[4] = {4.3, 1.6, 0.59, 0.21};
   for (int k = 0; k < 4; k++) {
     const double error = stress_error(context, k);
@@ -227,8 +224,7 @@ static double bar(mps_context *context, int cells, int direction) {
   return tip / layer / theory;
 }
 
-TEST(a_bar_bends_as_beam_theory_says) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_bar_bends_as_beam_theory_says) {
   const double coarse = bar(context, 4, 1), fine = bar(context, 8, 1), across = bar(context, 4, 2);
   print_message("3D bar, 4 and 8 cells across: deflection / theory %.4f, %.4f\n", coarse, fine);
   NEAR(across / coarse, 1.0, 1e-9);

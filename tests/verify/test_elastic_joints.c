@@ -66,16 +66,13 @@ static mps_status laminate_traction(void *user, const double *x, const double *n
 }
 
 static void fill(test_body *b, const laminate *l) {
-  mps_edit young, poisson;
-  OK(mps_particles_edit(b->particles, "young", &young));
-  OK(mps_particles_edit(b->particles, "poisson", &poisson));
-  for (int64_t i = 0; i < b->n; i++) {
-    const int kind = kind_at(l, test_value(b, "position", i, l->axis));
-    *mps_edit_f64(&young, i, 0) = l->young[kind];
-    *mps_edit_f64(&poisson, i, 0) = l->nu[kind];
-  }
-  OK(mps_particles_commit(b->particles, &poisson));
-  OK(mps_particles_commit(b->particles, &young));
+  EDIT(young, b->particles, "young")
+    EDIT(poisson, b->particles, "poisson")
+      for (int64_t i = 0; i < b->n; i++) {
+        const int kind = kind_at(l, test_value(b, "position", i, l->axis));
+        *mps_edit_f64(&young, i, 0) = l->young[kind];
+        *mps_edit_f64(&poisson, i, 0) = l->nu[kind];
+      }
 }
 
 static void hold_corner(test_body *b, const laminate *l, const double *corner, int first) {
@@ -146,8 +143,7 @@ static void check_laminate(mps_context *context, laminate *l, double radius) {
   NEAR(es, 0.0, 1e-10);
 }
 
-TEST(layers_in_constant_traction_are_exact) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(layers_in_constant_traction_are_exact) {
   const double ratio[] = {1.0 / 3000, 3, 95, 3000};
   for (int r = 0; r < 4; r++)
     for (int dim = 2; dim <= 3; dim++)
@@ -167,8 +163,7 @@ TEST(layers_in_constant_traction_are_exact) {
 }
 
 /* The finding as reported: uniform tension of 1 MPa, nu = 0. */
-TEST(a_bar_in_series_carries_its_load_everywhere) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_bar_in_series_carries_its_load_everywhere) {
   const double ratio[] = {3, 95, 3000};
   for (int r = 0; r < 3; r++) {
     laminate l = {.dim = 2,
@@ -181,8 +176,7 @@ TEST(a_bar_in_series_carries_its_load_everywhere) {
 }
 
 /* Beside one another along the load the layers share the strain. */
-TEST(layers_in_parallel_share_the_strain) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(layers_in_parallel_share_the_strain) {
   for (int dim = 2; dim <= 3; dim++) {
     laminate l = {.dim = dim,
                   .axis = 1,
@@ -250,8 +244,6 @@ static double beam_theory(const beam *q) {
 }
 
 static mps_status end_shear(void *user, const double *x, const double *normal, double *traction) {
-  (void)x;
-  (void)normal;
   traction[1] = 1.0 / *(const double *)user;
   return MPS_OK;
 }
@@ -262,14 +254,13 @@ static double beam_error(mps_context *context, const beam *q, int cells) {
   test_body_box(&b, 0, 0, 0, q->length + wall, q->depth, 0);
   DEF(elastic, def, .bending = q->bending);
   test_body_finish(&b, 1.0, q->nu, &def);
-  mps_edit young;
-  OK(mps_particles_edit(b.particles, "young", &young));
-  for (int64_t i = 0; i < b.n; i++) {
-    const double x = test_value(&b, "position", i, 0) - wall, y = test_value(&b, "position", i, 1);
-    const bool second = q->along_length ? x > q->joint : y > q->split * q->depth;
-    *mps_edit_f64(&young, i, 0) = q->young[second];
-  }
-  OK(mps_particles_commit(b.particles, &young));
+  EDIT(young, b.particles, "young")
+    for (int64_t i = 0; i < b.n; i++) {
+      const double x = test_value(&b, "position", i, 0) - wall,
+                   y = test_value(&b, "position", i, 1);
+      const bool second = q->along_length ? x > q->joint : y > q->split * q->depth;
+      *mps_edit_f64(&young, i, 0) = q->young[second];
+    }
   int64_t count, *ids = test_select(&b, 0, -1, 0.6 * h, &count);
   for (int c = 0; c < 2; c++) OK(test_prescribe(b.elastic, c, count, ids, NULL));
   OK(mps_elastic_cut(b.elastic, MPS_SIDE_X_LOWER, ids, count));
@@ -295,8 +286,7 @@ static double beam_error(mps_context *context, const beam *q, int cells) {
   return (1.5 * last - 0.5 * former) / beam_theory(q) - 1.0;
 }
 
-TEST(composite_cantilevers_bend_as_beam_theory_says) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(composite_cantilevers_bend_as_beam_theory_says) {
   for (int layout = 0; layout < 4; layout++) {
     const bool swap = layout % 2;
     beam q = {.depth = 1.0, .nu = 0.3, .split = 0.5, .bending = NAN};
@@ -318,8 +308,7 @@ TEST(composite_cantilevers_bend_as_beam_theory_says) {
 /* Layers of one cell to nine, of a tenth to a thousand times the other's modulus, ten cells through
  * the depth; beside it the method without bending within cells, whose layers of n cells lack 1/n^2
  * of their own bending stiffness. */
-TEST(layers_at_any_height_bend_as_beam_theory_says) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(layers_at_any_height_bend_as_beam_theory_says) {
   const double ratio[] = {0.1, 10, 100, 1000}, split[] = {0.1, 0.2, 0.3, 0.5, 0.8};
   for (int r = 0; r < 4; r++)
     for (int s = 0; s < 5; s++) {
@@ -338,22 +327,18 @@ TEST(layers_at_any_height_bend_as_beam_theory_says) {
 /* ---- free motions ---------------------------------------------------------------------------- */
 
 /* Materials without any order; the matrix is checked against the operator in property/elastic. */
-TEST(only_rigid_motions_are_free_whatever_the_materials) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(only_rigid_motions_are_free_whatever_the_materials) {
   for (int dim = 2; dim <= 3; dim++) {
     scoped_test_body b = test_body_begin(context, dim, 0.25);
     test_body_box(&b, 0, 0, 0, 2, 1, 0.5);
     test_body_box(&b, 0, 0, 0, 1, 1.5, 0.75);
     test_body_finish(&b, 1.0, 0.2, NULL);
-    mps_edit young, poisson;
-    OK(mps_particles_edit(b.particles, "young", &young));
-    OK(mps_particles_edit(b.particles, "poisson", &poisson));
-    for (int64_t i = 0; i < b.n; i++) {
-      *mps_edit_f64(&young, i, 0) = 1.0 + (double)(i * 7919 % 13) * 8.0;
-      *mps_edit_f64(&poisson, i, 0) = 0.4 * (double)(i * 31 % 5) / 5.0;
-    }
-    OK(mps_particles_commit(b.particles, &poisson));
-    OK(mps_particles_commit(b.particles, &young));
+    EDIT(young, b.particles, "young")
+      EDIT(poisson, b.particles, "poisson")
+        for (int64_t i = 0; i < b.n; i++) {
+          *mps_edit_f64(&young, i, 0) = 1.0 + (double)(i * 7919 % 13) * 8.0;
+          *mps_edit_f64(&poisson, i, 0) = 0.4 * (double)(i * 31 % 5) / 5.0;
+        }
     OK(mpsi_elastic_renew_material(b.elastic, __func__));
     const int64_t all = b.n * dim, rigid = dim == 2 ? 3 : 6;
     double *k = malloc((size_t)(all * all) * sizeof *k), *u = calloc((size_t)all, sizeof *u);
@@ -423,20 +408,17 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
                             double *rms) {
   const double h = 1.0 / (cells + 0.5), young = 2 * (1 + q->nu); /* mu = 1 */
   DEF(elastic, def, .state = MPS_ELASTIC_STATE_PLANE_STRAIN);
-  DEF(particles, set, .spacing = h);
-  set.origin[0] = set.origin[1] = -0.5 * h;
+  DEF(particles, set, .spacing = h, .origin[0] = set.origin[1] = -0.5 * h);
   scoped_test_body b = {.context = context, .dim = 2};
   OK(mps_particles_create(context, &set, &b.particles));
   const double side = (4 * cells + 0.5) * h;
   test_body_box(&b, -0.5 * h, -0.5 * h, 0, side, side, 0);
   test_body_finish(&b, young, q->nu, &def);
-  mps_edit stiffness;
-  OK(mps_particles_edit(b.particles, "young", &stiffness));
-  for (int64_t i = 0; i < b.n; i++) {
-    const double x = test_value(&b, "position", i, 0), y = test_value(&b, "position", i, 1);
-    if (x * x + y * y < 1) *mps_edit_f64(&stiffness, i, 0) = q->m * young;
-  }
-  OK(mps_particles_commit(b.particles, &stiffness));
+  EDIT(stiffness, b.particles, "young")
+    for (int64_t i = 0; i < b.n; i++) {
+      const double x = test_value(&b, "position", i, 0), y = test_value(&b, "position", i, 1);
+      if (x * x + y * y < 1) *mps_edit_f64(&stiffness, i, 0) = q->m * young;
+    }
   for (int c = 0; c < 2; c++) {
     int64_t count, *ids = test_select(&b, c, -1, 0.1 * h, &count);
     OK(test_prescribe(b.elastic, c, count, ids, NULL));
@@ -463,8 +445,7 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
   *rms = sqrt(square / count);
 }
 
-TEST(a_stiff_inclusion_converges) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_stiff_inclusion_converges) {
   const double ratios[] = {10, 0.1};
   for (int r = 0; r < 2; r++) {
     inclusion q = {.m = ratios[r], .nu = 0.3};

@@ -3,32 +3,21 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 
-#define PI 3.14159265358979323846
-
 /* A clamped bar of nx x ny cells of 0.5 m, E = 2, rho = 1, fixed at x = 0 by boundary 0. */
 static test_body beam(mps_context *context, int nx, int ny, const mps_elastic_def *def) {
   test_body b = test_body_begin(context, 2, 0.5);
   test_body_box(&b, 0, 0, 0, 0.5 * nx, 0.5 * ny, 0);
   test_body_finish(&b, 2.0, 0.3, def);
   OK(mps_particles_set(b.particles, "density", 0, 1.0));
-  mps_elastic_boundary_def wall = mps_elastic_boundary_defaults();
-  wall.lower[0] = wall.lower[1] = -1.0;
-  wall.upper[0] = 0.3;
-  wall.upper[1] = INFINITY;
-  OK(mps_elastic_add_boundary(b.elastic, &wall, NULL));
+  USING(elastic_boundary, mps_elastic_add_boundary(b.elastic, &given, NULL),
+        .lower[0] = given.lower[1] = -1.0, .upper[0] = 0.3, .upper[1] = INFINITY);
   return b;
 }
 
 static void drive_wall(test_body *b, mps_signal *x, mps_signal *y) {
-  mps_elastic_boundary_def wall = mps_elastic_boundary_defaults();
-  wall.lower[0] = wall.lower[1] = -1.0;
-  wall.upper[0] = 0.3;
-  wall.upper[1] = INFINITY;
-  wall.kind = MPS_BOUNDARY_DRIVEN;
-  wall.signal[0] = x;
-  wall.signal[1] = y;
-  wall.factor[1] = 0.5;
-  OK(mps_elastic_set_boundary(b->elastic, 0, &wall));
+  USING(elastic_boundary, mps_elastic_set_boundary(b->elastic, 0, &given),
+        .lower[0] = given.lower[1] = -1.0, .upper[0] = 0.3, .upper[1] = INFINITY,
+        .kind = MPS_BOUNDARY_DRIVEN, .signal[0] = x, .signal[1] = y, .factor[1] = 0.5);
 }
 
 static double energy_error(test_body *b, double *largest) {
@@ -45,8 +34,7 @@ static void load_all(test_body *b, mps_signal *swing) {
   const double gravity[2] = {0.01, -0.05};
   int64_t count, *facets = test_facets(b, 0, 1, &count);
   DEF(elastic_load, def, .kind = MPS_ELASTIC_LOAD_TRACTION, .ids = facets, .id_count = count,
-      .force[0] = 0.3, .force[1] = -0.2);
-  def.signal[0] = def.signal[1] = swing;
+      .force[0] = 0.3, .force[1] = -0.2, .signal[0] = def.signal[1] = swing);
   OK(mps_elastic_add_load(b->elastic, &def, NULL));
   free(facets);
   OK(test_load(b->elastic, MPS_ELASTIC_LOAD_BODY, 0, NULL, gravity, 0));
@@ -54,8 +42,7 @@ static void load_all(test_body *b, mps_signal *swing) {
   OK(mps_particles_set(b->particles, "external_force", 1, 1e-3));
 }
 
-TEST(the_energy_budget_closes) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_energy_budget_closes) {
   scoped_signal *swing = NULL, *factor = NULL, *ramp = NULL;
   OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_VALUE, 0.11, 1.0, 0.3, &factor));
   OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.11, 1.0, 0.3, &swing));
@@ -64,10 +51,9 @@ TEST(the_energy_budget_closes) {
     scoped_test_body b = beam(context, 16, 4, NULL);
     load_all(&b, factor);
     drive_wall(&b, swing, ramp);
-    DEF(elastic_motion, def, .dt = 0.21, .mass_damping = damped ? 0.05 : 0.0,
-        .stiffness_damping = damped == 2 ? 0.3 : 0.0);
     OK(mps_particles_set(b.particles, "velocity", 1, 0.02));
-    OK(mps_elastic_start(b.elastic, &def));
+    USING(elastic_motion, mps_elastic_start(b.elastic, &given), .dt = 0.21,
+          .mass_damping = damped ? 0.05 : 0.0, .stiffness_damping = damped == 2 ? 0.3 : 0.0);
     double largest = 0.0, worst = 0.0;
     const double start = energy_error(&b, &largest);
     mps_totals t;
@@ -89,13 +75,11 @@ TEST(the_energy_budget_closes) {
 }
 
 /* What comes in by gravity and the wall is the momentum. */
-TEST(impulses_are_the_momentum) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(impulses_are_the_momentum) {
   scoped_test_body b = beam(context, 12, 4, NULL);
   const double gravity[2] = {0.02, -0.05};
   OK(test_load(b.elastic, MPS_ELASTIC_LOAD_BODY, 0, NULL, gravity, 0));
-  DEF(elastic_motion, def, .dt = 0.3);
-  OK(mps_elastic_start(b.elastic, &def));
+  USING(elastic_motion, mps_elastic_start(b.elastic, &given), .dt = 0.3);
   OK(mps_elastic_step(b.elastic, 50));
   mps_totals t;
   mps_reaction r;
@@ -112,8 +96,7 @@ TEST(impulses_are_the_momentum) {
 /* ---- damping --------------------------------------------------------------------------------- */
 
 /* Amplitudes of the two lowest modes fall as exp(-h w t), with h as requested. */
-TEST(modes_decay_with_the_damping_ratios_asked_for) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(modes_decay_with_the_damping_ratios_asked_for) {
   for (int mode = 0; mode < 2; mode++) {
     scoped_test_body b = beam(context, 20, 4, NULL);
     double omega[2], energy[2];
@@ -121,14 +104,11 @@ TEST(modes_decay_with_the_damping_ratios_asked_for) {
     double *shape = malloc((size_t)b.n * 6 * sizeof *shape);
     OK(mps_elastic_modes(b.elastic, 2, omega, shape));
     OK(mps_particles_add_field(b.particles, "velocity", 0));
-    mps_edit v;
-    OK(mps_particles_edit(b.particles, "velocity", &v));
-    for (int64_t i = 0; i < b.n; i++)
-      for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) = shape[(mode * b.n + i) * 3 + c];
-    OK(mps_particles_commit(b.particles, &v));
-    mps_elastic_motion_def def = mps_elastic_motion_defaults();
+    EDIT(v, b.particles, "velocity")
+      for (int64_t i = 0; i < b.n; i++)
+        for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) = shape[(mode * b.n + i) * 3 + c];
     const double period = 2 * PI / omega[mode];
-    def.dt = period / 200;
+    DEF(elastic_motion, def, .dt = period / 200);
     for (int k = 0; k < 2; k++) {
       def.ratio[k] = ratio[k];
       def.frequency[k] = omega[k] / (2 * PI);
@@ -157,8 +137,7 @@ static mps_status start(test_body *b, double dt, double rho, double beta, double
 /* Steps very long against every period: the motion falls by rho_inf a step. The step's matrix has
  * rho_inf as a root of multiplicity three there, so the size after k steps is rho^k times a
  * quadratic in k, which the ratio at 3 sizes takes out. */
-TEST(endless_frequencies_fall_by_rho_inf) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(endless_frequencies_fall_by_rho_inf) {
   const double rho[] = {0.9, 0.8, 0.5};
   for (int k = 0; k < 3; k++) {
     scoped_test_body b = beam(context, 6, 3, NULL);
@@ -179,8 +158,7 @@ TEST(endless_frequencies_fall_by_rho_inf) {
 }
 
 /* Second order for every rho_inf: error of one period of the first mode against steps. */
-TEST(every_member_is_of_second_order) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(every_member_is_of_second_order) {
   const double rho[] = {1.0, 0.6, 0.0};
   for (int k = 0; k < 3; k++) {
     double error[2];
@@ -189,11 +167,9 @@ TEST(every_member_is_of_second_order) {
       double omega, *shape = malloc((size_t)b.n * 3 * sizeof *shape);
       OK(mps_elastic_modes(b.elastic, 1, &omega, shape));
       OK(mps_particles_add_field(b.particles, "displacement", 0));
-      mps_edit u;
-      OK(mps_particles_edit(b.particles, "displacement", &u));
-      for (int64_t i = 0; i < b.n; i++)
-        for (int c = 0; c < 2; c++) *mps_edit_f64(&u, i, c) = shape[i * 3 + c];
-      OK(mps_particles_commit(b.particles, &u));
+      EDIT(u, b.particles, "displacement")
+        for (int64_t i = 0; i < b.n; i++)
+          for (int c = 0; c < 2; c++) *mps_edit_f64(&u, i, c) = shape[i * 3 + c];
       OK(start(&b, 2 * PI / omega / (fine ? 80 : 40), rho[k], NAN, NAN));
       OK(mps_elastic_run(b.elastic, 2.25 * 2 * PI / omega, 1, NULL, NULL));
       error[fine] = test_value(&b, "displacement", b.n - 1, 1) / shape[3 * (b.n - 1) + 1];
@@ -212,11 +188,9 @@ TEST(every_member_is_of_second_order) {
 
 /* ---- driven boundaries ----------------------------------------------------------------------- */
 
-TEST(a_driven_wall_follows_its_signal) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_driven_wall_follows_its_signal) {
   scoped_test_body b = beam(context, 8, 4, NULL);
-  scoped_signal *ramp = NULL;
-  OK(mps_signal_create_ramp(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.5, 3.0, 0.2, &ramp));
+  MAKE(signal, ramp, create_ramp, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.5, 3.0, 0.2);
   drive_wall(&b, ramp, NULL);
   OK(start(&b, 0.1, 1.0, NAN, NAN));
   for (int k = 0; k < 20; k++) {

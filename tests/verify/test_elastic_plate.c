@@ -51,8 +51,7 @@ static double tension_error(mps_context *context, int32_t state) {
   return worst;
 }
 
-TEST(a_plate_in_tension_is_exact) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_plate_in_tension_is_exact) {
   for (int32_t s = 0; s < 2; s++) {
     const double error = tension_error(context, s);
     print_message("plate in tension, 289 particles, state %d: largest error %.1e\n", s, error);
@@ -61,8 +60,7 @@ TEST(a_plate_in_tension_is_exact) {
 }
 
 /* The published method with the paper's particles on the boundary: nodal forces at the end. */
-TEST(the_published_plate_is_the_reference_value) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_published_plate_is_the_reference_value) {
   const double l0 = 1.0 / 16;
   scoped_test_body b = test_body_begin(context, 2, l0);
   test_body_box(&b, 0, 0, 0, 17 * l0, 17 * l0, 0);
@@ -168,8 +166,7 @@ static double kirsch_concentration(mps_context *context, int m) {
   return concentration;
 }
 
-TEST(the_hole_concentrates_stress_three_times) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_hole_concentrates_stress_three_times) {
   const double coarse = kirsch_concentration(context, 10);
   const double middle = kirsch_concentration(context, 20);
   const double fine = kirsch_concentration(context, 40);

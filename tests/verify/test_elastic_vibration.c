@@ -4,8 +4,6 @@
 #include "implicit/operator/budget.h"
 #include "elastic_common.h"
 
-#define PI 3.14159265358979323846
-
 /* A cantilever of nx x ny cells, its last layer clamped; E = rho = 1, nu = 0.3, height 1. */
 static test_body slender(mps_context *context, int nx, int ny, double *length) {
   const double spacing = 1.0 / ny;
@@ -62,16 +60,14 @@ static double first_mode(mps_context *context, int nx, int ny, double *expected)
   return omega[0];
 }
 
-TEST(the_period_of_a_slender_cantilever_is_that_of_beam_theory) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(the_period_of_a_slender_cantilever_is_that_of_beam_theory) {
   double expected;
   const double omega = first_mode(context, 160, 8, &expected);
   NEAR(omega / expected, 1.0, 0.01);
 }
 
 /* Released from its first mode it oscillates with that mode's period; total energy stays. */
-TEST(a_released_mode_keeps_its_period_and_energy) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(a_released_mode_keeps_its_period_and_energy) {
   double length, omega[1], strain, kinetic;
   scoped_test_body b = slender(context, 80, 8, &length);
   double *shape = malloc((size_t)b.n * 3 * sizeof *shape);
@@ -117,8 +113,7 @@ TEST(a_released_mode_keeps_its_period_and_energy) {
 }
 
 /* gamma > 1/2 takes energy until the structure rests at the static solution. */
-TEST(damped_steps_end_at_the_static_solution) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(damped_steps_end_at_the_static_solution) {
   double length;
   scoped_test_body b = slender(context, 24, 6, &length);
   const double load[2] = {0.0, -1e-3};
@@ -142,8 +137,7 @@ TEST(damped_steps_end_at_the_static_solution) {
   NEAR(force[1] / (1e-3 * length), 1.0, 1e-6);
 }
 
-TEST(bad_steps_are_refused) {
-  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+TEST_SERIAL(bad_steps_are_refused) {
   double length, omega[4];
   scoped_test_body b = slender(context, 6, 3, &length);
   mps_elastic_motion_def def = mps_elastic_motion_defaults();

@@ -89,7 +89,6 @@ TEST(sloshing_has_the_period_of_theory) {
 /* ---- elliptic drop --------------------------------------------------------------------------- */
 
 static mps_status in_circle(void *user, const double *x, int32_t *inside) {
-  (void)user;
   *inside = x[0] * x[0] + x[1] * x[1] < 1.0;
   return MPS_OK;
 }
@@ -113,21 +112,16 @@ TEST(a_drop_becomes_the_ellipse_of_theory) {
   const double l0 = 1.0 / 20.0, lo[2] = {-1.0, -1.0}, hi[2] = {1.0, 1.0};
   DEF(particles, set, .spacing = l0);
   DEF(fluid, def, .gravity[1] = 0.0, .dt = 2.5e-3);
-  scoped_particles *p = NULL;
-  scoped_fluid *f = NULL;
-  OK(mps_particles_create(context, &set, &p));
+  MAKE(particles, p, create, context, &set);
   OK(mps_particles_fill_where(p, lo, hi, in_circle, NULL, NULL));
   OK(mps_particles_add_field(p, "velocity", 0));
-  mps_view x;
-  mps_edit u;
-  OK(mps_particles_view(p, "position", &x));
-  OK(mps_particles_edit(p, "velocity", &u));
-  for (int64_t i = 0; i < mps_particles_count(p); i++) {
-    *mps_edit_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
-    *mps_edit_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
-  }
-  OK(mps_particles_commit(p, &u));
-  OK(mps_fluid_create(context, p, &def, &f));
+  mps_view x = view_field(p, "position");
+  EDIT(u, p, "velocity")
+    for (int64_t i = 0; i < mps_particles_count(p); i++) {
+      *mps_edit_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
+      *mps_edit_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
+    }
+  MAKE(fluid, f, create, context, p, &def);
   mps_totals before, after;
   OK(mps_fluid_get_totals(f, &before));
   OK(mps_fluid_run(f, 1.0, 1000, NULL, NULL));
@@ -154,7 +148,6 @@ TEST(a_drop_becomes_the_ellipse_of_theory) {
 
 /* .02 m sin(2 pi t/1 s), risen by 3 s^2 - 2 s^3 in the first second. */
 static mps_status piston(void *user, double t, double *motion) {
-  (void)user;
   const double w = 2.0 * TANK_PI, s = t < 0.0 ? 0.0 : t < 1.0 ? t : 1.0;
   const double rise = s * s * (3.0 - 2.0 * s), rate = s < 1.0 ? 6.0 * s * (1.0 - s) : 0.0;
   const double bend = s < 1.0 && t > 0.0 ? 6.0 - 12.0 * s : 0.0;

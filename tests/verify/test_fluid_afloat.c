@@ -16,8 +16,6 @@ typedef struct scene {
 } scene;
 
 static void launch(scene *s) {
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
   DEF(body, at, .motion = MPS_BODY_MOTION_FREE);
   const double height = 2.0 * s->draft;
   at.position[0] = 0.5 * s->length, at.position[1] = s->depth - s->draft + 0.5 * height;
@@ -26,9 +24,8 @@ static void launch(scene *s) {
   at.gravity[1] = -TANK_G;
   at.damping[0] = s->damping;
   OK(mps_body_create_box(context, &at, s->width, height, &s->body));
-  set.spacing = s->l0;
-  def.level = s->depth;
-  OK(mps_particles_create(context, &set, &s->t.water));
+  DEF(fluid, def, .level = s->depth);
+  USING(particles, mps_particles_create(context, &given, &s->t.water), .spacing = s->l0);
   const int columns = (int)lround(s->length / s->l0), rows = (int)lround(s->depth / s->l0);
   for (int j = 0; j < rows; j++)
     for (int i = 0; i < columns; i++) {
@@ -340,10 +337,8 @@ TEST(bad_bodies_are_refused) {
   mps_contact_destroy(&s.contact);
   assert_true(gone != NULL && s.contact == NULL);
   DEF(body, def, .position[0] = 0.4, .position[1] = 0.4);
-  mps_fluid_contact_def floating = mps_fluid_contact_defaults();
-  scoped_body *held = NULL;
-  OK(mps_body_create_box(context, &def, 0.4, 0.2, &held));
-  floating.mover = 2;
+  MAKE(body, held, create_box, context, &def, 0.4, 0.2);
+  DEF(fluid_contact, floating, .mover = 2);
   REFUSES(mps_fluid_add_contact(s.t.fluid, held, &floating, &contact), "mover is 2");
   assert_null(contact);
   contact = tank_body(s.t.fluid, held, MPS_CONTACT_MOVER_OTHER);

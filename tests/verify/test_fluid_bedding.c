@@ -35,7 +35,7 @@ static void fill(double spacing, bool inside, const double *shift, double distur
       const bool rock = y < height_of_rock(x);
       double at[2] = {x, y};
       if (rock != inside) continue;
-      for (int c = 0; c < 2; c++) at[c] += disturb * spacing * random_number(seed);
+      for (int c = 0; c < 2; c++) at[c] += disturb * spacing * noise(seed);
       const double off = 0.45 * L0;
       const bool solid = at[0] > 0.65 - off && at[0] < 0.95 + off && at[1] > 0.1 - off;
       if (!solid && at[0] > off && at[0] < LENGTH - off && at[1] > off)
@@ -49,21 +49,17 @@ static void add_wall(int axis, double at, double side) {
 }
 
 static void start(const double *shift, double disturb, uint64_t seed, double radius) {
-  DEF(particles, set, .spacing = L0);
-  mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid_boundary_def line = mps_fluid_boundary_defaults();
   mps_fluid_rock_def rock = mps_fluid_rock_defaults();
   int32_t number;
-  OK(mps_particles_create(context, &set, &water));
+  USING(particles, mps_particles_create(context, &given, &water), .spacing = L0);
   fill(L0, false, shift, disturb, &seed);
   fill(L0 / sqrt(POROSITY), true, shift, disturb, &seed);
-  def.level = DEPTH, def.radius_ratio = radius;
+  DEF(fluid, def, .level = DEPTH, .radius_ratio = radius);
   OK(mps_fluid_create(context, water, &def, &fluid));
   add_wall(1, 0.0, 1.0);
   add_wall(0, 0.0, 1.0);
   add_wall(0, LENGTH, -1.0);
-  line.kind = MPS_BOUNDARY_ROLLER;
-  line.corners = caisson[0], line.corner_count = 5;
+  DEF(fluid_boundary, line, .kind = MPS_BOUNDARY_ROLLER, .corners = caisson[0], .corner_count = 5);
   OK(mps_fluid_add_boundary(fluid, &line, &number));
   assert_int_equal(number, CAISSON);
   rock.corners = bedding[0], rock.corner_count = 4;

@@ -18,14 +18,10 @@ typedef struct scene {
 static scene make_scene(double x, double y, double width, double height, double angle,
                         double part) {
   scene s = {{NULL, NULL}, NULL, NULL};
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
   DEF(body, at, .position[0] = x, .position[1] = y, .rotation[2] = angle);
   uint64_t seed = 5;
   OK(mps_body_create_box(context, &at, width, height, &s.body));
-  set.spacing = L0;
-  def.dt = 2e-3, def.level = 0.4;
-  OK(mps_particles_create(context, &set, &s.t.water));
+  USING(particles, mps_particles_create(context, &given, &s.t.water), .spacing = L0);
   for (int j = 0; j < 20; j++)
     for (int i = 0; i < 60; i++) {
       double p[2] = {(i + 0.5) * L0, (j + 0.5) * L0}, d;
@@ -37,7 +33,7 @@ static scene make_scene(double x, double y, double width, double height, double 
       }
       OK(mps_particles_append(s.t.water, 1, p));
     }
-  OK(mps_fluid_create(context, s.t.water, &def, &s.t.fluid));
+  USING(fluid, mps_fluid_create(context, s.t.water, &given, &s.t.fluid), .dt = 2e-3, .level = 0.4);
   tank_wall(s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(s.t.fluid, 1.2, 0.0, -1.0, 0.0, NULL);
@@ -220,7 +216,7 @@ TEST(a_box_that_starts_feels_its_added_mass) {
 static double blows(double amplitude, double shift) {
   const double period = 0.9, dt = 2e-3;
   scene s = make_scene(0.6 + shift, 0.4 + shift, 0.24, 0.16, 0.0, 0.0);
-  mps_signal *heave = NULL;
+  scoped_signal *heave = NULL;
   double force[3] = {0.0}, sum = 0.0;
   int32_t samples = 0;
   OK(mps_signal_create_sine(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, amplitude, 1.0 / period, 0.0,
@@ -235,7 +231,6 @@ static double blows(double amplitude, double shift) {
     const double blow = force[1] - 0.5 * (force[0] + force[2]);
     sum += blow * blow, samples++;
   }
-  mps_signal_destroy(&heave);
   free_scene(&s);
   return sqrt(sum / (1.5 * samples));
 }
@@ -263,11 +258,10 @@ TEST(water_before_a_beach_stays_still) {
   const double slopes[3] = {10.0, 30.0, 45.0};
   for (int n = 0; n < 3; n++) {
     const double angle = slopes[n] * TANK_PI / 180.0, T[2] = {cos(angle), sin(angle)};
-    DEF(particles, set, .spacing = L0);
     DEF(fluid, def, .dt = 2e-3);
     scoped_tank t = {NULL, NULL};
     uint64_t seed = 5;
-    OK(mps_particles_create(context, &set, &t.water));
+    USING(particles, mps_particles_create(context, &given, &t.water), .spacing = L0);
     double area = 0.0;
     for (int j = 0; j < 15; j++)
       for (int i = 0; i < 200; i++) {

@@ -31,15 +31,10 @@ static void add_wall(mps_fluid *fluid, int axis, double at, double side) {
 }
 
 static mps_fluid *make(mps_particles **water) {
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid *fluid = NULL;
-  const double lower[2] = {0.0, 0.0}, upper[2] = {2.0 * H, H};
-  set.spacing = H / ROWS;
-  OK(mps_particles_create(context, &set, water));
-  OK(mps_particles_fill_box(*water, lower, upper, NULL));
-  def.level = H;
-  OK(mps_fluid_create(context, *water, &def, &fluid));
+  USING(particles, mps_particles_create(context, &given, water), .spacing = H / ROWS);
+  OK(mps_particles_fill_box(*water, AT(0.0, 0.0), AT(2.0 * H, H), NULL));
+  DEF(fluid, def, .level = H);
+  MAKE_KEPT(fluid, fluid, create, context, *water, &def);
   add_wall(fluid, 1, 0.0, 1.0);
   add_wall(fluid, 0, 0.0, 1.0);
   add_wall(fluid, 0, LENGTH, -1.0);

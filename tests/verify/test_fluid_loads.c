@@ -12,7 +12,6 @@
 static double shaking(int n) { return 0.4 * sin(0.013 * n) - 0.2 * sin(0.031 * n); }
 
 static mps_status shake(void *user, double t, double motion[3]) {
-  (void)t;
   motion[0] = -shaking(*(const int *)user), motion[1] = motion[2] = 0.0;
   return MPS_OK;
 }
@@ -54,23 +53,18 @@ TEST(a_drop_falls) {
   const double middle[2] = {0.0, 0.0}, apart[2] = {5.0, 0.0}, b = 3.0;
   DEF(particles, set, .spacing = 0.1);
   DEF(fluid, def, .gravity[1] = 0.0, .dt = 1e-3, .measure = 0.5);
-  mps_fluid_load_def load = mps_fluid_load_defaults();
-  scoped_particles *water = NULL;
-  scoped_fluid *fluid = NULL;
-  OK(mps_particles_create(context, &set, &water));
+  MAKE(particles, water, create, context, &set);
   OK(mps_particles_fill_ball(water, middle, 1.0, NULL));
   const int64_t drop = mps_particles_count(water);
   OK(mps_particles_append(water, 1, apart));
-  OK(mps_fluid_create(context, water, &def, &fluid));
-  mps_view id;
+  MAKE(fluid, fluid, create, context, water, &def);
   int64_t list[512], count = 0;
-  OK(mps_particles_view(water, "id", &id));
+  mps_view id = view_field(water, "id");
   for (int64_t i = mps_particles_count(water); i-- > 0;)
     if (*mps_view_i64(&id, i, 0) != drop) list[count++] = *mps_view_i64(&id, i, 0);
   assert_int_equal(count, drop);
   for (int k = 0; k < 40; k++) list[count++] = k % 2 ? list[k] : 100000 + k; /* twice; not there */
-  load.acceleration[1] = b;
-  load.ids = list, load.id_count = count;
+  DEF(fluid_load, load, .acceleration[1] = b, .ids = list, .id_count = count);
   OK(mps_fluid_add_load(fluid, &load, NULL));
   OK(mps_fluid_step(fluid, 200));
   mps_totals sum;
@@ -87,9 +81,8 @@ TEST(a_drop_falls) {
 /* A tank whose pressure is solved to 1e-8, as forces are compared to 2e-5 of themselves. */
 static tank exact_tank(double length, double depth) {
   tank t = {NULL, NULL};
-  DEF(particles, set, .spacing = 0.02);
   DEF(fluid, def, .dt = 2e-3, .level = depth, .tolerance = 1e-8);
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = 0.02);
   tank_fill(t.water, length, depth, NULL, NULL);
   OK(mps_fluid_create(context, t.water, &def, &t.fluid));
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
@@ -252,14 +245,12 @@ TEST(a_damping_zone_slows_what_is_in_it) {
   const double middle[2] = {0.0, 0.0}, dt = 1e-3, rate = 3.0;
   DEF(particles, set, .spacing = 0.02);
   DEF(fluid, def, .gravity[1] = 0.0, .dt = dt, .level = 0.0);
-  scoped_particles *water = NULL;
-  scoped_fluid *fluid = NULL;
   mps_totals sum;
-  OK(mps_particles_create(context, &set, &water));
+  MAKE(particles, water, create, context, &set);
   OK(mps_particles_fill_ball(water, middle, 0.1, NULL));
   OK(mps_particles_add_field(water, "velocity", 0));
   OK(mps_particles_set(water, "velocity", 0, 0.5));
-  OK(mps_fluid_create(context, water, &def, &fluid));
+  MAKE(fluid, fluid, create, context, water, &def);
   DEF(fluid_load, load, .kind = MPS_FLUID_LOAD_DAMPING, .rate = rate, .all = 1);
   OK(mps_fluid_add_load(fluid, &load, NULL));
   OK(mps_fluid_step(fluid, 100));
@@ -279,7 +270,6 @@ TEST(a_damping_zone_slows_what_is_in_it) {
 /* ---- errors ---------------------------------------------------------------------------------- */
 
 static mps_status refuse(void *user, double t, double motion[3]) {
-  (void)user, (void)t;
   motion[0] = motion[1] = motion[2] = 0.0;
   return MPS_ERROR_IO;
 }

@@ -42,24 +42,18 @@ static double distance(const double *x) {
 
 /* Water up to `level` that moves towards the wall with u, m/s. */
 static void make(double level, double u) {
-  DEF(particles, set, .spacing = L0);
-  mps_fluid_def def = mps_fluid_defaults();
-  mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
-  mps_edit edit;
-  OK(mps_particles_create(context, &set, &water));
+  USING(particles, mps_particles_create(context, &given, &water), .spacing = L0);
   for (double y = 0.5 * L0; y < level; y += L0)
     for (double x = 0.5 * L0; x < TOE; x += L0) {
       const double at[2] = {x, y};
       if (!in_solid(at) && distance(at) > 0.45 * L0) OK(mps_particles_append(water, 1, at));
     }
   OK(mps_particles_add_field(water, "velocity", 0));
-  OK(mps_particles_edit(water, "velocity", &edit));
-  for (int64_t i = 0; i < mps_particles_count(water); i++) *mps_edit_f64(&edit, i, 0) = u;
-  OK(mps_particles_commit(water, &edit));
-  def.level = level;
-  OK(mps_fluid_create(context, water, &def, &fluid));
-  wall.kind = MPS_BOUNDARY_ROLLER;
-  wall.corners = corner[0], wall.corner_count = CORNERS;
+  EDIT(edit, water, "velocity")
+    for (int64_t i = 0; i < mps_particles_count(water); i++) *mps_edit_f64(&edit, i, 0) = u;
+  USING(fluid, mps_fluid_create(context, water, &given, &fluid), .level = level);
+  DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .corners = corner[0],
+      .corner_count = CORNERS);
   OK(mps_fluid_add_boundary(fluid, &wall, NULL));
   wall.corners = NULL, wall.corner_count = 0;
   wall.normal[0] = 1.0;
@@ -72,9 +66,8 @@ static void drop(void) {
 }
 
 static int count_leaked(void) {
-  mps_view x;
   int leaked = 0;
-  OK(mps_particles_view(water, "position", &x));
+  mps_view x = view_field(water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) {
     const double at[2] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1)};
     leaked += in_solid(at) || at[0] < 0.0;
@@ -96,13 +89,12 @@ static double worst_pressure(double level) {
 
 /* The level is above the lip: the water below the curve is under pressure from above. */
 TEST(water_rests_below_a_parapet) {
-  mps_fluid_load_def damping = mps_fluid_load_defaults();
   const double station = 0.3, level = 0.55;
   double present, force[3 * (CORNERS - 1)], worst = 0.0, lift = 0.0, out = 0.0;
   int32_t number;
   int64_t segments;
   make(level, 0.0);
-  damping.all = 1, damping.kind = MPS_FLUID_LOAD_DAMPING, damping.rate = 5.0;
+  DEF(fluid_load, damping, .all = 1, .kind = MPS_FLUID_LOAD_DAMPING, .rate = 5.0);
   OK(mps_fluid_add_load(fluid, &damping, &number));
   OK(mps_fluid_step(fluid, 400));
   OK(mps_fluid_remove_load(fluid, number));
@@ -139,12 +131,11 @@ TEST(a_wave_is_thrown_back) {
   const double kinetic = sum.kinetic, before = sum.kinetic + sum.strain;
   for (int n = 0; n < 60; n++) {
     mps_reaction r;
-    mps_view u, x;
     OK(mps_fluid_run(fluid, 0.02 * (n + 1), 1000000, NULL, NULL));
     assert_int_equal(count_leaked(), 0);
     OK(mps_fluid_get_reaction(fluid, 0, &r));
-    OK(mps_particles_view(water, "velocity", &u));
-    OK(mps_particles_view(water, "position", &x));
+    mps_view u = view_field(water, "velocity");
+    mps_view x = view_field(water, "position");
     for (int64_t i = 0; i < u.shape[0]; i++) {
       const double *v = mps_view_f64(&u, i, 0), high = *mps_view_f64(&x, i, 1);
       if (high > 0.3) thrown = fmin(thrown, *v);

@@ -37,8 +37,7 @@ static double ground(const basin *b, double x) {
 }
 
 static void fill(basin *b) {
-  DEF(particles, set, .spacing = L0);
-  OK(mps_particles_create(context, &set, &b->water));
+  USING(particles, mps_particles_create(context, &given, &b->water), .spacing = L0);
   for (double y = 0.5 * L0; y < b->depth; y += L0)
     for (double x = -b->width + 0.5 * L0; x < b->width; x += L0) {
       const double at[2] = {x, y};
@@ -53,9 +52,8 @@ static void add_side(basin *b, double x, double normal) {
 }
 
 static void add_line(basin *b) {
-  DEF(fluid_boundary, line, .kind = MPS_BOUNDARY_ROLLER, .corners = b->corner[0],
-      .corner_count = b->corners);
-  OK(mps_fluid_add_boundary(b->fluid, &line, NULL));
+  USING(fluid_boundary, mps_fluid_add_boundary(b->fluid, &given, NULL), .kind = MPS_BOUNDARY_ROLLER,
+        .corners = b->corner[0], .corner_count = b->corners);
 }
 
 /* A V of `angle` degrees below 180, or a wedge of 360 - angle on a bed between walls. */
@@ -79,8 +77,7 @@ static void make_basin(basin *b, double angle) {
     b->corners = 5, b->width = round((foot + 0.4) / L0) * L0;
   }
   fill(b);
-  DEF(fluid, def, .level = b->depth);
-  OK(mps_fluid_create(context, b->water, &def, &b->fluid));
+  USING(fluid, mps_fluid_create(context, b->water, &given, &b->fluid), .level = b->depth);
   if (angle > 180.0) add_side(b, -b->width, 1.0), add_side(b, b->width, -1.0);
   add_line(b);
 }
@@ -92,9 +89,8 @@ static void drop_basin(basin *b) {
 
 /* Particles on the solid's side of the polyline. */
 static int count_leaked(const basin *b) {
-  mps_view x;
   int leaked = 0;
-  OK(mps_particles_view(b->water, "position", &x));
+  mps_view x = view_field(b->water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++)
     leaked += *mps_view_f64(&x, i, 1) < ground(b, *mps_view_f64(&x, i, 0));
   return leaked;
@@ -176,34 +172,27 @@ static void make_block(basin *b, double solid) {
   const double out = tan(0.5 * solid * RAD);
   const double corner[3][3] = {{-out, -1.0, 0.0}, {0.0, 0.0, 0.0}, {out, -1.0, 0.0}};
   double v[2 * COLUMNS * ROWS];
-  mps_particles_def set = mps_particles_defaults();
-  mps_fluid_def def = mps_fluid_defaults();
   *b = (basin){.corners = 3};
   memcpy(b->corner, corner, sizeof corner);
-  set.spacing = L0;
-  def.level = 0.0;
-  OK(mps_particles_create(context, &set, &b->water));
+  USING(particles, mps_particles_create(context, &given, &b->water), .spacing = L0);
   for (int n = 0; n < COLUMNS * ROWS; n++) {
     const double at[2] = {(n % COLUMNS - HALF + 0.5) * L0, (n / COLUMNS + 1.0) * L0};
     OK(mps_particles_append(b->water, 1, at));
     v[2 * n] = 0.0, v[2 * n + 1] = -2.0;
   }
   OK(mps_particles_add_field(b->water, "velocity", 0));
-  mps_edit edit;
-  OK(mps_particles_edit(b->water, "velocity", &edit));
-  for (int n = 0; n < COLUMNS * ROWS; n++)
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&edit, n, c) = v[2 * n + c];
-  OK(mps_particles_commit(b->water, &edit));
-  OK(mps_fluid_create(context, b->water, &def, &b->fluid));
+  EDIT(edit, b->water, "velocity")
+    for (int n = 0; n < COLUMNS * ROWS; n++)
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&edit, n, c) = v[2 * n + c];
+  USING(fluid, mps_fluid_create(context, b->water, &given, &b->fluid), .level = 0.0);
   add_line(b);
 }
 
 /* Largest difference (l0) of a particle's place from the mirror image of its twin's. */
 static double asymmetry(const basin *b, double *middle) {
   double x[COLUMNS * ROWS][2], worst = 0.0;
-  mps_view v, id;
-  OK(mps_particles_view(b->water, "position", &v));
-  OK(mps_particles_view(b->water, "id", &id));
+  mps_view v = view_field(b->water, "position");
+  mps_view id = view_field(b->water, "id");
   *middle = 0.0;
   for (int64_t i = 0; i < v.shape[0]; i++)
     for (int c = 0; c < 2; c++) x[*mps_view_i64(&id, i, 0)][c] = *mps_view_f64(&v, i, c);

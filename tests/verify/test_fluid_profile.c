@@ -37,9 +37,8 @@ static double distance(const profile *p, double x, double y) {
 
 static mps_particles *fill(const profile *p) {
   DEF(particles, set, .spacing = L0);
-  mps_particles *water = NULL;
   const double end = p->x[p->count - 1][0];
-  OK(mps_particles_create(context, &set, &water));
+  MAKE_KEPT(particles, water, create, context, &set);
   for (double y = 0.5 * L0; y < DEPTH; y += L0)
     for (double x = 0.5 * L0; x < end && ground(p, x) < y; x += L0) {
       const double at[2] = {x, y};
@@ -61,22 +60,19 @@ static int add_parts(mps_fluid *fluid, const profile *p, mps_contact **contact) 
     const double xy[8] = {a[0], 0.0, b[0], 0.0, b[0], b[1], a[0], a[1]};
     mps_body_def body_def = mps_body_defaults();
     DEF(fluid_contact, def, .kind = MPS_BOUNDARY_ROLLER);
-    scoped_body *body = NULL;
     if (!(b[0] > a[0])) continue;
-    OK(mps_body_create_polygon(context, &body_def, a[1] > 0.0 ? 4 : 3, xy, &body));
+    MAKE(body, body, create_polygon, context, &body_def, a[1] > 0.0 ? 4 : 3, xy);
     OK(mps_fluid_add_contact(fluid, body, &def, &contact[count++]));
   }
   return count;
 }
 
 static void still_water_stays_still(const profile *p) {
-  mps_fluid_def def = mps_fluid_defaults();
   scoped_fluid *fluid = NULL;
   mps_contact *contact[4] = {NULL};
   scoped_particles *water = fill(p);
   double mean = 0.0, whole = 0.5 * 9810.0 * DEPTH * DEPTH;
-  def.level = DEPTH;
-  OK(mps_fluid_create(context, water, &def, &fluid));
+  USING(fluid, mps_fluid_create(context, water, &given, &fluid), .level = DEPTH);
   wall(fluid, 0.0, 1.0);
   wall(fluid, 1.0, 0.0);
   const int parts = add_parts(fluid, p, contact);

@@ -13,8 +13,7 @@ static void add(double x, double y) {
 }
 
 static void start(double spacing) {
-  DEF(particles, set, .spacing = spacing);
-  OK(mps_particles_create(context, &set, &water));
+  USING(particles, mps_particles_create(context, &given, &water), .spacing = spacing);
 }
 
 /* Bed and the ends at 0 and `length`; rock between two stations. */
@@ -22,12 +21,10 @@ static void close_tank(double length, double level, const double *rock, mps_flui
   const double normal[3][3] = {{0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, length}};
   const double corner[4][3] = {
       {rock[0], -0.1, 0.0}, {rock[1], -0.1, 0.0}, {rock[1], 1.0, 0.0}, {rock[0], 1.0, 0.0}};
-  DEF(fluid, set, .level = level);
-  OK(mps_fluid_create(context, water, &set, &fluid));
+  USING(fluid, mps_fluid_create(context, water, &given, &fluid), .level = level);
   for (int k = 0; k < 3; k++) {
-    DEF(fluid_boundary, wall, .kind = MPS_BOUNDARY_ROLLER, .normal[0] = normal[k][0],
-        .normal[1] = normal[k][1], .point[0] = normal[k][2]);
-    OK(mps_fluid_add_boundary(fluid, &wall, NULL));
+    USING(fluid_boundary, mps_fluid_add_boundary(fluid, &given, NULL), .kind = MPS_BOUNDARY_ROLLER,
+          .normal[0] = normal[k][0], .normal[1] = normal[k][1], .point[0] = normal[k][2]);
   }
   def->corners = corner[0], def->corner_count = 4;
   OK(mps_fluid_add_rock(fluid, def, NULL));
@@ -146,7 +143,6 @@ static const double laboratory[TIMES][POINTS][2] = {/* x, level (m); x < 0: none
 static double break_dam(double alpha, double beta) {
   const double l0 = 0.01, gate = 0.29, e = 0.49, length = 0.892, stone[2] = {0.3, 0.59};
   const double time[TIMES] = {0.35, 0.75, 1.15, 1.55, 1.95};
-  mps_fluid_rock_def rock = mps_fluid_rock_defaults();
   double square = 0.0;
   int count = 0;
   start(l0);
@@ -158,7 +154,7 @@ static double break_dam(double alpha, double beta) {
   }
   for (int n = 0; n < 36; n++) /* e .29 .025/l0^2 */
     add(stone[0] + 0.29 * (n / 2 + 0.5) / 18.0, 0.00625 + 0.0125 * (n % 2));
-  rock.porosity = e, rock.diameter = 0.0159, rock.alpha = alpha, rock.beta = beta;
+  DEF(fluid_rock, rock, .porosity = e, .diameter = 0.0159, .alpha = alpha, .beta = beta);
   close_tank(length, 0.35, stone, &rock);
   for (int n = 0; n < TIMES; n++) {
     OK(mps_fluid_run(fluid, time[n], 1000000, NULL, NULL));

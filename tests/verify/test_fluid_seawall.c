@@ -65,15 +65,11 @@ static void fill(mps_particles *water, double l0, bool product) {
 
 static tank make_flume(double l0, bool product, mps_signal *piston) {
   tank t = {NULL, NULL};
-  DEF(particles, set, .spacing = l0);
-  DEF(fluid, def, .level = DEPTH);
-  mps_fluid_boundary_def line = mps_fluid_boundary_defaults();
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = l0);
   fill(t.water, l0, product);
-  OK(mps_fluid_create(context, t.water, &def, &t.fluid));
-  line.kind = MPS_BOUNDARY_ROLLER;
-  line.corners = corner[0], line.corner_count = CORNERS;
-  OK(mps_fluid_add_boundary(t.fluid, &line, NULL));
+  USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = DEPTH);
+  USING(fluid_boundary, mps_fluid_add_boundary(t.fluid, &given, NULL), .kind = MPS_BOUNDARY_ROLLER,
+        .corners = corner[0], .corner_count = CORNERS);
   tank_wall(t.fluid, PISTON, 0.0, 1.0, 0.0, piston);
   return t;
 }
@@ -121,9 +117,8 @@ static double arrival(const record *r, int g, double after, double level) {
 
 /* Water behind the crest, m2. */
 static double passed(const tank *t, double l0) {
-  mps_view x;
   int64_t count = 0;
-  OK(mps_particles_view(t->water, "position", &x));
+  mps_view x = view_field(t->water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) count += *mps_view_f64(&x, i, 0) > corner[4][0];
   return (double)count * l0 * l0;
 }
@@ -168,7 +163,6 @@ static void compare(double l0, bool product, const char *path, double *height, d
 }
 
 static void a_wave_breaks_and_passes_the_wall(void **state) {
-  (void)state;
   double height[GAUGES], time[GAUGES];
   compare(0.02, false, NULL, height, time);
   for (int g = 1; g < GAUGES - 2; g++) NEAR(time[g], 0.0, 0.15);
@@ -184,7 +178,6 @@ static const char *results;
 static bool by_product;
 
 static void a_row(void **state) {
-  (void)state;
   double height[GAUGES], time[GAUGES];
   compare(spacing, by_product, results, height, time);
 }

@@ -40,7 +40,6 @@ static void climb(double e, double l0, double *passing, double *wall) {
 }
 
 static void a_solitary_wave_climbs_a_wall(void **state) {
-  (void)state;
   double e, run_up;
   climb(0.3, 0.025, &e, &run_up);
   const double theory = 2.0 * e + 0.5 * e * e + 0.75 * e * e * e;
@@ -62,9 +61,8 @@ static double off_slope(const slope *s, const double *x) {
 /* Water from the piston to the slope, whose foot is LENGTH from the piston. */
 static tank before_a_slope(const slope *s, double l0, mps_signal *piston_motion) {
   tank t = {NULL, NULL};
-  DEF(particles, set, .spacing = l0);
   DEF(fluid, def, .level = DEPTH, .dt = 0.1 * l0);
-  OK(mps_particles_create(context, &set, &t.water));
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = l0);
   const int rows = (int)lround(DEPTH / l0), columns = 100 * rows;
   for (int i = 0; i < columns; i++)
     for (int j = 0; j < rows; j++) {
@@ -98,7 +96,7 @@ typedef struct climbing {
 static climbing climb_slope(double e, double l0, double angle) {
   const slope s = {LENGTH, angle * TANK_PI / 180.0};
   const solitary w = solitary_of(DEPTH, e * DEPTH);
-  mps_signal *signal = goring_piston(context, &w);
+  scoped_signal *signal = goring_piston(context, &w);
   tank t = before_a_slope(&s, l0, signal);
   climbing r = {0.0, 0.0, 0.0, 0.0};
   const double station = LENGTH - 1.5, start = 3.8 / (w.number * w.speed);
@@ -112,7 +110,6 @@ static climbing climb_slope(double e, double l0, double angle) {
     r.continued = fmax(r.continued, continued(&t, &s, l0, &resolved));
     r.resolved = fmax(r.resolved, resolved);
   }
-  mps_signal_destroy(&signal);
   tank_free(&t);
   r.theory = 2.831 * sqrt(1.0 / tan(s.angle)) * pow(r.passing, 1.25);
   print_message(
@@ -124,7 +121,6 @@ static climbing climb_slope(double e, double l0, double angle) {
 }
 
 static void a_solitary_wave_climbs_a_slope(void **state) {
-  (void)state;
   const climbing r = climb_slope(0.2, 0.03, 20.0);
   NEAR(r.passing, 0.2, 0.05 * 0.2);
   assert_true(r.resolved > 0.0 && r.resolved < r.continued);
@@ -136,7 +132,6 @@ static void a_solitary_wave_climbs_a_slope(void **state) {
 static double asked[3];
 
 static void a_row(void **state) {
-  (void)state;
   double e, run_up;
   if (asked[2] > 0.0) {
     climb_slope(asked[0], asked[1], asked[2]);

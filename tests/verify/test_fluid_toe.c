@@ -21,9 +21,8 @@ TEST(a_face_almost_flat_on_the_bed_is_refused) {
   const double a = tan(14.0 * TANK_PI / 180.0);
   const double xy[] = {1.0, 0.0, 1.4, 0.0, 1.4, 0.4 * a, 0.6, 0.4 * a};
   const mps_body_def at = mps_body_defaults();
-  scoped_body *body = NULL;
   scoped_tank t = tank_make(context, 2.0, 0.1, 0.02, NULL, 2e-3);
-  OK(mps_body_create_polygon(context, &at, 4, xy, &body));
+  MAKE(body, body, create_polygon, context, &at, 4, xy);
   assert_int_equal(mps_fluid_add_contact(t.fluid, body, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(context)->message, "enclose 14 degrees of fluid"));
 }

@@ -9,29 +9,25 @@
 
 /* Velocities of the stream function sin(pi x) sin(pi y)/pi, or its square. */
 static void add_swirl(mps_particles *water, bool square, double size) {
-  mps_view x;
-  mps_edit u;
   OK(mps_particles_add_field(water, "velocity", 0));
-  OK(mps_particles_view(water, "position", &x));
-  OK(mps_particles_edit(water, "velocity", &u));
-  for (int64_t i = 0; i < mps_particles_count(water); i++) {
-    const double a = TANK_PI * *mps_view_f64(&x, i, 0), b = TANK_PI * *mps_view_f64(&x, i, 1);
-    *mps_edit_f64(&u, i, 0) = size * (square ? sin(a) * sin(a) * sin(2.0 * b) : sin(a) * cos(b));
-    *mps_edit_f64(&u, i, 1) = -size * (square ? sin(b) * sin(b) * sin(2.0 * a) : cos(a) * sin(b));
-  }
-  OK(mps_particles_commit(water, &u));
+  mps_view x = view_field(water, "position");
+  EDIT(u, water, "velocity")
+    for (int64_t i = 0; i < mps_particles_count(water); i++) {
+      const double a = TANK_PI * *mps_view_f64(&x, i, 0), b = TANK_PI * *mps_view_f64(&x, i, 1);
+      *mps_edit_f64(&u, i, 0) = size * (square ? sin(a) * sin(a) * sin(2.0 * b) : sin(a) * cos(b));
+      *mps_edit_f64(&u, i, 1) = -size * (square ? sin(b) * sin(b) * sin(2.0 * a) : cos(a) * sin(b));
+    }
 }
 
 /* Rate of the velocity's decay between t1 and t2, in units of NU/(1 m)^2. The level stands above
  * the box, so that no pressure is below 0. Flow between walls of no slip decays to where the
  * particles' own noise counts: it begins faster. */
 static double decay(int32_t kind, double l0, double t1, double t2) {
-  mps_particles *water = NULL;
-  mps_fluid *fluid = NULL;
+  scoped_fluid *fluid = NULL;
   DEF(particles, set, .spacing = l0);
   DEF(fluid, def, .gravity[1] = -0.1, .level = 2.0, .viscosity = 1000.0 * NU,
       .dt = fmin(0.02, 0.15 * l0 * l0 / NU));
-  OK(mps_particles_create(context, &set, &water));
+  MAKE(particles, water, create, context, &set);
   tank_fill(water, 1.0, 1.0, NULL, NULL);
   const bool held = kind == MPS_BOUNDARY_HELD;
   add_swirl(water, held, held ? 0.05 : 0.02);
@@ -49,8 +45,6 @@ static double decay(int32_t kind, double l0, double t1, double t2) {
   OK(mps_fluid_get_totals(fluid, &first));
   OK(mps_fluid_run(fluid, t2, 1000, NULL, NULL));
   OK(mps_fluid_get_totals(fluid, &last));
-  mps_fluid_destroy(&fluid);
-  mps_particles_destroy(&water);
   return 0.5 * log(first.kinetic / last.kinetic) / (t2 - t1) / NU;
 }
 
@@ -82,11 +76,10 @@ TEST(flow_between_walls_of_no_slip_decays_as_the_stokes_mode) {
  * include the friction, so that they make up the change of its momentum but for some hundredths. */
 TEST(walls_feel_the_friction) {
   const double l0 = 0.02, length = 0.4, depth = 0.2;
-  scoped_particles *water = NULL;
   scoped_fluid *fluid = NULL;
   DEF(particles, set, .spacing = l0);
   DEF(fluid, def, .dt = 2e-3, .level = depth, .viscosity = 1000.0 * NU);
-  OK(mps_particles_create(context, &set, &water));
+  MAKE(particles, water, create, context, &set);
   tank_fill(water, length, depth, NULL, NULL);
   OK(mps_fluid_create(context, water, &def, &fluid));
   mps_fluid_boundary_def bed = mps_fluid_boundary_defaults(); /* no slip */

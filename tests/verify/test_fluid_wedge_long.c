@@ -19,8 +19,7 @@ static mps_body *make_wedge(double angle) {
   const double half = 0.9, rise = half * tan(angle * TANK_PI / 180.0);
   const double corner[6] = {0.0, 0.0, half, rise, -half, rise};
   DEF(body, at, .position[0] = HALF, .position[1] = DEPTH);
-  mps_body *body = NULL;
-  OK(mps_body_create_polygon(context, &at, 3, corner, &body));
+  MAKE_KEPT(body, body, create_polygon, context, &at, 3, corner);
   return body;
 }
 

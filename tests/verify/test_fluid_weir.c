@@ -18,9 +18,8 @@
 
 /* Head of the mean level of what is in the basin. */
 static double head_of(mps_particles *water) {
-  mps_view x;
   int64_t inside = 0;
-  OK(mps_particles_view(water, "position", &x));
+  mps_view x = view_field(water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < LENGTH;
   return (double)inside * L0 * L0 / LENGTH - HEIGHT;
 }
@@ -47,21 +46,16 @@ static void add_walls(mps_fluid *fluid, double length, double height, double cre
 /* `head` above a weir of `height`. */
 static mps_fluid *make_basin(double l0, double length, double height, double head, double crest,
                              mps_particles **water) {
-  DEF(particles, set, .spacing = l0);
-  mps_fluid_def def = mps_fluid_defaults();
   mps_fluid *fluid = NULL;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {length, height + head};
-  OK(mps_particles_create(context, &set, water));
-  OK(mps_particles_fill_box(*water, lo, hi, NULL));
-  def.level = height + head;
-  OK(mps_fluid_create(context, *water, &def, &fluid));
+  USING(particles, mps_particles_create(context, &given, water), .spacing = l0);
+  OK(mps_particles_fill_box(*water, AT(0.0, 0.0), AT(length, height + head), NULL));
+  USING(fluid, mps_fluid_create(context, *water, &given, &fluid), .level = height + head);
   add_walls(fluid, length, height, crest);
   return fluid;
 }
 
 /* Theory continues from the head that was measured when the first front had left. */
 static void a_basin_runs_out_by_the_law_of_the_weir(void **state) {
-  (void)state;
   const double law = pow(2.0 / 3.0, 1.5) * sqrt(9.81); /* m^.5/s */
   const double time[3] = {2.0, 6.0, 10.0};
   double head[3];
@@ -86,10 +80,9 @@ static double released(double l0, double head) {
   const double depth = 0.2, length = 1.0;
   mps_particles *water = NULL;
   mps_fluid *fluid = make_basin(l0, length, depth - head, head, 0.05, &water);
-  mps_view x;
   int64_t inside = 0;
   OK(mps_fluid_run(fluid, 0.8, 100000, NULL, NULL));
-  OK(mps_particles_view(water, "position", &x));
+  mps_view x = view_field(water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < length;
   mps_fluid_destroy(&fluid);
   mps_particles_destroy(&water);
@@ -97,7 +90,6 @@ static double released(double l0, double head) {
 }
 
 static void a_small_head_passes_as_on_a_finer_grid(void **state) {
-  (void)state;
   const double coarse = released(L0, 1.5 * L0), fine = released(0.5 * L0, 1.5 * L0);
   printf("weir: head 1.5 spacings: %.2e m2 in .8 s, on a grid twice as fine %.2e\n", coarse, fine);
   NEAR(coarse / fine, 1.0, 0.2);
@@ -113,11 +105,9 @@ enum { SAMPLES = 40 };
 static double overflow(double l0, double head, double resolved, double *thin) {
   const double depth = 0.2, length = 1.0, station = length - 2.0 * l0;
   double t[SAMPLES], heads[SAMPLES];
-  mps_particles *water = NULL;
-  mps_fluid *fluid = make_basin(l0, length, depth - head, head, 0.05, &water);
-  mps_overtopping_def def = mps_overtopping_defaults();
+  scoped_particles *water = NULL;
+  scoped_fluid *fluid = make_basin(l0, length, depth - head, head, 0.05, &water);
   mps_overtopping found;
-  mps_view x;
   int64_t inside = 0;
   for (int k = 0; k < SAMPLES; k++) {
     t[k] = SPAN * k / (SAMPLES - 1.0);
@@ -125,19 +115,15 @@ static double overflow(double l0, double head, double resolved, double *thin) {
     OK(mps_fluid_get_levels(fluid, 1, &station, &heads[k]));
     heads[k] -= depth - head;
   }
-  def.samples = SAMPLES, def.times = t, def.heads = heads;
-  def.resolved = resolved, def.depth = depth;
-  OK(mps_overtopping_find(context, &def, 0, NULL, &found));
-  OK(mps_particles_view(water, "position", &x));
+  USING(overtopping, mps_overtopping_find(context, &given, 0, NULL, &found), .samples = SAMPLES,
+        .times = t, .heads = heads, .resolved = resolved, .depth = depth);
+  mps_view x = view_field(water, "position");
   for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < length;
-  mps_fluid_destroy(&fluid);
-  mps_particles_destroy(&water);
   *thin = found.thin;
   return length * depth - (double)inside * l0 * l0;
 }
 
 static void a_low_head_passes_by_the_level_before_the_weir(void **state) {
-  (void)state;
   double thin, none;
   const double counted = overflow(L0, 0.7 * L0, 1.3 * L0, &thin);
   const double fine = overflow(0.5 * L0, 0.7 * L0, 0.5 * L0, &none);
@@ -152,7 +138,6 @@ static void a_low_head_passes_by_the_level_before_the_weir(void **state) {
 static double asked[2];
 
 static void a_row(void **state) {
-  (void)state;
   double thin;
   const double counted = overflow(asked[1], asked[0], 1.0, &thin);
   printf("weir: head %g m, l0 %g m: counted %.3e m2 in .5 s, by the level %.3e\n", asked[0],

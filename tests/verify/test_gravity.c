@@ -1,23 +1,7 @@
 /* test_gravity.c - gravity, a member of every solver's definition: bodies that nothing holds fall
  * by it, a body that stands on a boundary rests on it with its weight, and it is a body load on all
  * particles, bit for bit. SPDX-License-Identifier: BSD-3-Clause */
-#include "test_fixture.h"
-
-static mps_particles *block(void) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  return set;
-}
-
-static mps_material *rubber(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
-  return material;
-}
+#include "kit/block.h"
 
 static const double pull[3] = {1.5, -9.81, 0.0};
 
@@ -41,15 +25,12 @@ TEST(free_bodies_fall) {
   mps_mpm_def mpm_def = mps_mpm_defaults();
   mps_dynamics_def dynamics_def = mps_dynamics_defaults();
   mps_fluid_def fluid_def = mps_fluid_defaults();
-  mps_mpm *mpm = NULL;
   mps_dynamics *dynamics = NULL;
-  scoped_fluid *fluid = NULL;
   for (int c = 0; c < 3; c++)
     mpm_def.gravity[c] = dynamics_def.gravity[c] = fluid_def.gravity[c] = pull[c];
   mpm_def.cell = 0.2, mpm_def.dt = 1e-4;
-  OK(mps_mpm_create(context, set, material, &mpm_def, &mpm));
+  MAKE(mpm, mpm, create, context, set, material, &mpm_def);
   mpm_falls(mpm, 1e-12);
-  mps_mpm_destroy(&mpm);
   mps_particles_destroy(&set);
   for (int euler = 0; euler < 2; euler++) {
     set = block();
@@ -63,7 +44,7 @@ TEST(free_bodies_fall) {
   }
   set = block();
   fluid_def.dt = 1e-4;
-  OK(mps_fluid_create(context, set, &fluid_def, &fluid));
+  MAKE(fluid, fluid, create, context, set, &fluid_def);
   fluid_falls(fluid, 1e-5); /* the residual of its pressures */
 }
 
@@ -71,26 +52,23 @@ TEST(free_bodies_fall) {
  * load, with the same bits. */
 TEST(a_block_rests_with_its_weight) {
   double displacement[2][32];
-  mps_elastic_def def = mps_elastic_defaults();
   scoped_material *material = rubber();
-  def.material = material;
+  DEF(elastic, def, .material = material);
   for (int by_load = 0; by_load < 2; by_load++) {
     scoped_particles *set = block();
-    scoped_elastic *elastic = NULL;
     mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
     mps_elastic_load_def load = mps_elastic_load_defaults();
     int32_t number;
     mps_reaction r;
-    mps_view u;
     for (int c = 0; c < 2; c++) def.gravity[c] = by_load ? 0.0 : pull[c], load.force[c] = pull[c];
-    OK(mps_elastic_create(context, set, &def, &elastic));
+    MAKE(elastic, elastic, create, context, set, &def);
     foot.upper[1] = 0.1, load.all = 1;
     OK(mps_elastic_add_boundary(elastic, &foot, &number));
     if (by_load) OK(mps_elastic_add_load(elastic, &load, NULL));
     OK(mps_elastic_solve(elastic));
     OK(mps_elastic_get_reaction(elastic, number, &r));
     for (int c = 0; c < 2; c++) NEAR(r.force[c], -320.0 * pull[c], 1e-6);
-    OK(mps_particles_view(set, "displacement", &u));
+    mps_view u = view_field(set, "displacement");
     for (int64_t k = 0; k < 32; k++) displacement[by_load][k] = *mps_view_f64(&u, k, 1);
   }
   for (int k = 0; k < 32; k++) assert_true(displacement[0][k] == displacement[1][k]);
@@ -110,18 +88,14 @@ TEST(gravity_is_a_body_load) {
   for (int by_load = 0; by_load < 2; by_load++) {
     scoped_particles *set = block();
     DEF(dynamics, def, .material = material);
-    mps_dynamics_boundary_def foot = mps_dynamics_boundary_defaults();
     DEF(dynamics_load, load, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1);
-    scoped_dynamics *dynamics = NULL;
-    mps_view v;
     for (int c = 0; c < 2; c++)
       def.gravity[c] = by_load ? 0.0 : pull[c], load.acceleration[c] = pull[c];
-    OK(mps_dynamics_create(context, set, &def, &dynamics));
-    foot.upper[1] = 0.1;
-    OK(mps_dynamics_add_boundary(dynamics, &foot, NULL));
+    MAKE(dynamics, dynamics, create, context, set, &def);
+    USING(dynamics_boundary, mps_dynamics_add_boundary(dynamics, &given, NULL), .upper[1] = 0.1);
     if (by_load) OK(mps_dynamics_add_load(dynamics, &load, NULL));
     OK(mps_dynamics_step(dynamics, 50));
-    OK(mps_particles_view(set, "velocity", &v));
+    mps_view v = view_field(set, "velocity");
     for (int64_t k = 0; k < 64; k++) velocity[by_load][k] = *mps_view_f64(&v, k / 2, (int)(k % 2));
   }
   double largest = 0.0;

@@ -1,7 +1,7 @@
 /* test_load_factors.c - numbers in time: tables that are linear between samples, or change in
  * steps; the factor on a load that each solver takes from one, to rounding; and that a load takes
  * no motion, a boundary or body no number. SPDX-License-Identifier: BSD-3-Clause */
-#include "test_fixture.h"
+#include "kit/block.h"
 
 #define VALUE MPS_SIGNAL_QUANTITY_VALUE
 
@@ -12,9 +12,8 @@ static const double jump_to[SAMPLES] = {0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
 
 static mps_signal *jump(int32_t quantity, double scale) {
   double t[SAMPLES];
-  mps_signal *signal = NULL;
   for (int k = 0; k < SAMPLES; k++) t[k] = scale * jump_at[k];
-  OK(mps_signal_create_table(context, quantity, SAMPLES, t, jump_to, &signal));
+  MAKE_KEPT(signal, signal, create_table, context, quantity, SAMPLES, t, jump_to);
   return signal;
 }
 
@@ -94,22 +93,6 @@ TEST(a_number_is_no_motion) {
 
 /* ---- solvers --------------------------------------------------------------------------------- */
 
-static mps_particles *block(void) {
-  DEF(particles, def, .spacing = 0.1);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {0.8, 0.4};
-  mps_particles *set = NULL;
-  OK(mps_particles_create(context, &def, &set));
-  OK(mps_particles_fill_box(set, lo, hi, NULL));
-  OK(mps_particles_set(set, "density", 0, 1000.0));
-  return set;
-}
-
-static mps_material *rubber(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
-  return material;
-}
-
 /* A block that no boundary holds is pushed along x by the same force on each particle, which the
  * factor multiplies: what one step adds to its momentum is m b factor dt, with the factor at the
  * time that the step begins. */
@@ -133,18 +116,16 @@ static mps_material *rubber(void) {
   }
 
 static void push_mpm(mps_mpm *mpm, mps_signal *signal) {
-  mps_mpm_load_def def = mps_mpm_load_defaults();
   int64_t ids[32];
   for (int k = 0; k < 32; k++) ids[k] = k;
-  def.ids = ids, def.id_count = 32;
+  DEF(mpm_load, def, .ids = ids, .id_count = 32);
   def.traction[0] = 100.0, def.signal[0] = signal; /* 10 N on 10 kg */
   OK(mps_mpm_add_load(mpm, &def, NULL));
 }
 
 static void push_dynamics(mps_dynamics *dynamics, mps_signal *signal) {
-  DEF(dynamics_load, def, .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[0] = 1.0,
-      .signal[0] = signal);
-  OK(mps_dynamics_add_load(dynamics, &def, NULL));
+  USING(dynamics_load, mps_dynamics_add_load(dynamics, &given, NULL),
+        .kind = MPS_DYNAMICS_LOAD_BODY, .all = 1, .acceleration[0] = 1.0, .signal[0] = signal);
 }
 
 static void push_fluid(mps_fluid *fluid, mps_signal *signal) {
@@ -160,25 +141,19 @@ TEST(explicit_solvers_take_the_factor_of_a_table) {
   scoped_particles *set = block();
   scoped_material *material = rubber();
   DEF(mpm, mpm_def, .cell = 0.2, .dt = 1e-4);
-  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
-  mps_fluid_def fluid_def = mps_fluid_defaults();
-  mps_mpm *mpm = NULL;
-  mps_dynamics *dynamics = NULL;
-  scoped_fluid *fluid = NULL;
-  OK(mps_mpm_create(context, set, material, &mpm_def, &mpm));
+  scoped_dynamics *dynamics = NULL;
+  MAKE(mpm, mpm, create, context, set, material, &mpm_def);
   mpm_takes_the_factor(mpm);
-  mps_mpm_destroy(&mpm);
   mps_particles_destroy(&set);
   set = block();
-  dynamics_def.material = material, dynamics_def.dt = 1e-4;
+  DEF(dynamics, dynamics_def, .material = material, .dt = 1e-4);
   dynamics_def.integrator = MPS_DYNAMICS_INTEGRATOR_EULER; /* of one force a step */
   OK(mps_dynamics_create(context, set, &dynamics_def, &dynamics));
   dynamics_takes_the_factor(dynamics);
-  mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
   set = block();
-  fluid_def.gravity[1] = 0.0, fluid_def.dt = 1e-4;
-  OK(mps_fluid_create(context, set, &fluid_def, &fluid));
+  DEF(fluid, fluid_def, .gravity[1] = 0.0, .dt = 1e-4);
+  MAKE(fluid, fluid, create, context, set, &fluid_def);
   fluid_takes_the_factor(fluid);
 }
 
@@ -187,21 +162,16 @@ TEST(implicit_elasticity_takes_the_factor_of_a_table) {
   scoped_particles *set = block();
   DEF(elastic, def, .material = rubber());
   mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
-  mps_elastic_load_def load = mps_elastic_load_defaults();
-  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  scoped_elastic *elastic = NULL;
   int64_t facets[8], count;
-  OK(mps_elastic_create(context, set, &def, &elastic));
+  MAKE(elastic, elastic, create, context, set, &def);
   for (int c = 0; c < 2; c++) foot.lower[c] = -9.0, foot.upper[c] = 9.0;
   foot.upper[0] = 0.1;
   OK(mps_elastic_add_boundary(elastic, &foot, NULL));
   OK(mps_elastic_select_facets(elastic, MPS_SIDE_X_UPPER, NULL, NULL, 8, &count, facets));
-  load.kind = MPS_ELASTIC_LOAD_TRACTION;
-  load.ids = facets, load.id_count = count;
-  load.force[0] = 1e3, load.signal[0] = jump(VALUE, 1.0);
+  DEF(elastic_load, load, .kind = MPS_ELASTIC_LOAD_TRACTION, .ids = facets, .id_count = count,
+      .force[0] = 1e3, .signal[0] = jump(VALUE, 1.0));
   OK(mps_elastic_add_load(elastic, &load, NULL));
-  motion.dt = 0.067;
-  OK(mps_elastic_start(elastic, &motion));
+  USING(elastic_motion, mps_elastic_start(elastic, &given), .dt = 0.067);
   for (int k = 0; k < 64; k++) {
     double force[3];
     OK(mps_elastic_step(elastic, 1));
@@ -221,23 +191,17 @@ TEST(implicit_elasticity_takes_the_factor_of_a_table) {
 
 TEST(each_takes_its_own_kind_alone) {
   mps_particles *set[4] = {block(), block(), block(), block()};
-  mps_material *material = rubber();
+  scoped_material *material = rubber();
   mps_mpm_def mpm_def = mps_mpm_defaults();
   mps_dynamics_def dynamics_def = mps_dynamics_defaults();
-  mps_elastic_def elastic_def = mps_elastic_defaults();
-  mps_mpm *mpm = NULL;
-  mps_dynamics *dynamics = NULL;
-  mps_elastic *elastic = NULL;
-  mps_fluid *fluid = NULL;
-  mps_body *body = NULL;
+  scoped_elastic *elastic = NULL;
   mpm_def.cell = 0.2, mpm_def.lower[1] = 0.0, dynamics_def.material = material;
-  elastic_def.material = material;
-  OK(mps_mpm_create(context, set[0], material, &mpm_def, &mpm));
-  OK(mps_dynamics_create(context, set[1], &dynamics_def, &dynamics));
-  OK(mps_elastic_create(context, set[2], &elastic_def, &elastic));
-  OK(mps_fluid_create(context, set[3], NULL, &fluid));
-  OK(mps_body_create_disc(context, NULL, 0.1, &body));
-  mps_signal *number = jump(VALUE, 1.0), *motion = jump(MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0);
+  MAKE(mpm, mpm, create, context, set[0], material, &mpm_def);
+  MAKE(dynamics, dynamics, create, context, set[1], &dynamics_def);
+  USING(elastic, mps_elastic_create(context, set[2], &given, &elastic), .material = material);
+  MAKE(fluid, fluid, create, context, set[3], NULL);
+  MAKE(body, body, create_disc, context, NULL, 0.1);
+  scoped_signal *number = jump(VALUE, 1.0), *motion = jump(MPS_SIGNAL_QUANTITY_DISPLACEMENT, 1.0);
   const int64_t id = 3;
   DEF(mpm_load, ml, .ids = &id, .id_count = 1, .signal[1] = motion);
   NO_MOTION(mps_mpm_add_load(mpm, &ml, NULL));
@@ -260,13 +224,6 @@ TEST(each_takes_its_own_kind_alone) {
   DEF(fluid_boundary, fb, .kind = MPS_BOUNDARY_DRIVEN, .signal = number, .normal[1] = 1.0);
   NO_NUMBER(mps_fluid_add_boundary(fluid, &fb, NULL));
   NO_NUMBER(mps_body_drive(body, 0, number, 1.0));
-  mps_signal_destroy(&number);
   mps_signal_destroy(&motion);
-  mps_mpm_destroy(&mpm);
-  mps_dynamics_destroy(&dynamics);
-  mps_elastic_destroy(&elastic);
-  mps_fluid_destroy(&fluid);
-  mps_body_destroy(&body);
-  mps_material_destroy(&material);
   for (int k = 0; k < 4; k++) mps_particles_destroy(&set[k]);
 }

@@ -191,8 +191,7 @@ TEST(lode_option) {
   for (int k = 0; k < 2; k++) {
     mps_material_cam_clay_def def = clay_def(&clays[k]);
     def.lode = 1;
-    scoped_material *m = NULL;
-    OK(mps_material_create_cam_clay(context, &def, &m));
+    MAKE(material, m, create_cam_clay, context, &def);
     double slope[2];
     for (int extension = 0; extension < 2; extension++) {
       mps_material_point x = point_under(m, -clays[k].p0);
@@ -211,8 +210,7 @@ TEST(lode_option) {
 TEST(constant_shear_modulus) {
   mps_material_cam_clay_def def = clay_def(&clays[1]);
   def.shear_modulus = 2e6;
-  scoped_material *m = NULL;
-  OK(mps_material_create_cam_clay(context, &def, &m));
+  MAKE(material, m, create_cam_clay, context, &def);
   mps_material_point x = point_under(m, -clays[1].p0);
   const double gradient[9] = {0.0025, 0, 0, 0, 0.0025, 0, 0, 0, -0.005};
   OK(mps_material_point_drive(context, m, &x, gradient, 1.0, 50));

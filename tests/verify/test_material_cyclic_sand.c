@@ -19,8 +19,7 @@ static mps_material_cyclic_sand_def sand(void) {
 }
 
 static mps_material *make(const mps_material_cyclic_sand_def *def) {
-  mps_material *m = NULL;
-  OK(mps_material_create_cyclic_sand(context, def, &m));
+  MAKE_KEPT(material, m, create_cyclic_sand, context, def);
   return m;
 }
 

@@ -10,8 +10,7 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
 static const double lame = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU));
 
 static mps_material *linear_elastic(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_linear_elastic(context, E, NU, &material));
+  MAKE_KEPT(material, material, create_linear_elastic, context, E, NU);
   return material;
 }
 
@@ -112,8 +111,7 @@ static double energy(const double *f) {
 }
 
 static mps_material *neo_hookean(void) {
-  mps_material *material = NULL;
-  OK(mps_material_create_neo_hookean(context, E, NU, &material));
+  MAKE_KEPT(material, material, create_neo_hookean, context, E, NU);
   return material;
 }
 
@@ -152,11 +150,11 @@ TEST(neo_hookean_stress_is_the_derivative_of_its_energy) {
   uint64_t seed = 5;
   for (int trial = 0; trial < 20; trial++) {
     double gradient[9], rate = 0.0, power = 0.0;
-    for (int c = 0; c < 9; c++) gradient[c] = 0.3 * random_number(&seed);
+    for (int c = 0; c < 9; c++) gradient[c] = 0.3 * noise(&seed);
     mps_material_point point = point_under(material, 0.0);
     OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 3));
     for (int c = 0; c < 9; c++) {
-      gradient[c] = random_number(&seed);
+      gradient[c] = noise(&seed);
       power += point.volume_ratio * point.stress[place[c]] * gradient[c];
     }
     for (int k = -4; k <= 4; k++) {
@@ -180,13 +178,13 @@ TEST(neo_hookean_wave_modulus_bounds_every_direction) {
   for (int trial = 0; trial < 20; trial++) {
     mps_material_point point = point_under(material, 0.0);
     double gradient[9], modulus = 0.0, largest = 0.0;
-    for (int c = 0; c < 9; c++) gradient[c] = 0.4 * random_number(&seed) * (trial > 0);
+    for (int c = 0; c < 9; c++) gradient[c] = 0.4 * noise(&seed) * (trial > 0);
     OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
     mps_material_block block = {.dim = 3, .count = 1, .volume_ratio = &point.volume_ratio};
     for (int c = 0; c < 9; c++) block.deformation[c] = &point.deformation[c];
     mpsi_material_wave_moduli(material, &block, &modulus);
     for (int k = 0; k < 4000; k++) {
-      double n[3] = {random_number(&seed), random_number(&seed), random_number(&seed)}, s[2] = {0};
+      double n[3] = {noise(&seed), noise(&seed), noise(&seed)}, s[2] = {0};
       const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), h = 1e-5;
       for (int sign = 0; sign < 2; sign++) { /* d sigma_nn for a gradient n n */
         mps_material_point moved = point;
@@ -211,8 +209,7 @@ TEST(neo_hookean_wave_modulus_bounds_every_direction) {
 static mps_material *fluid(int32_t state_equation, double viscosity, int32_t no_tension) {
   DEF(material_newtonian, def, .bulk_modulus = 2e6, .state = state_equation, .viscosity = viscosity,
       .no_tension = no_tension);
-  mps_material *material = NULL;
-  OK(mps_material_create_newtonian(context, &def, &material));
+  MAKE_KEPT(material, material, create_newtonian, context, &def);
   return material;
 }
 

@@ -13,17 +13,14 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
 enum { LAWS = 5 }; /* four cones, and Mohr-Coulomb */
 
 static mps_material *soil(int law, double psi, double cohesion, double tension) {
-  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   mps_material_mohr_coulomb_def pyramid = mps_material_mohr_coulomb_defaults();
   mps_material *material = NULL;
-  cone.young = pyramid.young = E;
-  cone.cone = law;
-  cone.friction = pyramid.friction = 38.0 * PI / 180.0;
-  cone.dilation = pyramid.dilation = psi * PI / 180.0;
-  cone.cohesion = pyramid.cohesion = cohesion;
-  cone.tension = pyramid.tension = tension;
-  OK(law < 4 ? mps_material_create_drucker_prager(context, &cone, &material)
-             : mps_material_create_mohr_coulomb(context, &pyramid, &material));
+  USING(material_drucker_prager,
+        law < 4 ? mps_material_create_drucker_prager(context, &given, &material)
+                : mps_material_create_mohr_coulomb(context, &pyramid, &material),
+        .young = pyramid.young = E, .cone = law, .friction = pyramid.friction = 38.0 * PI / 180.0,
+        .dilation = pyramid.dilation = psi * PI / 180.0, .cohesion = pyramid.cohesion = cohesion,
+        .tension = pyramid.tension = tension);
   return material;
 }
 
@@ -85,7 +82,7 @@ TEST(trembling_does_not_wear_the_volume_away) {
     uint64_t seed = 3;
     double sum = 0.0, product = 1.0;
     for (int turn = 0; turn < 100000; turn++) {
-      const double strain = 0.02 * random_number(&seed) - 0.002 * sum;
+      const double strain = 0.02 * noise(&seed) - 0.002 * sum;
       swell(material, &point, strain);
       sum += strain, product *= 1.0 + strain;
       NEAR(mean_stress(point.stress), bulk * fmin(sum, 0.0), 1e-6 * bulk);
@@ -153,7 +150,7 @@ TEST(no_path_gives_energy) {
       for (int k = 0; k < 20000; k++) {
         double d[4], before = elastic_energy(point.stress), gap = point.history[1];
         const double swings = 4e-3 * sin(0.05 * k);
-        for (int c = 0; c < 4; c++) d[c] = 2e-3 * random_number(&seed) + (c < 3 ? swings : 0.0);
+        for (int c = 0; c < 4; c++) d[c] = 2e-3 * noise(&seed) + (c < 3 ? swings : 0.0);
         step(material, &point, d[0], d[1], d[2], d[3]);
         const double *s = point.stress;
         const double work = s[0] * d[0] + s[1] * d[1] + s[2] * d[2] + 2.0 * s[3] * d[3];
@@ -203,8 +200,7 @@ TEST(a_thrown_column_lands_as_high_as_it_was) {
 TEST(opens_further_at_the_apex) {
   for (int degrees = 1; degrees <= 60; degrees++) {
     DEF(material_mohr_coulomb, def, .young = E, .friction = degrees * PI / 180.0, .cohesion = 1.0);
-    scoped_material *material = NULL;
-    OK(mps_material_create_mohr_coulomb(context, &def, &material));
+    MAKE(material, material, create_mohr_coulomb, context, &def);
     mps_material_point point = point_under(material, 0.0);
     const double apex = 1.0 / tan(def.friction);
     for (int k = 1; k <= 3; k++) {

@@ -75,14 +75,12 @@ static void integrate(const clay *c, point *x, const double *strain, int steps) 
 /* Relative differences of q, p, the stress across the plane and pc from the own integration. */
 static double differ(const clay *c, const double *strain, int steps) {
   mps_material_cam_clay_def def = clay_def(c);
-  mps_material *m = NULL;
   def.lode = 1;
-  OK(mps_material_create_cam_clay(context, &def, &m));
+  MAKE(material, m, create_cam_clay, context, &def);
   mps_material_point x = point_under(m, -c->p0);
   const double half = 0.5 * strain[3];
   const double gradient[9] = {strain[0], half, 0, half, strain[1], 0, 0, 0, strain[2]};
   OK(mps_material_point_drive(context, m, &x, gradient, 1.0, steps));
-  mps_material_destroy(&m);
   point own = {{-c->p0, -c->p0, -c->p0, 0.0}, c->R * c->p0, c->e0};
   integrate(c, &own, strain, 20000);
   const double q = clay_q(&x), p = clay_p(&x);
@@ -123,9 +121,8 @@ static double root_k(double a4, double theta, double *half_slope) {
  * radial flow would have theta = 0 for the stress, and a strength lower by 16 %. */
 TEST(plane_strain_is_stronger_than_by_radial_flow) {
   mps_material_cam_clay_def def = clay_def(&soft);
-  scoped_material *m = NULL;
   def.lode = 1;
-  OK(mps_material_create_cam_clay(context, &def, &m));
+  MAKE(material, m, create_cam_clay, context, &def);
   mps_material_point x = point_under(m, -soft.p0);
   const double gradient[9] = {0.5, 0, 0, 0, -0.5, 0, 0, 0, 0};
   OK(mps_material_point_drive(context, m, &x, gradient, 1.0, 4000));

@@ -11,8 +11,7 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
 static mps_material *mohr_coulomb(double phi, double psi, double cohesion) {
   DEF(material_mohr_coulomb, def, .young = E, .poisson = NU, .friction = phi * PI / 180.0,
       .dilation = psi * PI / 180.0, .cohesion = cohesion);
-  mps_material *material = NULL;
-  OK(mps_material_create_mohr_coulomb(context, &def, &material));
+  MAKE_KEPT(material, material, create_mohr_coulomb, context, &def);
   return material;
 }
 
@@ -30,7 +29,7 @@ static mps_material_point random_return(const mps_material *material, uint64_t *
   mps_material_point point = point_under(material, 0.0);
   double gradient[9] = {0}, trace = 0.0;
   for (int c = 0; c < 3; c++) {
-    gradient[4 * c] = 8e-3 * (random_number(seed) - 0.1);
+    gradient[4 * c] = 8e-3 * (noise(seed) - 0.1);
     trace += gradient[4 * c];
   }
   for (int c = 0; c < 3; c++)
@@ -82,7 +81,7 @@ TEST(associated_returns_are_the_closest_points) {
       assert_int_equal((point.flags & MPS_MATERIAL_FLAG_APEX) != 0, kind == 3);
       for (int k = 0; k < 200; k++) { /* admissible states: scaled back towards one inside */
         double other[3];
-        for (int c = 0; c < 3; c++) other[c] = 1e5 * random_number(&seed);
+        for (int c = 0; c < 3; c++) other[c] = 1e5 * noise(&seed);
         const double over = yield_of(other, phi, C), inside = yield_of((double[3]){0}, phi, C);
         const double share = over > 0.0 ? inside / (inside - over) : 1.0;
         for (int c = 0; c < 3; c++) to[c] = share * other[c] - s[c];
@@ -156,14 +155,13 @@ TEST(element_tests_reach_coulombs_limit) {
 TEST(returns_keep_the_principal_axes) {
   static const int row[6] = {0, 1, 2, 0, 2, 1}, column[6] = {0, 1, 2, 1, 0, 2};
   scoped_material *material = mohr_coulomb(30.0, 5.0, C);
-  scoped_material *elastic = NULL;
-  OK(mps_material_create_linear_elastic(context, E, NU, &elastic));
+  MAKE(material, elastic, create_linear_elastic, context, E, NU);
   uint64_t seed = 31;
   int returned = 0;
   for (int n = 0; n < 3000; n++) {
     mps_material_point point = point_under(material, -1e4), trial = point;
     double gradient[9], a[3][3], b[3][3];
-    for (int c = 0; c < 9; c++) gradient[c] = 5e-3 * random_number(&seed);
+    for (int c = 0; c < 9; c++) gradient[c] = 5e-3 * noise(&seed);
     if (n % 3 == 0) gradient[2] = gradient[5] = gradient[6] = gradient[7] = 0.0; /* z principal */
     OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
     OK(mps_material_point_drive(context, elastic, &trial, gradient, 1.0, 1));

@@ -13,8 +13,7 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
 static mps_material *von_mises(double yield, double hardening) {
   DEF(material_von_mises, def, .young = E, .poisson = NU, .yield_stress = yield,
       .hardening = hardening);
-  mps_material *material = NULL;
-  OK(mps_material_create_von_mises(context, &def, &material));
+  MAKE_KEPT(material, material, create_von_mises, context, &def);
   return material;
 }
 
@@ -40,7 +39,7 @@ TEST(von_mises_returns_to_the_surface) {
     for (int trial = 0; trial < 1000; trial++) {
       mps_material_point point = point_under(material, 0.0);
       double gradient[9];
-      for (int c = 0; c < 9; c++) gradient[c] = 0.05 * random_number(&seed);
+      for (int c = 0; c < 9; c++) gradient[c] = 0.05 * noise(&seed);
       OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 5));
       const double now = yield + hard * 5e5 * point.history[0];
       NEAR(ROOT3 * root_j2(point.stress), now, 1e-12 * now);
@@ -63,8 +62,7 @@ static mps_material *drucker_prager(int32_t cone, double phi, double psi, double
   DEF(material_drucker_prager, def, .young = E, .poisson = NU, .cone = cone,
       .friction = phi * PI / 180.0, .dilation = psi * PI / 180.0, .cohesion = cohesion,
       .tension = tension);
-  mps_material *material = NULL;
-  OK(mps_material_create_drucker_prager(context, &def, &material));
+  MAKE_KEPT(material, material, create_drucker_prager, context, &def);
   return material;
 }
 
@@ -141,12 +139,11 @@ TEST(drucker_prager_returns_to_the_surface) {
     const double limit = cut ? tension : kappa / (3.0 * alpha);
     int cone = 0, circle = 0, plane = 0, elastic = 0;
     for (int trial = 0; trial < 4000; trial++) {
-      mps_material_point point = point_under(material, 1e4 * random_number(&seed) - 1e4);
+      mps_material_point point = point_under(material, 1e4 * noise(&seed) - 1e4);
       const mps_material_point before = point;
       double gradient[9], strain = 0.0;
-      const double swell = 4e-3 * random_number(&seed), size = 6e-3 * pow(random_number(&seed), 4);
-      for (int c = 0; c < 9; c++)
-        gradient[c] = size * random_number(&seed) + (c % 4 == 0 ? swell : 0.0);
+      const double swell = 4e-3 * noise(&seed), size = 6e-3 * pow(noise(&seed), 4);
+      for (int c = 0; c < 9; c++) gradient[c] = size * noise(&seed) + (c % 4 == 0 ? swell : 0.0);
       for (int c = 0; c < 9; c += 4) strain += gradient[c];
       OK(mps_material_point_drive(context, material, &point, gradient, 1.0, 1));
       const double p = mean_stress(point.stress), q = root_j2(point.stress);

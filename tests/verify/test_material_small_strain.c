@@ -14,8 +14,7 @@ enum { PLASTIC, DISSIPATED, FIRST };
 static mps_material *make_small(double curvature, double strength) {
   DEF(material_small_strain, def, .shear_modulus = G0, .poisson = 0.25,
       .reference_strain = STRAIN_R, .curvature = curvature, .strength = strength);
-  mps_material *m = NULL;
-  OK(mps_material_create_small_strain(context, &def, &m));
+  MAKE_KEPT(material, m, create_small_strain, context, &def);
   return m;
 }
 
@@ -151,7 +150,7 @@ TEST(no_path_gains_energy) {
     double L[9], before[6];
     memcpy(before, x.stress, sizeof before);
     const double last = x.history[DISSIPATED];
-    for (int c = 0; c < 9; c++) L[c] = 2e-5 * random_number(&seed);
+    for (int c = 0; c < 9; c++) L[c] = 2e-5 * noise(&seed);
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < i; j++) L[3 * i + j] = L[3 * j + i];
     OK(mps_material_point_drive(context, m, &x, L, 1.0, 1));

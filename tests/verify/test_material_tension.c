@@ -108,8 +108,7 @@ static bool search(const plane *planes, const double *trial, double *s) {
 static mps_material *mohr_coulomb(double phi, double psi, double tension) {
   DEF(material_mohr_coulomb, def, .young = E, .poisson = NU, .cohesion = C, .tension = tension,
       .friction = phi * PI / 180.0, .dilation = psi * PI / 180.0);
-  mps_material *material = NULL;
-  OK(mps_material_create_mohr_coulomb(context, &def, &material));
+  MAKE_KEPT(material, material, create_mohr_coulomb, context, &def);
   return material;
 }
 
@@ -118,7 +117,7 @@ static mps_material_point pull(const mps_material *material, uint64_t *seed, dou
   mps_material_point point = point_under(material, 0.0);
   double gradient[9] = {0}, trace = 0.0;
   for (int c = 0; c < 3; c++) {
-    gradient[4 * c] = 6e-3 * (random_number(seed) + 0.05);
+    gradient[4 * c] = 6e-3 * (noise(seed) + 0.05);
     trace += gradient[4 * c];
   }
   for (int c = 0; c < 3; c++)
@@ -220,10 +219,9 @@ TEST(drucker_prager_goes_to_the_closest_point) {
   uint64_t seed = 7;
   for (int n = 0; n < 3; n++) {
     const double T = 0.3 * n * kappa / (3.0 * alpha);
-    DEF(material_drucker_prager, def, .young = E, .poisson = NU, .cohesion = C, .tension = T);
-    scoped_material *material = NULL;
-    def.friction = def.dilation = phi, def.cone = MPS_MATERIAL_CONE_INSCRIBED;
-    OK(mps_material_create_drucker_prager(context, &def, &material));
+    DEF(material_drucker_prager, def, .young = E, .poisson = NU, .cohesion = C, .tension = T,
+        .friction = def.dilation = phi, .cone = MPS_MATERIAL_CONE_INSCRIBED);
+    MAKE(material, material, create_drucker_prager, context, &def);
     int cut = 0, corner = 0, cone = 0;
     for (int k = 0; k < 8000; k++) {
       double trial[3];

@@ -5,7 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define CELL 0.05     /* m */
 #define COHESION 10e3 /* Pa */
 #define PRESSURE 80e3 /* Pa, of the clay on the body */
@@ -29,7 +28,6 @@ static mps_status is_outside(void *user, const double *x, int32_t *inside) {
 }
 
 static mps_status press(void *user, const double *x, double *stress) {
-  (void)user, (void)x;
   for (int k = 0; k < 3; k++) stress[k] = -PRESSURE;
   return MPS_OK;
 }
@@ -152,11 +150,10 @@ TEST(shafts_are_pulled) {
     c.radius = 3.0 * CELL;
     scoped_mpm_scene s = make_clay(&c, 1e3 * COHESION);
     const double length = 2.0 * CELL * ceil(c.radius / CELL + RIM), strength = 0.5 * COHESION;
-    mps_body *shaft = NULL;
     mps_body_def def = mps_body_defaults();
     WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = 0.5);
     double force, moment;
-    OK(mps_body_create_box(context, &def, 2.0 * c.radius, 4.0 * length, &shaft));
+    MAKE_KEPT(body, shaft, create_box, context, &def, 2.0 * c.radius, 4.0 * length);
     run_body(&s, shaft, strength, &motion, 120, &force, &moment);
     force /= strength * 2.0 * PI * c.radius * length;
     print_message("shaft, degree %d, %d a cell: force %.4f\n", c.spline, c.along * c.along, force);

@@ -5,7 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define LENGTH 1.0
 #define DEPTH 0.1
 #define YOUNG 1e6 /* Pa */
@@ -55,15 +54,13 @@ static void lay_out(mpm_scene *s, double moves, double *along) {
 
 /* Takes a share of all velocities away but that of the whole. */
 static void damp(mpm_scene *s, double share, double moves) {
-  mps_edit v = mpm_scene_edit(s, "velocity");
-  mps_edit L = mpm_scene_edit(s, "velocity_gradient");
-  for (int64_t k = 0; k < v.view.shape[0]; k++) {
-    for (int c = 0; c < 2; c++)
-      *mps_edit_f64(&v, k, c) -= share * (*mps_view_f64(&v.view, k, c) - moves * speed[c]);
-    for (int c = 0; c < 4; c++) *mps_edit_f64(&L, k, c) *= 1.0 - share;
-  }
-  mpm_scene_commit(s, &L);
-  mpm_scene_commit(s, &v);
+  EDIT(v, s->particles, "velocity")
+    EDIT(L, s->particles, "velocity_gradient")
+      for (int64_t k = 0; k < v.view.shape[0]; k++) {
+        for (int c = 0; c < 2; c++)
+          *mps_edit_f64(&v, k, c) -= share * (*mps_view_f64(&v.view, k, c) - moves * speed[c]);
+        for (int c = 0; c < 4; c++) *mps_edit_f64(&L, k, c) *= 1.0 - share;
+      }
 }
 
 /* By how much the ends lie above the middle, across the beam. */
@@ -93,8 +90,7 @@ static double carry(int32_t spline, int32_t strain, double moves) {
   mps_view id = mpm_scene_view(&s, "id");
   for (int k = 0; k < COUNT; k++) ids[k] = *mps_view_i64(&id, k, 0);
   lay_out(&s, moves, along);
-  DEF(mpm, def, .cell = CELL, .spline = spline);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = CELL, .spline = spline);
   OK(mps_experimental_mpm_strain(s.mpm, strain));
   while (mps_mpm_time(s.mpm) < TIME) {
     OK(mps_mpm_step(s.mpm, 1));

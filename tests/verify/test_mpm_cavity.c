@@ -70,11 +70,10 @@ static mpm_scene make_ring(const clay *c) {
   OK(mps_particles_add_field(s.particles, "stress", 0));
   for (int k = 0; k < 3; k++) OK(mps_particles_set(s.particles, "stress", k, -c->p0));
   OK(mps_particles_set(s.particles, "density", 0, 1800.0));
-  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = H);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[1] = H;
-  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  DEF(pore_water, water, .porosity = c->e0 / (1.0 + c->e0));
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(mpm, mps_mpm_create(context, s.particles, s.material, &given, &s.mpm),
+        .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = H, .lower[0] = given.lower[1] = 0.0,
+        .upper[1] = H);
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .porosity = c->e0 / (1.0 + c->e0));
   press_outside(&s, c->p0);
   return s;
 }
@@ -83,12 +82,9 @@ static mpm_scene make_ring(const clay *c) {
 static mps_body *add_wall(mpm_scene *s) {
   const double out[2] = {1.0, 0.0}, t[3] = {0.0, RAMP, 10.0}, v[3] = {0.0, SPEED, SPEED};
   DEF(body, def, .position[0] = A0);
-  mps_body *wall = NULL;
-  mps_signal *signal = NULL;
-  OK(mps_body_create_half_plane(context, &def, out, &wall));
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &signal));
+  MAKE_KEPT(body, wall, create_half_plane, context, &def, out);
+  MAKE(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v);
   OK(mps_body_drive(wall, 0, signal, 1.0));
-  mps_signal_destroy(&signal);
   mpm_scene_contact(s, wall, 0.0);
   return wall;
 }

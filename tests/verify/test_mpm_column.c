@@ -5,8 +5,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
-
 /* A column between rollers, of height 1 m, starts with the stress of its weight and stays at rest:
  * sigma_yy = -rho g depth, sigma_xx = K0 sigma_yy, exact for linear stress. */
 static void column_at_rest(int32_t geometry) {
@@ -89,13 +87,10 @@ TEST(bar_period) {
   mpm_scene_box(&s, 0.0, 0.0, 0.1, length);
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = 0.02);
-  def.lower[0] = def.lower[1] = 0.0;
-  def.upper[0] = 0.1;
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.1);
   mpm_scene_solve(&s, &def);
   /* zero crossings of the total momentum: at 1/4, 3/4, ... of a period */
   double crossing[3], before = mpm_scene_totals(&s).linear[1], t_before = 0.0;

@@ -96,15 +96,13 @@ TEST(the_beam_is_in_balance) {
 
 /* Takes a share of all velocities away, to come to rest. */
 static void damp(mpm_scene *s, double share) {
-  mps_edit v = mpm_scene_edit(s, "velocity");
-  mps_edit L = mpm_scene_edit(s, "velocity_gradient");
-  for (int64_t c = 0; c < 4; c++)
-    for (int64_t k = 0; k < v.view.shape[0]; k++) {
-      if (c < 2) *mps_edit_f64(&v, k, c) *= 1.0 - share;
-      *mps_edit_f64(&L, k, c) *= 1.0 - share;
-    }
-  mpm_scene_commit(s, &L);
-  mpm_scene_commit(s, &v);
+  EDIT(v, s->particles, "velocity")
+    EDIT(L, s->particles, "velocity_gradient")
+      for (int64_t c = 0; c < 4; c++)
+        for (int64_t k = 0; k < v.view.shape[0]; k++) {
+          if (c < 2) *mps_edit_f64(&v, k, c) *= 1.0 - share;
+          *mps_edit_f64(&L, k, c) *= 1.0 - share;
+        }
 }
 
 /* Mean place of the last column of particles. */

@@ -81,12 +81,11 @@ static double left_over(int32_t sides, double width) {
                      .shift = -0.5 * width};
   mpm_scene s = field_scene(context, &of);
   const mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1) - height;
-    *mps_edit_f64(&v, k, 1) = -1e-3 * exp(-(X * X + Y * Y) / (1.5 * 1.5));
-  }
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1) - height;
+      *mps_edit_f64(&v, k, 1) = -1e-3 * exp(-(X * X + Y * Y) / (1.5 * 1.5));
+    }
   const double young = field_young(vs), before = field_energy(&s, young);
   OK(mps_mpm_run(s.mpm, 1.6 * width / vs, 1000000, NULL, NULL));
   const double after = field_energy(&s, young);
@@ -126,12 +125,11 @@ static double wet_energy_left(int32_t sides, double permeability, bool water_fir
   of.sides = sides;
   if (water_first) field_set_sides(&s, &of);
   const mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double X = *mps_view_f64(&x, k, 0) / 1.5;
-    *mps_edit_f64(&v, k, 0) = 1e-3 * exp(-X * X);
-  }
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double X = *mps_view_f64(&x, k, 0) / 1.5;
+      *mps_edit_f64(&v, k, 0) = 1e-3 * exp(-X * X);
+    }
   const double before = mpm_scene_totals(&s).kinetic, c = sqrt(21.0 * modulus / FIELD_RHO);
   OK(mps_mpm_run(s.mpm, width / c, 1000000, NULL, NULL));
   const double after = mpm_scene_totals(&s).kinetic;
@@ -169,9 +167,8 @@ TEST(energy_is_balanced) {
                            .motion = signal,
                            .budget = 1};
   scoped_mpm_scene s = field_scene(context, &of);
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = k % 7 == 0 ? 0.01 : 0.0;
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = k % 7 == 0 ? 0.01 : 0.0;
   OK(mps_mpm_run(s.mpm, 1.0, 1000000, NULL, NULL));
   mps_mpm_energy_report l;
   OK(mps_mpm_get_energy_report(s.mpm, &l));
@@ -190,8 +187,7 @@ TEST(energy_is_balanced) {
 static mpm_scene shaken_sand(double width, int32_t sides, double end, mps_signal *signal) {
   DEF(material_mohr_coulomb, law, .young = field_young(100.0), .poisson = FIELD_NU,
       .friction = 30.0 * PI / 180.0, .cohesion = 1000.0);
-  mps_material *sand = NULL;
-  OK(mps_material_create_mohr_coulomb(context, &law, &sand));
+  MAKE(material, sand, create_mohr_coulomb, context, &law);
   const field_ground of = {.width = width,
                            .height = 8.0,
                            .spacing = 0.5,
@@ -202,7 +198,6 @@ static mpm_scene shaken_sand(double width, int32_t sides, double end, mps_signal
                            .motion = signal,
                            .law = sand};
   mpm_scene s = field_scene(context, &of);
-  mps_material_destroy(&sand);
   OK(mps_mpm_run(s.mpm, end, 1000000, NULL, NULL));
   return s;
 }

@@ -42,14 +42,13 @@ static double noise_at(double x, double y, int c) {
 /* `mirrored`: of the scene whose image at x = width/2 this one is. */
 static void add_noise(mpm_scene *s, double width, bool mirrored) {
   const mps_view x = mpm_scene_view(s, "position");
-  mps_edit v = mpm_scene_edit(s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1);
-    const double at = mirrored ? width - X : X;
-    *mps_edit_f64(&v, k, 0) = NOISE * noise_at(at, Y, 0) * (mirrored ? -1.0 : 1.0);
-    *mps_edit_f64(&v, k, 1) = NOISE * noise_at(at, Y, 1);
-  }
-  mpm_scene_commit(s, &v);
+  EDIT(v, s->particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1);
+      const double at = mirrored ? width - X : X;
+      *mps_edit_f64(&v, k, 0) = NOISE * noise_at(at, Y, 0) * (mirrored ? -1.0 : 1.0);
+      *mps_edit_f64(&v, k, 1) = NOISE * noise_at(at, Y, 1);
+    }
 }
 
 static double fastest(mpm_scene *s) {
@@ -136,13 +135,12 @@ static consolidated consolidate(double cell, int32_t sides) {
                         .flip_time = 0.1,
                         .sides = MPS_BOUNDARY_ROLLER};
   scoped_mpm_scene s = wet_scene(&w);
-  mps_edit u = mpm_scene_edit(&s, "pore_pressure"), stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < u.view.shape[0]; k++) {
-    *mps_edit_f64(&u, k, 0) = START;
-    for (int c = 0; c < 3; c++) *mps_edit_f64(&stress, k, c) = START;
-  }
-  mpm_scene_commit(&s, &u);
-  mpm_scene_commit(&s, &stress);
+  EDIT(u, s.particles, "pore_pressure")
+    EDIT(stress, s.particles, "stress")
+      for (int64_t k = 0; k < u.view.shape[0]; k++) {
+        *mps_edit_f64(&u, k, 0) = START;
+        for (int c = 0; c < 3; c++) *mps_edit_f64(&stress, k, c) = START;
+      }
   mpm_scene_side(&s, MPS_SIDE_X_LOWER, sides, 0.0);
   mpm_scene_side(&s, MPS_SIDE_X_UPPER, sides, 0.0);
   OK(mps_mpm_run(s.mpm, 1.0, 10000000, NULL, NULL));
@@ -180,9 +178,8 @@ TEST(takes_pressures_of_the_caller) {
   for (int late = 0; late < 2; late++) {
     scoped_mpm_scene s = wet_scene(&w);
     if (late) OK(mps_mpm_step(s.mpm, 1)); /* nothing moves */
-    mps_edit u = mpm_scene_edit(&s, "pore_pressure");
-    for (int64_t k = 0; k < u.view.shape[0]; k++) *mps_edit_f64(&u, k, 0) = START;
-    mpm_scene_commit(&s, &u);
+    EDIT(u, s.particles, "pore_pressure")
+      for (int64_t k = 0; k < u.view.shape[0]; k++) *mps_edit_f64(&u, k, 0) = START;
     OK(mps_mpm_step(s.mpm, 1));
     mpm_scene_force(&s, MPS_SIDE_X_LOWER, force[late]);
     print_message("force of the left side %.6g N, of the pressures %g N\n", force[late][0],
@@ -228,9 +225,8 @@ TEST(refuses_implicit_pressures) {
                            .sides = MPS_BOUNDARY_FREE_FIELD,
                            .base = MPS_BOUNDARY_HELD};
   scoped_mpm_scene s = field_scene(context, &of);
-  DEF(pore_water, water, .porosity = 0.4, .bulk = 2.2e9, .permeability = 1e-4,
-      .scheme = MPS_PORE_SCHEME_IMPLICIT);
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .porosity = 0.4, .bulk = 2.2e9,
+        .permeability = 1e-4, .scheme = MPS_PORE_SCHEME_IMPLICIT);
   FAILS(mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "free-field side");
   assert_int_equal(mps_mpm_steps(s.mpm), 0);
   mpm_scene_side(&s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_ROLLER, 0.0);

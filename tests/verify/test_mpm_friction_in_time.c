@@ -23,8 +23,7 @@ typedef struct block {
 
 static mps_signal *fall(void) {
   const double t[2] = {HOLD, HOLD + 1.0}, v[2] = {1.0, LAST / FIRST};
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VALUE, 2, t, v, &signal));
+  MAKE_KEPT(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VALUE, 2, t, v);
   return signal;
 }
 
@@ -32,17 +31,13 @@ static mps_signal *fall(void) {
 static block make_block(double cell, int32_t method, mps_signal *factor) {
   const double up[2] = {0.0, 1.0};
   block b = {.s = mpm_scene_begin(context, 0.5 * cell, 0.0, 0.0, 4e5)};
-  mps_mpm_def def = mps_mpm_defaults();
   mps_body_def base = mps_body_defaults();
-  mps_contact_def contact = mps_contact_defaults();
-  def.cell = cell;
-  def.flip_time = 0.002;
-  def.gravity[0] = G * sin(SLOPE), def.gravity[1] = -G * cos(SLOPE);
+  DEF(mpm, def, .cell = cell, .flip_time = 0.002, .gravity[0] = G * sin(SLOPE),
+      .gravity[1] = -G * cos(SLOPE));
   mpm_scene_box(&b.s, 0.0, 0.0, 0.2, 0.1);
   mpm_scene_solve(&b.s, &def);
   OK(mps_body_create_half_plane(context, &base, up, &b.base));
-  contact.method = method;
-  contact.friction = FIRST, contact.friction_factor = factor;
+  DEF(contact, contact, .method = method, .friction = FIRST, .friction_factor = factor);
   OK(mps_mpm_add_contact(b.s.mpm, b.base, &contact, &b.contact));
   return b;
 }
@@ -98,7 +93,7 @@ TEST(by_penalty_a_block_starts_to_slide_when_it_should) {
 TEST(a_restart_goes_on_with_the_friction_of_its_time) {
   const char path[] = TEST_TMP "/friction_in_time.h5";
   for (int32_t method = 0; method < 2; method++) {
-    mps_signal *factor = fall();
+    scoped_signal *factor = fall();
     block one = make_block(0.05, method, factor), two = make_block(0.05, method, factor);
     double x[2], v[2];
     OK(mps_mpm_run(one.s.mpm, 1.1 * START, INT64_MAX, NULL, NULL));
@@ -112,7 +107,6 @@ TEST(a_restart_goes_on_with_the_friction_of_its_time) {
       look(&two, &x[1], &v[1]);
       assert_true(x[0] == x[1] && v[0] == v[1]);
     }
-    mps_signal_destroy(&factor);
     end_block(&one), end_block(&two);
   }
 }
@@ -120,12 +114,11 @@ TEST(a_restart_goes_on_with_the_friction_of_its_time) {
 TEST(a_factor_is_a_number_that_is_not_negative) {
   const double t[2] = {0.0, 1.0}, v[2] = {1.0, 2.0}, sinks[2] = {0.02, -2.0};
   mps_signal *motion = NULL, *negative = NULL;
-  mps_contact_def def = mps_contact_defaults();
   block b = make_block(0.05, MPS_CONTACT_METHOD_IMPULSE, NULL);
   mps_contact_destroy(&b.contact);
   OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &motion));
   OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VALUE, 2, t, sinks, &negative));
-  def.friction = 0.5, def.friction_factor = motion;
+  DEF(contact, def, .friction = 0.5, .friction_factor = motion);
   FAILS(mps_mpm_add_contact(b.s.mpm, b.base, &def, &b.contact), MPS_ERROR_ARGUMENT,
         "friction_factor");
   def.friction_factor = negative;

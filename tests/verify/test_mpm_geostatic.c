@@ -22,21 +22,17 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
   mpm_scene_box(&s, 0.0, 0.0, 0.4, HEIGHT);
   OK(mps_particles_set(s.particles, "density", 0, 2000.0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit rho = mpm_scene_edit(&s, "density");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > HEIGHT - 0.8) *mps_edit_f64(&rho, k, 0) = 1500.0;
-  mpm_scene_commit(&s, &rho);
+  EDIT(rho, s.particles, "density")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      if (*mps_view_f64(&x, k, 1) > HEIGHT - 0.8) *mps_edit_f64(&rho, k, 0) = 1500.0;
   DEF(geostatic, ground, .layers = layers, .layer_count = 2, .gravity = GRAVITY);
   OK(mps_particles_set_geostatic(s.particles, &ground));
   double before[320];
   mps_view stress = mpm_scene_view(&s, "stress"), id = mpm_scene_view(&s, "id");
   assert_int_equal(x.shape[0], 320);
   for (int64_t k = 0; k < 320; k++) before[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&stress, k, 1);
-  DEF(mpm, def, .geometry = geometry, .spline = spline, .cell = 0.1);
-  def.lower[0] = def.lower[1] = 0.0;
-  def.upper[0] = 0.4;
-  def.edge = walls;
-  def.gravity[1] = -GRAVITY;
+  DEF(mpm, def, .geometry = geometry, .spline = spline, .cell = 0.1, .lower[0] = def.lower[1] = 0.0,
+      .upper[0] = 0.4, .edge = walls, .gravity[1] = -GRAVITY);
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, floor, 0.0);
   double fastest = 0.0;

@@ -36,10 +36,9 @@ static bar begin_bar(double h, double shift, mps_mpm_def def, double gravity) {
 /* Lists the particles of a box, and holds them or drives them along y. */
 static int32_t prescribe(bar *b, const double *lo, const double *hi, mps_signal *signal,
                          int64_t *ids, int64_t *count) {
-  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   int32_t number;
   OK(mps_particles_select_box(b->s.particles, lo, hi, MOST, count, ids));
-  def.ids = ids, def.id_count = *count;
+  DEF(mpm_boundary, def, .ids = ids, .id_count = *count);
   if (signal) def.kind = MPS_BOUNDARY_DRIVEN, def.signal[1] = signal;
   OK(mps_mpm_add_boundary(b->s.mpm, &def, &number));
   return number;
@@ -118,11 +117,9 @@ static void check_stretched(double h, double shift, int32_t spline, mps_mpm_geom
   bar b = begin_bar(h, shift, def, 0.0);
   int64_t ids[MOST], count;
   double sign = 1.0;
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, pull, &sign, NULL, &signal));
+  MAKE(signal, signal, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, pull, &sign, NULL);
   const int32_t lower = prescribe(&b, low, low_end, NULL, ids, &count);
   const int32_t upper = prescribe(&b, high, high_end, signal, ids, &count);
-  mps_signal_destroy(&signal);
   const double area = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? pi * WIDTH * WIDTH : WIDTH;
   const double exact = YOUNG * STROKE / (1.0 - 2.0 * grip) * area;
   double before = 0.0;
@@ -157,7 +154,7 @@ TEST(test_rollback) {
   mps_mpm_def def = mps_mpm_defaults();
   bar b = begin_bar(0.1, 0.0, def, GRAVITY);
   int64_t ids[MOST], count;
-  mps_snapshot *kept = NULL;
+  scoped_snapshot *kept = NULL;
   double y[2];
   const int32_t number = prescribe(&b, lo, hi, NULL, ids, &count);
   mps_reaction r[2];
@@ -171,10 +168,8 @@ TEST(test_rollback) {
   }
   assert_true(y[0] == y[1] && r[0].force[1] == r[1].force[1]);
   /* listed twice is listed once; particles that are gone are skipped */
-  mps_mpm_boundary_def twice = mps_mpm_boundary_defaults();
   const int64_t again[] = {ids[0], ids[1], ids[0], ids[0]};
-  twice.ids = again, twice.id_count = 4;
-  OK(mps_mpm_set_boundary(b.s.mpm, number, &twice));
+  USING(mpm_boundary, mps_mpm_set_boundary(b.s.mpm, number, &given), .ids = again, .id_count = 4);
   OK(mps_mpm_step(b.s.mpm, 1));
   OK(mps_mpm_get_reaction(b.s.mpm, number, &r[0]));
   assert_int_equal(r[0].count, 2);
@@ -183,7 +178,6 @@ TEST(test_rollback) {
   OK(mps_mpm_get_reaction(b.s.mpm, number, &r[0]));
   assert_int_equal(r[0].count, 0);
   NEAR(r[0].force[1], 0.0, 0.0);
-  mps_snapshot_destroy(&kept);
   mpm_scene_end(&b.s);
 }
 
@@ -195,10 +189,9 @@ TEST(test_among_others) {
   bar b = begin_bar(0.1, 0.0, def, GRAVITY);
   DEF(body, rigid, .motion = MPS_BODY_MOTION_FREE, .position[0] = 0.1, .position[1] = 1.1,
       .mass = 400.0, .inertia[2] = 5.0, .gravity[1] = -GRAVITY);
-  scoped_body *body = NULL;
   int64_t ids[MOST], count;
   const int32_t number = prescribe(&b, lo, hi, NULL, ids, &count);
-  OK(mps_body_create_polygon(context, &rigid, 4, corner, &body));
+  MAKE(body, body, create_polygon, context, &rigid, 4, corner);
   mpm_scene_contact(&b.s, body, 0.3);
   mps_body_state at;
   mps_reaction r, before;
@@ -252,11 +245,10 @@ TEST(test_one_component) {
   bar b = begin_bar(0.1, 0.0, mps_mpm_defaults(), GRAVITY);
   int64_t ids[MOST], count;
   double place[MOST][2];
-  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   int32_t number;
   OK(mps_particles_select_box(b.s.particles, lo, hi, MOST, &count, ids));
   OK(mps_particles_set(b.s.particles, "velocity", 0, speed));
-  def.ids = ids, def.id_count = count, def.dofs = MPS_DOF_Y;
+  DEF(mpm_boundary, def, .ids = ids, .id_count = count, .dofs = MPS_DOF_Y);
   OK(mps_mpm_add_boundary(b.s.mpm, &def, &number));
   mps_view x = mpm_scene_view(&b.s, "position");
   for (int64_t i = 0; i < count; i++)
@@ -286,14 +278,12 @@ TEST(test_floor) {
   const double lo[] = {-1.0, 0.4}, hi[] = {1.0, 0.6}, weight = DENSITY * GRAVITY * WIDTH;
   for (int k = 0; k < 4; k++) {
     scoped_mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, YOUNG);
-    mps_mpm_def def = mps_mpm_defaults();
     mps_reaction list, floor;
     bar b = {.h = 0.1};
     int64_t ids[MOST], count;
-    def.cell = b.h, def.lower[0] = -0.4, def.upper[0] = WIDTH + 0.4;
-    def.lower[1] = 0.0, def.upper[1] = 1.5, def.gravity[1] = -GRAVITY;
     mpm_scene_box(&s, 0.0, 0.0, WIDTH, 1.0);
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = b.h, .lower[0] = -0.4, .upper[0] = WIDTH + 0.4,
+          .lower[1] = 0.0, .upper[1] = 1.5, .gravity[1] = -GRAVITY);
     b.s = s;
     for (int32_t side = 0; side < 4; side++)
       mpm_scene_side(&s, side, side == 2 ? kinds[k] : MPS_BOUNDARY_FREE,
@@ -312,11 +302,10 @@ TEST(test_floor) {
 TEST(test_implicit_water_refuses) {
   const double lo[] = {-1.0, 0.8}, hi[] = {1.0, 2.0}, level[] = {0.0, 1.0};
   bar b = begin_bar(0.1, 0.0, mps_mpm_defaults(), GRAVITY);
-  DEF(pore_water, water, .scheme = MPS_PORE_SCHEME_IMPLICIT, .porosity = 0.4, .bulk = 2e9,
-      .permeability = 1e-4);
   int64_t ids[MOST], count;
   OK(mps_particles_set(b.s.particles, "density", 0, 2000.0));
-  OK(mps_mpm_add_pore_water(b.s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(b.s.mpm, &given), .scheme = MPS_PORE_SCHEME_IMPLICIT,
+        .porosity = 0.4, .bulk = 2e9, .permeability = 1e-4);
   OK(mps_mpm_set_pore_level(b.s.mpm, level));
   const int32_t number = prescribe(&b, lo, hi, NULL, ids, &count);
   FAILS(mps_mpm_step(b.s.mpm, 1), MPS_ERROR_UNSUPPORTED, "boundary 6 is a list of particles");

@@ -31,17 +31,14 @@ static double velocity_of(double acceleration) { return acceleration / (2.0 * PI
 static shaken begin(double acceleration, double permeability, double end) {
   const bool dry = isnan(permeability);
   shaken x = {.s = mpm_scene_begin(context, SPACING, 0.0, 0.0, field_young(VS))};
-  mps_material *sand = NULL;
   DEF(material_cyclic_sand, law, .young = field_young(VS), .poisson = FIELD_NU, .friction = 0.61,
       .relative_density = DENSITY);
-  OK(mps_material_create_cyclic_sand(context, &law, &sand));
+  MAKE(material, sand, create_cyclic_sand, context, &law);
   mpm_scene_box(&x.s, 0.0, 0.0, WIDTH, HEIGHT);
   OK(mps_particles_set(x.s.particles, "density", 0, FIELD_RHO));
   mpm_scene_weigh(&x.s, (dry ? FIELD_RHO : FIELD_RHO - WATER) * GRAVITY, FIELD_K0, HEIGHT);
-  DEF(mpm, def, .cell = 2.0 * SPACING, .lower[0] = 0.0, .upper[0] = WIDTH, .lower[1] = 0.0,
-      .gravity[1] = -GRAVITY);
-  OK(mps_mpm_create(context, x.s.particles, sand, &def, &x.s.mpm));
-  mps_material_destroy(&sand);
+  USING(mpm, mps_mpm_create(context, x.s.particles, sand, &given, &x.s.mpm), .cell = 2.0 * SPACING,
+        .lower[0] = 0.0, .upper[0] = WIDTH, .lower[1] = 0.0, .gravity[1] = -GRAVITY);
   x.motion = field_shaking(context, FREQUENCY, velocity_of(acceleration), end);
   DEF(mpm_boundary, base, .kind = MPS_BOUNDARY_DRIVEN, .signal[0] = x.motion);
   OK(mps_mpm_set_boundary(x.s.mpm, MPS_SIDE_Y_LOWER, &base));

@@ -7,8 +7,6 @@
 #include "mpm/base/mpm_solver.h"
 #include "mpm/contact/particle.h"
 
-#define PI 3.14159265358979323846
-
 /* Gives `material` and its density to the particles above y. */
 static void lay(mpm_scene *s, mps_material *material, double y) {
   const double lo[] = {-1e3, y}, hi[] = {1e3, 1e3};
@@ -21,10 +19,9 @@ static void lay(mpm_scene *s, mps_material *material, double y) {
 static void set_density(mpm_scene *s, double below, double above, double y) {
   OK(mps_particles_set(s->particles, "density", 0, below));
   mps_view x = mpm_scene_view(s, "position");
-  mps_edit rho = mpm_scene_edit(s, "density");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > y) *mps_edit_f64(&rho, k, 0) = above;
-  mpm_scene_commit(s, &rho);
+  EDIT(rho, s->particles, "density")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      if (*mps_view_f64(&x, k, 1) > y) *mps_edit_f64(&rho, k, 0) = above;
 }
 
 static double confined(double young, double poisson) { /* K + 4G/3 */
@@ -32,9 +29,8 @@ static double confined(double young, double poisson) { /* K + 4G/3 */
 }
 
 static mps_material *von_mises(double young, double yield) {
-  mps_material *out = NULL;
   DEF(material_von_mises, def, .young = young, .yield_stress = yield);
-  OK(mps_material_create_von_mises(context, &def, &out));
+  MAKE_KEPT(material, out, create_von_mises, context, &def);
   return out;
 }
 
@@ -55,13 +51,10 @@ TEST(two_layers_at_rest) {
     *mps_edit_f64(&stress, k, 1) = yy;
   }
   mpm_scene_commit(&s, &stress);
-  DEF(mpm, def, .cell = 0.04);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-  def.gravity[1] = -g;
+  DEF(mpm, def, .cell = 0.04, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.2, .gravity[1] = -g);
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_material *soft = von_mises(1e7, 1e6);
+  scoped_material *soft = von_mises(1e7, 1e6);
   lay(&s, soft, 0.52);
-  mps_material_destroy(&soft);
   NEAR(mps_mpm_limit(s.mpm), 0.04 / sqrt(confined(4e7, 0.3) / lower), 1e-12);
   OK(mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
   x = mpm_scene_view(&s, "position"), stress.view = mpm_scene_view(&s, "stress");
@@ -89,23 +82,19 @@ TEST(joint_reflects) {
   OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
   mps_edit v = mpm_scene_edit(&s, "velocity");
-  mps_edit stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double at = (*mps_view_f64(&x, k, 1) - from) / width;
-    const double pulse = fabs(at) < 1.0 ? 0.005 * (1.0 + cos(PI * at)) : 0.0;
-    *mps_edit_f64(&v, k, 1) = pulse;
-    *mps_edit_f64(&stress, k, 1) = -rho1 * c1 * pulse;
-    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = -rho1 * c1 * pulse * 0.3 / 0.7;
-  }
+  EDIT(stress, s.particles, "stress")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double at = (*mps_view_f64(&x, k, 1) - from) / width;
+      const double pulse = fabs(at) < 1.0 ? 0.005 * (1.0 + cos(PI * at)) : 0.0;
+      *mps_edit_f64(&v, k, 1) = pulse;
+      *mps_edit_f64(&stress, k, 1) = -rho1 * c1 * pulse;
+      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = -rho1 * c1 * pulse * 0.3 / 0.7;
+    }
   mpm_scene_commit(&s, &v);
-  mpm_scene_commit(&s, &stress);
-  DEF(mpm, def, .cell = 0.01);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.02;
+  DEF(mpm, def, .cell = 0.01, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.02);
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_material *stiff = NULL;
-  OK(mps_material_create_linear_elastic(context, E2, 0.3, &stiff));
+  MAKE(material, stiff, create_linear_elastic, context, E2, 0.3);
   lay(&s, stiff, 1.0);
-  mps_material_destroy(&stiff);
   const double before = mpm_scene_totals(&s).linear[1], t = 0.85 / c1;
   OK(mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
   x = mpm_scene_view(&s, "position"), v.view = mpm_scene_view(&s, "velocity");
@@ -135,16 +124,14 @@ static mpm_scene lumps(int laws, mps_material *rubber) {
   if (laws & ELASTIC) mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
   if (laws & RUBBER) mpm_scene_box(&s, 0.0, 1.0, 0.2, 1.1);
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .cell = 0.02, .dt = 2e-4);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .dt = 2e-4);
   if (laws & RUBBER) lay(&s, rubber, 0.5);
   OK(mps_mpm_step(s.mpm, 300));
   return s;
 }
 
 TEST(each_as_alone) {
-  scoped_material *rubber = NULL;
-  OK(mps_material_create_neo_hookean(context, 2e5, 0.4, &rubber));
+  MAKE(material, rubber, create_neo_hookean, context, 2e5, 0.4);
   mpm_scene both = lumps(ELASTIC | RUBBER, rubber);
   mpm_scene alone[2] = {lumps(ELASTIC, rubber), lumps(RUBBER, rubber)};
   const int64_t half = mps_particles_count(alone[0].particles);
@@ -178,13 +165,11 @@ TEST(contact_by_own_modulus) {
   DEF(mpm, def, .cell = 0.02);
   mpm_scene_solve(&s, &def);
   const int64_t second = 1;
-  scoped_material *stiff = NULL;
-  OK(mps_material_create_linear_elastic(context, 7e5, 0.3, &stiff));
+  MAKE(material, stiff, create_linear_elastic, context, 7e5, 0.3);
   OK(mps_mpm_set_material(s.mpm, stiff, &second, 1));
-  scoped_body *floor = NULL;
   DEF(body, body, .position[1] = 0.002);
   const double up[] = {0.0, 1.0};
-  OK(mps_body_create_half_plane(context, &body, up, &floor));
+  MAKE(body, floor, create_half_plane, context, &body, up);
   mpm_scene_contact(&s, floor, 0.0);
   const mps_contact *contact = s.mpm->contact.handle[0];
   mpsi_contact_particle a, b;

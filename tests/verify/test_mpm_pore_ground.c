@@ -23,17 +23,14 @@ TEST(flows_through_rings) {
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   OK(mps_particles_set(s.particles, "density", 0, 2000.0));
   OK(mps_particles_add_field(s.particles, "permeability", 0));
-  mps_edit k;
   const mps_view x = mpm_scene_view(&s, "position");
-  OK(mps_particles_edit(s.particles, "permeability", &k));
-  for (int64_t p = 0; p < x.shape[0]; p++)
-    *mps_edit_f64(&k, p, 0) = *mps_view_f64(&x, p, 0) < BORDER ? SLOW : FAST;
-  OK(mps_particles_commit(s.particles, &k));
+  EDIT(k, s.particles, "permeability")
+    for (int64_t p = 0; p < x.shape[0]; p++)
+      *mps_edit_f64(&k, p, 0) = *mps_view_f64(&x, p, 0) < BORDER ? SLOW : FAST;
   DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = h, .viscous_damping = 20.0);
   for (int c = 0; c < 2; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  DEF(pore_water, water, .porosity = 0.4);
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .porosity = 0.4);
   DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_X_LOWER);
   int32_t drain;
   OK(mps_mpm_add_pore_face(s.mpm, &face, &drain));
@@ -65,12 +62,11 @@ TEST(consolidates_at_any_place) {
   for (int tenth = 0; tenth < 10; tenth++) {
     pore_column c =
         pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 20.0 - 0.1 * tenth, 0.0, 10.0);
-    DEF(pore_water, water, .porosity = 0.4, .bulk = 0.4 * 50.0 * c.modulus,
-        .permeability = 0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus);
-    DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_Y_UPPER,
-        .pressure = -LOAD);
-    OK(mps_mpm_add_pore_water(c.s.mpm, &water));
-    OK(mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
+    USING(pore_water, mps_mpm_add_pore_water(c.s.mpm, &given), .porosity = 0.4,
+          .bulk = 0.4 * 50.0 * c.modulus,
+          .permeability = 0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus);
+    USING(pore_face, mps_mpm_add_pore_face(c.s.mpm, &given, NULL), .kind = MPS_PORE_FACE_DRAINED,
+          .sides = 1u << MPS_SIDE_Y_UPPER, .pressure = -LOAD);
     const double volume = mpm_scene_totals(&c.s).volume;
     OK(mps_mpm_run(c.s.mpm, T * 4.0, 1000000, NULL, NULL));
     const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
@@ -94,12 +90,11 @@ TEST(consolidates_at_any_place) {
  * mm/s for 0.1 s; K_w/n is 500 M'. */
 static double push_column(int32_t scheme) {
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 0.0, 20.0);
-  mps_body *plate = NULL;
-  mps_contact *contact = NULL;
+  scoped_contact *contact = NULL;
   DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .bulk = 0.4 * 500.0 * c.modulus);
   OK(mps_mpm_add_pore_water(c.s.mpm, &water));
   DEF(body, body, .position[1] = 1.5);
-  OK(mps_body_create_box(context, &body, 4.0, 1.0, &plate));
+  MAKE(body, plate, create_box, context, &body, 4.0, 1.0);
   OK(mps_mpm_add_contact(c.s.mpm, plate, NULL, &contact));
   WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = -0.01);
   OK(mps_body_set_motion(plate, &motion));
@@ -109,8 +104,6 @@ static double push_column(int32_t scheme) {
   const double exact = 501.0 * c.modulus * 1e-3 * c.h;
   print_message("column, scheme %d: %lld steps, bears %.2f N, at rest %.2f N\n", scheme,
                 (long long)mps_mpm_steps(c.s.mpm), reaction.force[1], exact);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&plate);
   mpm_scene_end(&c.s);
   return reaction.force[1] / exact;
 }
@@ -137,21 +130,16 @@ static strip_result press_strip(int32_t scheme, double permeability, double fric
   const double h = 1.0 / CELLS, way = 1e-3, pressing = 0.05,
                modulus = PORE_YOUNG * 0.7 / (1.3 * 0.4);
   scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, PORE_YOUNG);
-  scoped_body *strip = NULL;
   scoped_contact *contact = NULL;
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 1.0);
   OK(mps_particles_set(s.particles, "density", 0, 2000.0));
-  DEF(mpm, def, .cell = h, .courant = 0.7);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 1.0;
-  def.viscous_damping = 20.0;
-  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  DEF(pore_water, water, .scheme = scheme, .porosity = 0.4, .bulk = 0.4 * 50.0 * modulus,
-      .permeability = permeability);
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(mpm, mps_mpm_create(context, s.particles, s.material, &given, &s.mpm), .cell = h,
+        .courant = 0.7, .lower[0] = given.lower[1] = 0.0, .upper[0] = 1.0, .viscous_damping = 20.0);
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .scheme = scheme, .porosity = 0.4,
+        .bulk = 0.4 * 50.0 * modulus, .permeability = permeability);
   DEF(body, body, .position[1] = 1.25);
-  OK(mps_body_create_box(context, &body, 0.5, 0.5, &strip));
-  DEF(contact, surface, .friction = friction);
-  OK(mps_mpm_add_contact(s.mpm, strip, &surface, &contact));
+  MAKE(body, strip, create_box, context, &body, 0.5, 0.5);
+  USING(contact, mps_mpm_add_contact(s.mpm, strip, &given, &contact), .friction = friction);
   WITH_DEFAULTS(mps_body_motion, motion, .velocity[1] = -way / pressing);
   OK(mps_body_set_motion(strip, &motion));
   OK(mps_mpm_run(s.mpm, pressing, 1000000, NULL, NULL));

@@ -39,12 +39,11 @@ static const kind usual = {.dim = 2,
 
 static mps_material *material_of(const kind *of) {
   mps_material *out = NULL;
-  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
   if (isnan(of->cohesion)) {
     OK(mps_material_create_linear_elastic(context, of->young, 0.3, &out));
     return out;
   }
-  def.young = of->young, def.friction = 0.5, def.cohesion = of->cohesion;
+  DEF(material_mohr_coulomb, def, .young = of->young, .friction = 0.5, .cohesion = of->cohesion);
   OK(mps_material_create_mohr_coulomb(context, &def, &out));
   return out;
 }
@@ -52,16 +51,14 @@ static mps_material *material_of(const kind *of) {
 /* At rest under its weight, water up to its surface. */
 static ground begin(const kind *of) {
   ground g = {.s.context = context};
-  mps_particles_def set = mps_particles_defaults();
   const double lo[] = {of->left, 0.0, 0.0}, hi[] = {of->right, of->high, of->h};
   const double level[] = {0.0, of->high, 0.0};
   const mps_geostatic_layer layer = {INFINITY, 0.5, 1000.0};
-  mps_geostatic_def stress = mps_geostatic_defaults();
-  set.dim = of->dim, set.spacing = 0.5 * of->h;
+  DEF(particles, set, .dim = of->dim, .spacing = 0.5 * of->h);
   OK(mps_particles_create(context, &set, &g.s.particles));
   OK(mps_particles_fill_box(g.s.particles, lo, hi, NULL));
   OK(mps_particles_set(g.s.particles, "density", 0, 2000.0));
-  stress.layers = &layer, stress.layer_count = 1;
+  DEF(geostatic, stress, .layers = &layer, .layer_count = 1);
   OK(mps_particles_set_geostatic(g.s.particles, &stress));
   g.s.material = material_of(of);
   mps_mpm_def def = mps_mpm_defaults();
@@ -70,9 +67,8 @@ static ground begin(const kind *of) {
   def.upper[1] = 3.0 * of->high, def.courant = of->courant;
   def.gravity[0] = of->gravity_x, def.gravity[1] = -WEIGHT;
   OK(mps_mpm_create(context, g.s.particles, g.s.material, &def, &g.s.mpm));
-  DEF(pore_water, water, .scheme = of->scheme, .porosity = 0.4, .bulk = of->bulk,
-      .permeability = of->k);
-  OK(mps_mpm_add_pore_water(g.s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(g.s.mpm, &given), .scheme = of->scheme, .porosity = 0.4,
+        .bulk = of->bulk, .permeability = of->k);
   OK(mps_mpm_set_pore_level(g.s.mpm, level));
   return g;
 }
@@ -252,12 +248,10 @@ TEST(stiff_water_consolidates) {
   static const double stiffness[] = {50.0, 500.0, 2000.0};
   for (int q = 0; q < 3; q++) {
     pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 10, 0.0, 10.0);
-    mps_pore_water_def water = mps_pore_water_defaults();
     const double load = 1000.0, c_v = 1.0; /* Pa, m2/s: T = 1 is a second */
-    water.scheme = MPS_PORE_SCHEME_IMPLICIT, water.porosity = 0.4;
-    water.bulk = 0.4 * stiffness[q] * c.modulus;
-    water.permeability = c_v * 1000.0 * MPS_PORE_GRAVITY / c.modulus;
-    OK(mps_mpm_add_pore_water(c.s.mpm, &water));
+    USING(pore_water, mps_mpm_add_pore_water(c.s.mpm, &given), .scheme = MPS_PORE_SCHEME_IMPLICIT,
+          .porosity = 0.4, .bulk = 0.4 * stiffness[q] * c.modulus,
+          .permeability = c_v * 1000.0 * MPS_PORE_GRAVITY / c.modulus);
     OK(mps_particles_set(c.s.particles, "pore_pressure", 0, load));
     int64_t ids[16];
     const double traction[] = {0.0, -load, 0.0};

@@ -84,13 +84,12 @@ static void at_rest(double cells, int32_t scheme) {
   const double surface[] = {0.0, 1.0};
   OK(mps_mpm_set_pore_level(c.s.mpm, surface));
   mps_view x = mpm_scene_view(&c.s, "position");
-  mps_edit stress = mpm_scene_edit(&c.s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double yy = -(weight - water_weight) * (1.0 - *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
-    *mps_edit_f64(&stress, k, 1) = yy;
-  }
-  mpm_scene_commit(&c.s, &stress);
+  EDIT(stress, c.s.particles, "stress")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double yy = -(weight - water_weight) * (1.0 - *mps_view_f64(&x, k, 1));
+      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
+      *mps_edit_f64(&stress, k, 1) = yy;
+    }
   OK(mps_mpm_run(c.s.mpm, 1.0, 1000000, NULL, NULL));
   x = mpm_scene_view(&c.s, "position");
   const mps_view u = mpm_scene_view(&c.s, "pore_pressure"), v = mpm_scene_view(&c.s, "velocity");
@@ -149,14 +148,12 @@ static void stands(int halves, int32_t spline, int32_t volumetric) {
   DEF(mpm, def, .cell = 1.0, .spline = spline, .volumetric = volumetric);
   for (int c = 0; c < 2; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  DEF(pore_water, water, .porosity = 0.4);
-  OK(mps_mpm_add_pore_water(s.mpm, &water));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .porosity = 0.4);
   const mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 1) =
-        SPEED * sin(3.14159265358979323846 * halves * *mps_view_f64(&x, k, 1) / LENGTH);
-  mpm_scene_commit(&s, &v);
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 1) =
+          SPEED * sin(3.14159265358979323846 * halves * *mps_view_f64(&x, k, 1) / LENGTH);
   const double first = largest_energy(&s, 300);
   (void)largest_energy(&s, 900);
   const double last = largest_energy(&s, 300);
@@ -186,16 +183,14 @@ TEST(flows_through_layers) {
   OK(mps_particles_add_field(c.s.particles, "permeability", 0));
   OK(mps_particles_add_field(c.s.particles, "seepage", 0));
   mps_view x = mpm_scene_view(&c.s, "position");
-  mps_edit k_of = mpm_scene_edit(&c.s, "permeability");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.5 ? k1 : k2;
-  mpm_scene_commit(&c.s, &k_of);
+  EDIT(k_of, c.s.particles, "permeability")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.5 ? k1 : k2;
   DEF(pore_water, water, .porosity = 0.4, .bulk = 0.4 * 4.0 * c.modulus);
   OK(mps_mpm_add_pore_water(c.s.mpm, &water));
-  DEF(pore_face, face, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_Y_LOWER,
-      .pressure = base);
   int32_t number;
-  OK(mps_mpm_add_pore_face(c.s.mpm, &face, &number));
+  USING(pore_face, mps_mpm_add_pore_face(c.s.mpm, &given, &number), .kind = MPS_PORE_FACE_DRAINED,
+        .sides = 1u << MPS_SIDE_Y_LOWER, .pressure = base);
   OK(mps_mpm_run(c.s.mpm, 100.0, 1000000, NULL, NULL));
   const double flux = base / (weight * (0.5 / k1 + 0.5 / k2)),
                middle = base * 0.5 / k2 * weight * flux / base;
@@ -258,25 +253,18 @@ static double two_layers(const double *c, double z, double t) {
 TEST(two_layers_consolidate) {
   static const double k[] = {1e-4, 4e-4}, times[] = {4.6, 9.1};
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 20, 0.0, 10.0);
-  mps_pore_water_def water = mps_pore_water_defaults();
-  mps_pore_face_def surface = mps_pore_face_defaults();
   double worst = 0.0, diffusivity[2];
   for (int l = 0; l < 2; l++) {
     const mps_view x = mpm_scene_view(&c.s, "position");
     diffusivity[l] = k[l] * c.modulus / (1000.0 * MPS_PORE_GRAVITY);
     if (l == 0) OK(mps_particles_add_field(c.s.particles, "permeability", 0));
-    mps_edit edit;
-    OK(mps_particles_edit(c.s.particles, "permeability", &edit));
-    for (int64_t p = 0; p < x.shape[0]; p++)
-      if ((*mps_view_f64(&x, p, 1) > 0.5) == (l == 1)) *mps_edit_f64(&edit, p, 0) = k[l];
-    OK(mps_particles_commit(c.s.particles, &edit));
+    EDIT(edit, c.s.particles, "permeability")
+      for (int64_t p = 0; p < x.shape[0]; p++)
+        if ((*mps_view_f64(&x, p, 1) > 0.5) == (l == 1)) *mps_edit_f64(&edit, p, 0) = k[l];
   }
-  water.scheme = MPS_PORE_SCHEME_IMPLICIT;
-  water.porosity = 0.4;
-  water.bulk = 0.4 * 100.0 * c.modulus;
-  OK(mps_mpm_add_pore_water(c.s.mpm, &water));
-  surface.kind = MPS_PORE_FACE_DRAINED;
-  surface.sides = 1u << MPS_SIDE_Y_UPPER;
+  USING(pore_water, mps_mpm_add_pore_water(c.s.mpm, &given), .scheme = MPS_PORE_SCHEME_IMPLICIT,
+        .porosity = 0.4, .bulk = 0.4 * 100.0 * c.modulus);
+  DEF(pore_face, surface, .kind = MPS_PORE_FACE_DRAINED, .sides = 1u << MPS_SIDE_Y_UPPER);
   surface.pressure = -LOAD; /* pressures less the load */
   OK(mps_mpm_add_pore_face(c.s.mpm, &surface, NULL));
   for (int t = 0; t < 2; t++) {

@@ -15,30 +15,23 @@
 static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sides, bool at_rest) {
   const double h = WIDTH / cells, height = 2.0 * WIDTH, c = 10.0 * sqrt(2.0 * GRAVITY * height);
   const double K = RHO * c * c;
-  mps_material_newtonian_def law = mps_material_newtonian_defaults();
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mps_material_destroy(&s.material);
-  law.state = MPS_MATERIAL_STATE_EQUATION_LINEAR;
-  law.bulk_modulus = K;
-  law.no_tension = 1;
-  OK(mps_material_create_newtonian(context, &law, &s.material));
+  USING(material_newtonian, mps_material_create_newtonian(context, &given, &s.material),
+        .state = MPS_MATERIAL_STATE_EQUATION_LINEAR, .bulk_modulus = K, .no_tension = 1);
   mpm_scene_box(&s, 0.0, 0.0, WIDTH, height);
   OK(mps_particles_add_field(s.particles, "volume_ratio", 0));
   OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit J = mpm_scene_edit(&s, "volume_ratio");
-  mps_edit stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double p = at_rest ? RHO * GRAVITY * (height - *mps_view_f64(&x, k, 1)) : 0.0;
-    *mps_edit_f64(&J, k, 0) = 1.0 / (1.0 + p / K);
-    for (int a = 0; a < 3; a++) *mps_edit_f64(&stress, k, a) = -p;
-  }
-  mpm_scene_commit(&s, &J);
-  mpm_scene_commit(&s, &stress);
-  DEF(mpm, def, .spline = spline, .volumetric = volumetric, .cell = h);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = sides;
-  def.gravity[1] = -GRAVITY;
-  mpm_scene_solve(&s, &def);
+  EDIT(J, s.particles, "volume_ratio")
+    EDIT(stress, s.particles, "stress")
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        const double p = at_rest ? RHO * GRAVITY * (height - *mps_view_f64(&x, k, 1)) : 0.0;
+        *mps_edit_f64(&J, k, 0) = 1.0 / (1.0 + p / K);
+        for (int a = 0; a < 3; a++) *mps_edit_f64(&stress, k, a) = -p;
+      }
+  USING(mpm, mpm_scene_solve(&s, &given), .spline = spline, .volumetric = volumetric, .cell = h,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = sides, .gravity[1] = -GRAVITY);
   return s;
 }
 

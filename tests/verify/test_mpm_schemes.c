@@ -7,8 +7,6 @@
 
 #include "mpm/base/mpm_solver.h"
 
-#define PI 3.14159265358979323846
-
 enum { WLS, FLIP, BLEND, PIC, SCHEMES };
 static const char *const name[SCHEMES] = {"WLS", "FLIP", "FLIP 0.95", "PIC"};
 
@@ -133,12 +131,10 @@ static void vibrating_bar(int scheme, int periods, double *period, double *energ
   mpm_scene_box(&s, 0.0, 0.0, 0.08, length);
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = 0.04);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.08;
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
+  DEF(mpm, def, .cell = 0.04, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.08);
   solve(&s, &def, scheme);
   const double start = bar_energy(&s, modulus);
   double first = 0.0, last = 0.0, before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
@@ -178,9 +174,8 @@ static double column(int scheme, int32_t spline) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
   mpm_scene_weigh(&s, rho * g, K0, 1.0);
-  DEF(mpm, def, .cell = 0.04, .spline = spline);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-  def.gravity[1] = -g;
+  DEF(mpm, def, .cell = 0.04, .spline = spline, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.2,
+      .gravity[1] = -g);
   solve(&s, &def, scheme);
   OK(mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
   return mpm_scene_weight_error(&s, rho * g, 1.0);
@@ -231,13 +226,11 @@ static double left_by_step(int32_t spline, int cells) {
   const double h = 0.02, length = cells * h;
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e-3);
   mpm_scene_box(&s, 0.0, 0.0, length, 4.0 * h);
-  mps_edit v;
   mps_view x = mpm_scene_view(&s, "position");
   OK(mps_particles_set(s.particles, "velocity", 0, 0.0));
-  OK(mps_particles_edit(s.particles, "velocity", &v));
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_edit_f64(&v, k, 1) = cos(2.0 * PI * *mps_view_f64(&x, k, 0) / length);
-  OK(mps_particles_commit(s.particles, &v));
+  EDIT(v, s.particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      *mps_edit_f64(&v, k, 1) = cos(2.0 * PI * *mps_view_f64(&x, k, 0) / length);
   DEF(mpm, def, .cell = h, .spline = spline, .dt = 1e-9, .lower[0] = 0.0, .upper[0] = length);
   mpm_scene_solve(&s, &def);
   OK(mps_mpm_step(s.mpm, 5));

@@ -27,9 +27,8 @@ TEST(damped_fall) {
     const double g = 10.0, rate = 40.0, dt = 1e-4;
     scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
     mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
-    DEF(mpm, def, .cell = 0.02, .dt = dt, .gravity[1] = -g, .budget = 1,
-        .local_damping = viscous ? 0.0 : 0.3, .viscous_damping = viscous ? rate : 0.0);
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .dt = dt, .gravity[1] = -g, .budget = 1,
+          .local_damping = viscous ? 0.0 : 0.3, .viscous_damping = viscous ? rate : 0.0);
     OK(mps_mpm_step(s.mpm, 500));
     double v = 0.0, taken = 0.0;
     for (int k = 0; k < 500; k++) {
@@ -52,11 +51,9 @@ TEST(floor_bears_the_weight) {
   for (int viscous = 0; viscous <= 1; viscous++) {
     scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
     mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
-    DEF(mpm, def, .cell = 0.02, .gravity[1] = -10.0, .budget = 1);
-    def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-    def.local_damping = viscous ? 0.0 : 0.7;
-    def.viscous_damping = viscous ? 30.0 : 0.0;
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .gravity[1] = -10.0, .budget = 1,
+          .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.2, .local_damping = viscous ? 0.0 : 0.7,
+          .viscous_damping = viscous ? 30.0 : 0.0);
     mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
     OK(mps_mpm_step(s.mpm, 4000));
     double force[3];
@@ -76,9 +73,8 @@ TEST(driven_nodes_are_not_damped) {
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.2);
   DEF(mpm, def, .cell = 0.02, .local_damping = 0.8, .viscous_damping = 100.0);
   mpm_scene_solve(&s, &def);
-  scoped_signal *go = NULL;
   const double t[] = {0.0, 1.0}, v[] = {0.3, 0.3}, low[] = {-1.0, -1.0}, high[] = {1.0, 1.0};
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
+  MAKE(signal, go, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
   const mps_mpm_boundary_def all = mpm_scene_box_def(s.mpm, low, high, 0, go, 1.0);
   int32_t number;
   OK(mps_mpm_add_boundary(s.mpm, &all, &number));
@@ -107,9 +103,8 @@ static mpm_scene column(double young, mps_material *law) {
     s.material = law;
   }
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
-  DEF(mpm, def, .cell = 0.05, .gravity[1] = -10.0, .budget = 1);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.05, .gravity[1] = -10.0, .budget = 1,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.2);
   return s;
 }
 
@@ -146,14 +141,12 @@ TEST(column_settles) {
  * written; arguments are checked. */
 TEST(flow_does_not_settle) {
   DEF(material_von_mises, weak, .young = 1e7, .yield_stress = 500.0);
-  mps_material *law = NULL;
-  OK(mps_material_create_von_mises(context, &weak, &law));
+  MAKE_KEPT(material, law, create_von_mises, context, &weak);
   scoped_mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
   s.material = law;
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
-  DEF(mpm, def, .cell = 0.05, .gravity[1] = -10.0);
-  def.lower[0] = def.lower[1] = 0.0;
+  DEF(mpm, def, .cell = 0.05, .gravity[1] = -10.0, .lower[0] = def.lower[1] = 0.0);
   mpm_scene_solve(&s, &def);
   DEF(mpm_settle, settle, .max_steps = 200);
   mps_mpm_settled out;
@@ -166,10 +159,9 @@ TEST(flow_does_not_settle) {
   settle = mps_mpm_settle_defaults();
   settle.tolerance = 0.0;
   REFUSES(mps_mpm_settle(s.mpm, &settle, NULL), "tolerance is 0");
-  mps_body_def ball = mps_body_defaults();
   scoped_body *body = NULL;
-  ball.motion = MPS_BODY_MOTION_FREE, ball.mass = ball.inertia[2] = 1.0, ball.position[1] = 1.0;
-  OK(mps_body_create_disc(context, &ball, 0.1, &body));
+  USING(body, mps_body_create_disc(context, &given, 0.1, &body), .motion = MPS_BODY_MOTION_FREE,
+        .mass = given.inertia[2] = 1.0, .position[1] = 1.0);
   mpm_scene_contact(&s, body, 0.0);
   FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED, "body 0 moves freely");
 }
@@ -178,16 +170,14 @@ TEST(flow_does_not_settle) {
 
 static mpm_scene slope(double gravity) {
   const double xy[] = {0.0, 0.0, 8.0, 0.0, 8.0, 2.0, 6.0, 2.0, 3.0, 4.0, 0.0, 4.0};
-  DEF(material_drucker_prager, law, .young = 2e7, .poisson = 0.3, .friction = 0.45,
-      .cohesion = 6e3);
   mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
-  OK(mps_material_create_drucker_prager(context, &law, &s.material));
+  USING(material_drucker_prager, mps_material_create_drucker_prager(context, &given, &s.material),
+        .young = 2e7, .poisson = 0.3, .friction = 0.45, .cohesion = 6e3);
   OK(mps_particles_fill_polygon(s.particles, 6, xy, NULL));
   OK(mps_particles_add_field(s.particles, "body_acceleration", 0));
-  DEF(mpm, def, .cell = 0.25, .gravity[1] = -gravity);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 8.0;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.25, .gravity[1] = -gravity,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 8.0);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
@@ -230,8 +220,7 @@ static mps_body *half_plane(double along, double from, double normal) {
   const double n[] = {normal * cos(angle), normal * sin(angle)};
   DEF(body, def, .position[0] = along * cos(angle) + from * n[0],
       .position[1] = along * sin(angle) + from * n[1]);
-  mps_body *body = NULL;
-  OK(mps_body_create_half_plane(context, &def, n, &body));
+  MAKE_KEPT(body, body, create_half_plane, context, &def, n);
   return body;
 }
 
@@ -246,8 +235,7 @@ TEST(block_between_bodies_settles) {
     const double x[] = {u * cos(angle) - v * sin(angle), u * sin(angle) + v * cos(angle)};
     OK(mps_particles_append(s.particles, 1, x));
   }
-  DEF(mpm, def, .cell = 0.02, .spline = 2);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .spline = 2);
   mps_body *body[] = {half_plane(0.0, 0.0, 1.0), half_plane(width, 0.0, -1.0)};
   mps_contact *contact[2];
   for (int b = 0; b < 2; b++) OK(mps_mpm_add_contact(s.mpm, body[b], NULL, &contact[b]));
@@ -291,8 +279,7 @@ static footing make_footing(void) {
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
   mpm_scene_solve(&f.s, &def);
   mpm_scene_side(&f.s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  DEF(body, body, .position[1] = 1.45);
-  OK(mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));
+  USING(body, mps_body_create_box(context, &given, 1.0, 0.5, &f.strip), .position[1] = 1.45);
   OK(mps_mpm_add_contact(f.s.mpm, f.strip, NULL, NULL));
   return f;
 }
@@ -361,8 +348,7 @@ static int32_t loses_patience(void *user) {
 static mpm_scene column_to_settle(mps_context *in) {
   mpm_scene s = mpm_scene_begin(in, 0.025, 0.0, 0.0, 1e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
-  DEF(mpm, solver, .cell = 0.05, .gravity[1] = -10.0, .lower[1] = 0.0);
-  mpm_scene_solve(&s, &solver);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.05, .gravity[1] = -10.0, .lower[1] = 0.0);
   return s;
 }
 

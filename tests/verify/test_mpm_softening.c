@@ -20,8 +20,7 @@
 static mps_material *clay(double share, double band) {
   DEF(material_von_mises, def, .young = 2.6 * SHEAR, .poisson = 0.3,
       .yield_stress = ROOT3 * SU * share, .residual = RESIDUAL, .slip = SLIP, .band = band);
-  mps_material *m = NULL;
-  OK(mps_material_create_von_mises(context, &def, &m));
+  MAKE_KEPT(material, m, create_von_mises, context, &def);
   return m;
 }
 
@@ -57,8 +56,7 @@ static double work_of(int cells, int32_t spline, double band, bool fixed) {
       ids[count++] = *mps_view_i64(&id, k, 0);
   OK(mps_mpm_set_material(s.mpm, seed, ids, count));
   const double t[2] = {0.0, 10.0}, v[2] = {SPEED, SPEED};
-  scoped_signal *go = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
+  MAKE(signal, go, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mpm_scene_drive(&s, MPS_SIDE_Y_UPPER, MPS_BOUNDARY_DRIVEN, 0.0, 0, go, 1.0);
   DEF(mpm_boundary, level, .dofs = MPS_DOF_Y, .lower[1] = 0.01 * h, .upper[1] = HEIGHT - 0.01 * h);

@@ -5,8 +5,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
-#define E_ 1e6  /* Pa */
+#define E_ 1e6 /* Pa */
 #define RHO 1e3 /* kg/m3, what mpm_scene_solve gives */
 #define CUBE 2  /* particles along the edge of a cell */
 #define SAMPLES 40
@@ -31,9 +30,8 @@ static void fill_tube(mpm_scene *s, const tube *t, bool space) {
         const double at[] = {space ? r * cos(angle) : r, space ? r * sin(angle) : z, z};
         const int64_t last = mps_particles_count(s->particles);
         OK(mps_particles_append(s->particles, 1, at));
-        mps_edit volume = mpm_scene_edit(s, "volume");
-        *mps_edit_f64(&volume, last, 0) = r * d * d * (space ? 0.5 * PI / count : 1.0);
-        mpm_scene_commit(s, &volume);
+        EDIT(volume, s->particles, "volume")
+          *mps_edit_f64(&volume, last, 0) = r * d * d * (space ? 0.5 * PI / count : 1.0);
       }
     }
   OK(mps_particles_add_field(s->particles, "velocity", 0));
@@ -81,13 +79,12 @@ static void mean_velocity(mpm_scene *s, double *out, double *upward) {
 static double breathe(mpm_scene *s, const tube *ring, int steps, double *v) {
   const int up = mps_particles_dim(s->particles) - 1;
   const mps_view x = mpm_scene_view(s, "position");
-  mps_edit start = mpm_scene_edit(s, "velocity");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
-    *mps_edit_f64(&start, k, 0) = 0.01 * X / hypot(X, Y);
-    if (up == 2) *mps_edit_f64(&start, k, 1) = 0.01 * Y / hypot(X, Y);
-  }
-  mpm_scene_commit(s, &start);
+  EDIT(start, s->particles, "velocity")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
+      *mps_edit_f64(&start, k, 0) = 0.01 * X / hypot(X, Y);
+      if (up == 2) *mps_edit_f64(&start, k, 1) = 0.01 * Y / hypot(X, Y);
+    }
   solve(s, ring, 0.0, 0.5);
   const double dt = mps_mpm_dt(s->mpm);
   double before = 0.01, crossing[3] = {0.0}, unused;

@@ -7,7 +7,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define COHESION 10e3 /* Pa */
 #define DIAMETER 1.0  /* m */
 #define SOIL 2.5      /* m: from the middle to the walls */
@@ -20,14 +19,12 @@ static double exact(double alpha) {
 }
 
 static mps_status is_outside(void *user, const double *x, int32_t *inside) {
-  (void)user;
   *inside = hypot(x[0], x[1]) > 0.5 * DIAMETER;
   return MPS_OK;
 }
 
 /* Ten times the strength, so that no gap opens behind the bar. */
 static mps_status press(void *user, const double *x, double *stress) {
-  (void)user, (void)x;
   for (int k = 0; k < 3; k++) stress[k] = -10.0 * COHESION;
   return MPS_OK;
 }
@@ -43,10 +40,9 @@ static mpm_scene make_clay(double cell) {
   OK(mps_particles_set_stress(s.particles, press, NULL));
   DEF(material_von_mises, law, .young = 5e6, .poisson = 0.45, .yield_stress = sqrt(3.0) * COHESION);
   OK(mps_material_create_von_mises(context, &law, &s.material));
-  DEF(mpm, def, .cell = cell, .volumetric = MPS_MPM_VOLUMETRIC_CELL,
-      .flip_time = DIAMETER / (40.0 * SPEED), .lower[0] = -SOIL, .lower[1] = 0.0);
-  def.upper[0] = def.upper[1] = SOIL;
-  OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  USING(mpm, mps_mpm_create(context, s.particles, s.material, &given, &s.mpm), .cell = cell,
+        .volumetric = MPS_MPM_VOLUMETRIC_CELL, .flip_time = DIAMETER / (40.0 * SPEED),
+        .lower[0] = -SOIL, .lower[1] = 0.0, .upper[0] = given.upper[1] = SOIL);
   for (int32_t side = 0; side < 4; side++)
     if (side != 2) mpm_scene_side(&s, side, MPS_BOUNDARY_HELD, 0.0);
   return s;
@@ -54,12 +50,11 @@ static mpm_scene make_clay(double cell) {
 
 static double resistance(double cell, double alpha) {
   mpm_scene s = make_clay(cell);
-  mps_body *bar = NULL;
-  mps_contact *contact = NULL;
+  scoped_contact *contact = NULL;
   mps_reaction half, all;
   mps_contact_def def = mps_contact_defaults();
   WITH_DEFAULTS(mps_body_motion, motion, .velocity[0] = SPEED);
-  OK(mps_body_create_disc(context, NULL, 0.5 * DIAMETER, &bar));
+  MAKE(body, bar, create_disc, context, NULL, 0.5 * DIAMETER);
   if (alpha > 0.0) def.friction = 10.0, def.strength = alpha * COHESION;
   OK(mps_mpm_add_contact(s.mpm, bar, &def, &contact));
   OK(mps_body_set_motion(bar, &motion));
@@ -67,8 +62,6 @@ static double resistance(double cell, double alpha) {
   OK(mps_contact_get_reaction(contact, -1, &half));
   OK(mps_mpm_run(s.mpm, WAY / SPEED, INT64_MAX, NULL, NULL));
   OK(mps_contact_get_reaction(contact, -1, &all));
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&bar);
   mpm_scene_end(&s);
   return 2.0 * (half.impulse[0] - all.impulse[0]) / (0.5 * WAY / SPEED) / (COHESION * DIAMETER);
 }

@@ -4,8 +4,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
-
 /* A ball of `material` that deforms by a uniform velocity gradient; the nodes are not needed for
  * it: one step. */
 static mpm_scene stretched(int32_t geometry, int32_t spline, int32_t volumetric, bool rubber) {
@@ -157,9 +155,8 @@ static double deflection(int32_t spline, int32_t volumetric) {
   mps_material_destroy(&s.material);
   OK(mps_material_create_linear_elastic(context, E, nu, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, length, height);
-  DEF(mpm, def, .cell = h, .spline = spline, .volumetric = volumetric, .lower[0] = 0.0,
-      .gravity[1] = -g);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = h, .spline = spline, .volumetric = volumetric,
+        .lower[0] = 0.0, .gravity[1] = -g);
   mpm_scene_side(&s, MPS_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double load = rho * g * height, plane = E / (1.0 - nu * nu), shear = 0.5 * E / (1.0 + nu);
   const double exact = load * pow(length, 4.0) / (8.0 * plane * pow(height, 3.0) / 12.0) +
@@ -242,14 +239,12 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   mps_material_destroy(&s.material);
   OK(mps_material_create_von_mises(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, 0.1 * NX, height);
-  DEF(mpm, def, .cell = 0.1, .spline = spline, .volumetric = volumetric);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.1 * NX;
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.1, .spline = spline, .volumetric = volumetric,
+        .lower[0] = given.lower[1] = 0.0, .upper[0] = 0.1 * NX);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
-  mps_signal *down = NULL;
-  mps_body *body = NULL;
+  scoped_body *body = NULL;
   DEF(body, plate, .position[1] = height + 0.25);
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down));
+  MAKE(signal, down, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v);
   OK(mps_body_create_box(context, &plate, 2.0 * half, 0.5, &body));
   OK(mps_body_drive(body, 1, down, -1.0));
   mpm_scene_contact(&s, body, 0.0);
@@ -259,8 +254,6 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   OK(mps_mpm_run(s.mpm, t_end, 1000000, NULL, NULL));
   OK(mps_body_get_reaction(body, -1, &end));
   *rough = roughness(&s);
-  mps_body_destroy(&body);
-  mps_signal_destroy(&down);
   mpm_scene_end(&s);
   return (end.impulse[1] - begin.impulse[1]) / (0.25 * t_end) / half;
 }

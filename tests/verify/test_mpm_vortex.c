@@ -12,7 +12,6 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#define PI 3.14159265358979323846
 #define INNER 0.75
 #define OUTER 1.25
 #define YOUNG 1000.0 /* Pa */
@@ -104,8 +103,7 @@ static void piola(const vortex *v, const mps_material *law, const double *X, dou
 TEST(the_body_force_balances_the_librarys_law) {
   const vortex v = {.amplitude = 1.0};
   const double e = 1e-3;
-  scoped_material *law = NULL;
-  OK(mps_material_create_neo_hookean(context, YOUNG, POISSON, &law));
+  MAKE(material, law, create_neo_hookean, context, YOUNG, POISSON);
   for (int k = 0; k < 60; k++) {
     const double R = INNER + e + (OUTER - INNER - 2.0 * e) * (k + 0.5) / 60.0, t = 0.03 + 0.016 * k;
     const double X[2] = {R * cos(0.7 * k), R * sin(0.7 * k)};
@@ -146,12 +144,11 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
   }
   OK(mps_particles_append(s->particles, *count, X));
   OK(mps_particles_add_field(s->particles, "volume", 0));
-  mps_edit volume = mpm_scene_edit(s, "volume");
-  for (int64_t k = 0; k < *count; k++) {
-    const double R = hypot(X[2 * k], X[2 * k + 1]);
-    *mps_edit_f64(&volume, k, 0) = 2.0 * PI * R * spacing / round(2.0 * PI * R / spacing);
-  }
-  mpm_scene_commit(s, &volume);
+  EDIT(volume, s->particles, "volume")
+    for (int64_t k = 0; k < *count; k++) {
+      const double R = hypot(X[2 * k], X[2 * k + 1]);
+      *mps_edit_f64(&volume, k, 0) = 2.0 * PI * R * spacing / round(2.0 * PI * R / spacing);
+    }
   return X;
 }
 
@@ -159,37 +156,34 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
 static void start(mpm_scene *s, const vortex *v, const double *X, double t) {
   OK(mps_particles_add_field(s->particles, "velocity", 0));
   OK(mps_particles_add_field(s->particles, "velocity_gradient", 0));
-  mps_edit velocity = mpm_scene_edit(s, "velocity");
-  mps_edit L = mpm_scene_edit(s, "velocity_gradient");
-  for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
-    const double R = hypot(X[2 * k], X[2 * k + 1]);
-    double h[3], g[3], u[2], r[2];
-    profile(R, h);
-    swing(v, t, g);
-    velocity_at(v, &X[2 * k], t, u);
-    turn(v, &X[2 * k], t, 1.0, 0.0, r);
-    const double rate = g[1] * h[0], slope = R * g[1] * h[1]; /* spin, and shear e_t e_r */
-    *mps_edit_f64(&velocity, k, 0) = u[0];
-    *mps_edit_f64(&velocity, k, 1) = u[1];
-    *mps_edit_f64(&L, k, 0) = -slope * r[1] * r[0];
-    *mps_edit_f64(&L, k, 1) = -slope * r[1] * r[1] - rate;
-    *mps_edit_f64(&L, k, 2) = slope * r[0] * r[0] + rate;
-    *mps_edit_f64(&L, k, 3) = slope * r[0] * r[1];
-  }
-  mpm_scene_commit(s, &L);
-  mpm_scene_commit(s, &velocity);
+  EDIT(velocity, s->particles, "velocity")
+    EDIT(L, s->particles, "velocity_gradient")
+      for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
+        const double R = hypot(X[2 * k], X[2 * k + 1]);
+        double h[3], g[3], u[2], r[2];
+        profile(R, h);
+        swing(v, t, g);
+        velocity_at(v, &X[2 * k], t, u);
+        turn(v, &X[2 * k], t, 1.0, 0.0, r);
+        const double rate = g[1] * h[0], slope = R * g[1] * h[1]; /* spin, and shear e_t e_r */
+        *mps_edit_f64(&velocity, k, 0) = u[0];
+        *mps_edit_f64(&velocity, k, 1) = u[1];
+        *mps_edit_f64(&L, k, 0) = -slope * r[1] * r[0];
+        *mps_edit_f64(&L, k, 1) = -slope * r[1] * r[1] - rate;
+        *mps_edit_f64(&L, k, 2) = slope * r[0] * r[0] + rate;
+        *mps_edit_f64(&L, k, 3) = slope * r[0] * r[1];
+      }
 }
 
 /* The body force as a kick before each step. */
 static void kick(mpm_scene *s, const vortex *v, const double *X, double dt) {
   mps_view id = mpm_scene_view(s, "id");
-  mps_edit velocity = mpm_scene_edit(s, "velocity");
-  for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
-    double b[2];
-    body_force_at(v, &X[2 * *mps_view_i64(&id, k, 0)], mps_mpm_time(s->mpm), b);
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&velocity, k, c) += dt * b[c];
-  }
-  mpm_scene_commit(s, &velocity);
+  EDIT(velocity, s->particles, "velocity")
+    for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
+      double b[2];
+      body_force_at(v, &X[2 * *mps_view_i64(&id, k, 0)], mps_mpm_time(s->mpm), b);
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&velocity, k, c) += dt * b[c];
+    }
 }
 
 /* Root mean square of the distance from the exact place (m). */

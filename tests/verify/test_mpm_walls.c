@@ -44,19 +44,17 @@ static double reflected(int shear, int32_t wall, int32_t spline) {
   OK(mps_particles_add_field(s.particles, "velocity", 0));
   OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit v = mpm_scene_edit(&s, "velocity");
-  mps_edit stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double r = (*mps_view_f64(&x, k, 1) - middle) / width, f = 1e-3 * exp(-r * r);
-    *mps_edit_f64(&v, k, shear ? 0 : 1) = f;
-    *mps_edit_f64(&stress, k, shear ? 3 : 1) = RHO * c * f;
-    if (!shear)
-      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = RHO * c * f * NU / (1.0 - NU);
-  }
-  mpm_scene_commit(&s, &stress);
-  mpm_scene_commit(&s, &v);
-  DEF(mpm, def, .cell = 0.02, .spline = spline, .lower[1] = 0.0);
-  mpm_scene_solve(&s, &def);
+  EDIT(v, s.particles, "velocity")
+    EDIT(stress, s.particles, "stress")
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        const double r = (*mps_view_f64(&x, k, 1) - middle) / width, f = 1e-3 * exp(-r * r);
+        *mps_edit_f64(&v, k, shear ? 0 : 1) = f;
+        *mps_edit_f64(&stress, k, shear ? 3 : 1) = RHO * c * f;
+        if (!shear)
+          *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) =
+              RHO * c * f * NU / (1.0 - NU);
+      }
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .spline = spline, .lower[1] = 0.0);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, wall, 0.0);
   const double before = strip_energy(&s, E);
   OK(mps_mpm_run(s.mpm, 2.0 * middle / c, 1000000, NULL, NULL));
@@ -86,16 +84,13 @@ TEST(absorbing_wall_carries) {
     mpm_scene_box(&s, 0.0, 0.0, 0.2, height);
     OK(mps_particles_add_field(s.particles, "stress", 0));
     mps_view x = mpm_scene_view(&s, "position");
-    mps_edit stress = mpm_scene_edit(&s, "stress");
-    for (int64_t k = 0; k < x.shape[0]; k++) {
-      const double yy = -RHO * g * (height - *mps_view_f64(&x, k, 1));
-      *mps_edit_f64(&stress, k, 1) = yy;
-      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = yy * NU / (1.0 - NU);
-    }
-    mpm_scene_commit(&s, &stress);
-    DEF(mpm, def, .cell = 0.04);
-    def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
-    def.gravity[1] = -g;
+    EDIT(stress, s.particles, "stress")
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        const double yy = -RHO * g * (height - *mps_view_f64(&x, k, 1));
+        *mps_edit_f64(&stress, k, 1) = yy;
+        *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = yy * NU / (1.0 - NU);
+      }
+    DEF(mpm, def, .cell = 0.04, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.2, .gravity[1] = -g);
     mpm_scene_solve(&s, &def);
     DEF(mpm_boundary, base, .kind = MPS_BOUNDARY_ABSORBING, .settle = 0.2);
     if (turned) OK(mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
@@ -121,8 +116,7 @@ TEST(absorbing_wall_carries) {
 
 static mps_signal *constant_velocity(double v) {
   const double times[] = {0.0, 100.0}, values[] = {v, v};
-  mps_signal *signal = NULL;
-  OK(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, times, values, &signal));
+  MAKE_KEPT(signal, signal, create_table, context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, times, values);
   return signal;
 }
 
@@ -142,16 +136,14 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
   OK(mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position");
-  mps_edit stress = mpm_scene_edit(&s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) /* of its weight */
-    *mps_edit_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
-  mpm_scene_commit(&s, &stress);
+  EDIT(stress, s.particles, "stress")
+    for (int64_t k = 0; k < x.shape[0]; k++) /* of its weight */
+      *mps_edit_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
   DEF(mpm, def, .geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN,
       .cell = 0.02, .lower[1] = 0.0, .gravity[0] = g * sin(slope), .gravity[1] = -g * cos(slope));
   mpm_scene_solve(&s, &def);
-  mps_signal *signal = constant_velocity(belt);
+  scoped_signal *signal = constant_velocity(belt);
   mpm_scene_drive(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
-  mps_signal_destroy(&signal);
   /* At first it vibrates, while friction acts across the slope too, and then continues
    * bouncing a little; positions at three instants give the acceleration without that. */
   const double span = dim == 3 ? 0.15 : 0.3;
@@ -202,8 +194,7 @@ TEST(wall_lets_go) {
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
   const double v0[] = {0.5, 1.0}, L[4] = {0};
   mpm_scene_affine(&s, v0, L);
-  DEF(mpm, def, .cell = 0.02, .lower[1] = 0.0);
-  mpm_scene_solve(&s, &def);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .lower[1] = 0.0);
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
   OK(mps_mpm_step(s.mpm, 100));
   const mps_totals t = mpm_scene_totals(&s);
@@ -221,8 +212,7 @@ TEST(moves_as_one) {
     mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.2);
     const double v0[] = {0.7, 0.0}, L[4] = {0};
     mpm_scene_affine(&s, v0, L);
-    DEF(mpm, def, .cell = 0.02, .lower[1] = 0.0);
-    mpm_scene_solve(&s, &def);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02, .lower[1] = 0.0);
     if (how) {
       const double lower[] = {-INFINITY, 0.0}, upper[] = {INFINITY, 0.041};
       int32_t box = -1;
@@ -293,19 +283,16 @@ TEST(base_shakes) {
 static mpm_scene pulled(double traction, double duration, double t_end) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 0.08);
-  DEF(mpm, def, .cell = 0.02);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[1] = 0.08;
+  DEF(mpm, def, .cell = 0.02, .lower[0] = def.lower[1] = 0.0, .upper[1] = 0.08);
   mpm_scene_solve(&s, &def);
   int64_t ids[8], count = 0;
   const double lo[] = {0.99, 0.0}, hi[] = {1.0, 1.0}, pull[] = {traction, 0.0};
   OK(mps_particles_select_box(s.particles, lo, hi, 8, &count, ids));
   assert_int_equal(count, 8);
-  mps_signal *signal = NULL;
   int32_t load = -1;
-  OK(mps_signal_create_ramp(context, MPS_SIGNAL_QUANTITY_VALUE, 0.0, duration, 1.0, &signal));
+  MAKE(signal, signal, create_ramp, context, MPS_SIGNAL_QUANTITY_VALUE, 0.0, duration, 1.0);
   const mps_mpm_load_def pulls = mpm_scene_load_def(count, ids, NULL, pull, 2, signal);
   OK(mps_mpm_add_load(s.mpm, &pulls, &load));
-  mps_signal_destroy(&signal);
   OK(mps_mpm_run(s.mpm, t_end, 1000000, NULL, NULL));
   return s;
 }

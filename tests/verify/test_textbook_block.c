@@ -12,7 +12,6 @@
 #include "textbook_table.h"
 
 #define G 9.81
-#define PI 3.14159265358979323846
 #define LENGTH 0.8 /* m, of the block */
 #define HEIGHT 0.2
 #define DENSITY 2000.0
@@ -97,13 +96,13 @@ static mps_status update_damped(void *user, const mps_material_block *block) {
 
 static void make_damped(mpm_scene *s, shaking *how) {
   static const char *const names[] = {"xx", "yy", "zz", "xy"};
-  DEF(material_user, def, .update = update_damped, .user = how, .name = "damped",
-      .history_count = 4, .history = names, .shear_modulus = 0.5 * YOUNG / (1.0 + POISSON),
-      .bulk_modulus = YOUNG / (3.0 * (1.0 - 2.0 * POISSON)));
-  def.wave_modulus = def.bulk_modulus + 4.0 / 3.0 * def.shear_modulus;
-  def.viscosity = how->damping * def.wave_modulus;
   mps_material_destroy(&s->material);
-  OK(mps_material_create_user(context, &def, &s->material));
+  USING(material_user, mps_material_create_user(context, &given, &s->material),
+        .update = update_damped, .user = how, .name = "damped", .history_count = 4,
+        .history = names, .shear_modulus = 0.5 * YOUNG / (1.0 + POISSON),
+        .bulk_modulus = YOUNG / (3.0 * (1.0 - 2.0 * POISSON)),
+        .wave_modulus = given.bulk_modulus + 4.0 / 3.0 * given.shear_modulus,
+        .viscosity = how->damping * given.wave_modulus);
 }
 
 /* The plane is y = 0, x points up the slope. The stress of rest across the plane is there. */
@@ -111,25 +110,20 @@ static mps_body *place_block(mpm_scene *s, shaking *how, double h) {
   *s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, YOUNG);
   if (how->damping > 0.0) make_damped(s, how);
   mpm_scene_box(s, 0.0, 0.0, LENGTH, HEIGHT);
-  OK(mps_particles_set(s->particles, "density", 0, DENSITY));
-  OK(mps_particles_set(s->particles, "stress", 0, 0.0));
+  SET_FIELDS(s->particles, {"density", DENSITY}, {"stress", 0.0});
   const mps_view x = mpm_scene_view(s, "position");
-  mps_edit stress = mpm_scene_edit(s, "stress");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double across = -DENSITY * G * cos(how->slope) * (HEIGHT - *mps_view_f64(&x, k, 1));
-    *mps_edit_f64(&stress, k, 1) = across;
-    *mps_edit_f64(&stress, k, 2) = 0.3 * across;
-  }
-  mpm_scene_commit(s, &stress);
+  EDIT(stress, s->particles, "stress")
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double across = -DENSITY * G * cos(how->slope) * (HEIGHT - *mps_view_f64(&x, k, 1));
+      *mps_edit_f64(&stress, k, 1) = across;
+      *mps_edit_f64(&stress, k, 2) = 0.3 * across;
+    }
   DEF(mpm, def, .cell = h, .gravity[0] = -G * sin(how->slope), .gravity[1] = -G * cos(how->slope));
   OK(mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
   const double up[2] = {0.0, 1.0};
-  mps_body *plane = NULL;
-  mps_signal *signal = NULL;
-  OK(mps_body_create_half_plane(context, NULL, up, &plane));
-  OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, move, how, NULL, &signal));
+  MAKE_KEPT(body, plane, create_half_plane, context, NULL, up);
+  MAKE(signal, signal, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, move, how, NULL);
   OK(mps_body_drive(plane, 0, signal, 1.0));
-  mps_signal_destroy(&signal);
   mpm_scene_contact(s, plane, how->friction);
   return plane;
 }

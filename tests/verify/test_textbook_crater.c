@@ -10,7 +10,6 @@
 #include "textbook_table.h"
 
 #define G 9.81
-#define PI 3.14159265358979323846
 #define DIAMETER 0.025 /* m, of the sphere */
 #define DENSITY 1520.0 /* kg/m3, of the glass beads as poured */
 #define FRICTION 0.45  /* tan of their angle of repose */
@@ -38,22 +37,16 @@ static double expected(const drop *d) {
 }
 
 static void make_bed(mpm_scene *s, double cell) {
-  mps_material_mohr_coulomb_def grains = mps_material_mohr_coulomb_defaults();
   *s = mpm_scene_begin(context, 0.5 * cell, 0.0, 0.0, YOUNG);
   mps_material_destroy(&s->material);
-  grains.young = YOUNG;
-  grains.friction = atan(FRICTION);
-  grains.cohesion = 1.0;
+  DEF(material_mohr_coulomb, grains, .young = YOUNG, .friction = atan(FRICTION), .cohesion = 1.0);
   OK(mps_material_create_mohr_coulomb(context, &grains, &s->material));
   mpm_scene_box(s, 0.0, 0.0, WIDTH * DIAMETER, WIDTH * DIAMETER);
   mpm_scene_weigh(s, DENSITY * G, 0.5, WIDTH * DIAMETER);
   OK(mps_particles_set(s->particles, "density", 0, DENSITY));
-  DEF(mpm, def, .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = cell);
-  def.lower[0] = def.lower[1] = 0.0;
-  def.upper[0] = WIDTH * DIAMETER;
-  def.upper[1] = 2.0 * WIDTH * DIAMETER;
-  def.gravity[1] = -G;
-  OK(mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
+  USING(mpm, mps_mpm_create(context, s->particles, s->material, &given, &s->mpm),
+        .geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .cell = cell, .lower[0] = given.lower[1] = 0.0,
+        .upper[0] = WIDTH * DIAMETER, .upper[1] = 2.0 * WIDTH * DIAMETER, .gravity[1] = -G);
   mpm_scene_side(s, MPS_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
   mpm_scene_side(s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_ROLLER, 0.0);
 }
@@ -61,13 +54,12 @@ static void make_bed(mpm_scene *s, double cell) {
 static mps_body *make_sphere(mpm_scene *s, const drop *d) {
   DEF(body, def, .motion = MPS_BODY_MOTION_FREE);
   const double mass = d->density * PI * DIAMETER * DIAMETER * DIAMETER / 6.0;
-  mps_body *sphere = NULL;
   def.position[1] = (WIDTH + 0.5) * DIAMETER;
   def.velocity[1] = -sqrt(2.0 * G * d->fall);
   def.gravity[1] = -G;
   def.mass = mass;
   def.inertia[2] = 0.1 * mass * DIAMETER * DIAMETER;
-  OK(mps_body_create_disc(context, &def, 0.5 * DIAMETER, &sphere));
+  MAKE_KEPT(body, sphere, create_disc, context, &def, 0.5 * DIAMETER);
   mpm_scene_contact(s, sphere, SURFACE);
   return sphere;
 }
@@ -79,7 +71,7 @@ static double fall_into_bed(const drop *d, int cells) {
   mps_body_totals totals;
   const double began = textbook_cost(), exact = expected(d);
   make_bed(&s, DIAMETER / cells);
-  mps_body *sphere = make_sphere(&s, d);
+  scoped_body *sphere = make_sphere(&s, d);
   FILE *f = textbook_table(d->name, "t_s,depth_m,velocity_m_s");
   double deepest = 0.0;
   for (int k = 1; k <= 100; k++) {
@@ -98,14 +90,12 @@ static double fall_into_bed(const drop *d, int cells) {
                 1e3 * deepest, 1e3 * exact, 100.0 * (deepest / exact - 1.0),
                 textbook_cost() - began);
   mpm_scene_end(&s);
-  mps_body_destroy(&sphere);
   return deepest / exact;
 }
 
 static int cells = 10; /* of the grid over D; another number as the argument */
 
 static void spheres_come_to_rest_at_the_depth_of_experiments(void **state) {
-  (void)state;
   static const drop list[] = {{"crater_glass", 2200.0, 0.1},
                               {"crater_glass_high", 2200.0, 0.4},
                               {"crater_steel", 7800.0, 0.1},

@@ -9,7 +9,6 @@
 #include "test_fixture.h"
 #include "textbook_table.h"
 
-#define PI 3.14159265358979323846
 #define WAVE 10.0 /* m, wavelength */
 #define VS 100.0
 #define DENSITY 1800.0
@@ -42,9 +41,8 @@ typedef struct record {
 
 /* From the two uppermost rows, extrapolated by half a spacing. `spacing` between them. */
 static void observe(mps_particles *set, double spacing, double t, record *r, int k) {
-  mps_view x, v;
-  OK(mps_particles_view(set, "position", &x));
-  OK(mps_particles_view(set, "velocity", &v));
+  mps_view x = view_field(set, "position");
+  mps_view v = view_field(set, "velocity");
   double sum[2] = {0.0, 0.0}, count = 0.0;
   for (int64_t i = 0; i < x.shape[0]; i++) {
     const double row = (DEPTH - *mps_view_f64(&x, i, 1)) / spacing;
@@ -77,15 +75,12 @@ static void measure(const record *r, double *velocity, double *shape) {
 }
 
 static void start(mps_particles *set) {
-  mps_view x;
-  mps_edit v;
   OK(mps_particles_set(set, "velocity", 0, 0.0));
-  OK(mps_particles_view(set, "position", &x));
-  OK(mps_particles_edit(set, "velocity", &v));
-  for (int64_t i = 0; i < x.shape[0]; i++)
-    *mps_edit_f64(&v, i, 1) = SPEED * cos(2.0 * PI / WAVE * *mps_view_f64(&x, i, 0)) *
-                              exp(-2.0 * PI / WAVE * (DEPTH - *mps_view_f64(&x, i, 1)));
-  OK(mps_particles_commit(set, &v));
+  mps_view x = view_field(set, "position");
+  EDIT(v, set, "velocity")
+    for (int64_t i = 0; i < x.shape[0]; i++)
+      *mps_edit_f64(&v, i, 1) = SPEED * cos(2.0 * PI / WAVE * *mps_view_f64(&x, i, 0)) *
+                                exp(-2.0 * PI / WAVE * (DEPTH - *mps_view_f64(&x, i, 1)));
 }
 
 static void state(const char *name, int count, const record *r, double a, double began,
@@ -107,17 +102,12 @@ static double sample_time(int k) { return WAVE / VS / 0.92 * k / PER_PERIOD; }
 static void by_particles(int count, double vp, double *velocity, double *shape) {
   static record r;
   const double spacing = WAVE / count, began = textbook_cost();
-  DEF(particles, set, .spacing = spacing);
-  scoped_particles *particles = NULL;
-  OK(mps_particles_create(context, &set, &particles));
-  OK(mps_particles_fill_box(particles, (double[]){0.0, 0.0}, (double[]){WAVE, DEPTH}, NULL));
-  OK(mps_particles_set(particles, "density", 0, DENSITY));
-  OK(mps_particles_set(particles, "shear_velocity", 0, VS));
-  OK(mps_particles_set(particles, "pressure_velocity", 0, vp));
+  scoped_particles *particles =
+      box_of(context, spacing, (double[]){0.0, 0.0}, (double[]){WAVE, DEPTH});
+  SET_FIELDS(particles, {"density", DENSITY}, {"shear_velocity", VS}, {"pressure_velocity", vp});
   start(particles);
   DEF(dynamics, def, .period_x = WAVE);
-  scoped_dynamics *dynamics = NULL;
-  OK(mps_dynamics_create(context, particles, &def, &dynamics));
+  MAKE(dynamics, dynamics, create, context, particles, &def);
   DEF(dynamics_boundary, base, .kind = MPS_BOUNDARY_ABSORBING);
   int32_t number;
   base.lower[0] = base.lower[1] = -INFINITY;
@@ -140,8 +130,7 @@ static void by_grid(int count, double *velocity, double *shape) {
   mpm_scene_box(&s, 0.0, 0.0, 0.5 * WAVE, DEPTH);
   OK(mps_particles_set(s.particles, "density", 0, DENSITY));
   start(s.particles);
-  DEF(mpm, def, .cell = 2.0 * spacing);
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.5 * WAVE;
+  DEF(mpm, def, .cell = 2.0 * spacing, .lower[0] = def.lower[1] = 0.0, .upper[0] = 0.5 * WAVE);
   OK(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_ABSORBING, 0.0);
   for (int k = 0; k <= SAMPLES; k++) {

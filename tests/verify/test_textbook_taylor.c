@@ -15,8 +15,7 @@
 static mps_material *copper(void) {
   DEF(material_von_mises, def, .young = 117e9, .poisson = 0.35, .yield_stress = 400e6,
       .hardening = 100e6);
-  mps_material *m = NULL;
-  OK(mps_material_create_von_mises(context, &def, &m));
+  MAKE_KEPT(material, m, create_von_mises, context, &def);
   return m;
 }
 
