@@ -395,8 +395,8 @@ TEST(bodies_come_and_go) {
   mps_body_destroy(&corner);
 }
 
-/* A box that dips into water along a signal: the fluid moves it as a caller does who advances it
- * before each step, also after a rollback; a step that is not made leaves it where it was. */
+/* A box that dips into water along a signal: moved by the fluid it is where the caller's
+ * mps_body_advance before each step puts it, also after a rollback; a step that is not made leaves it. */
 TEST(driven_bodies_follow_their_signals) {
   const double dt = 2e-3;
   mps_body_state end[2];
