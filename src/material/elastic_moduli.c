@@ -69,7 +69,8 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
   mps_context *context = material->context;
   if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                     "the law %s has no elastic constants known to the library", material->name);
+                     "the law '%s' has no elastic constants that the library knows",
+                     material->name);
   MPSI_TRY(mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY));
   const mps_moduli m = moduli_of(material->law.shear, material->law.bulk, density);
   return mpsi_out_write(context, function, out, size, &m, sizeof m);

@@ -120,7 +120,8 @@ static mps_status make(mps_solver *s, const char *function, const char *name, in
 
 mps_status mps_history_create(mps_solver *s, const char *name, const char *const *columns,
                               const char *const *units, int32_t count, mps_history **out) {
-  if (!s || !out) return mpsi_null(__func__, s ? "out" : "solver");
+  if (!s) return mpsi_null(__func__, "solver");
+  if (!out) return mpsi_fail(s->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_history *made = NULL;
   MPSI_TRY(mpsi_guard_check_between(&s->guard, s->context, __func__));
@@ -277,13 +278,16 @@ mps_status mps_history_record(mps_history *h, double time, const double *values,
   if (status != MPS_OK) return status;
   h->rows++, h->epoch++;
   if (!h->file.path || h->rows - h->file.rows < h->file.every) return MPS_OK;
-  return complete_file(h, __func__);
+  status = complete_file(h, __func__);
+  if (status == MPS_ERROR_MEMORY) h->rows--, h->epoch--; /* before anything was written */
+  return status;
 }
 
 int64_t mps_history_count(const mps_history *h) { return h ? h->rows : 0; }
 
 mps_status mps_history_view(const mps_history *h, const char *column, mps_view *out) {
-  if (!h || !out) return mpsi_null(__func__, h ? "out" : "history");
+  if (!h) return mpsi_null(__func__, "history");
+  if (!out) return mpsi_fail(h->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   int64_t k = -1;
   MPSI_TRY(check_column(h, __func__, column, 0, &k));
   *out = (mps_view){.data = h->row ? h->row + k : NULL,
@@ -299,7 +303,8 @@ mps_status mps_history_view(const mps_history *h, const char *column, mps_view *
 /* ---- the file -------------------------------------------------------------------------------- */
 
 mps_status mps_history_write(mps_history *h, const char *path) {
-  if (!h || !path) return mpsi_null(__func__, h ? "path" : "history");
+  if (!h) return mpsi_null(__func__, "history");
+  if (!path) return mpsi_fail(h->context, __func__, MPS_ERROR_ARGUMENT, "path is NULL");
   return mpsi_domain_agree(h->domain, __func__,
                            writes(h) ? mpsi_history_write_file(h, __func__, path) : MPS_OK);
 }

@@ -102,9 +102,10 @@ static void open_file(api *a) {
   api_begin(a, "mps_history_open");
   char path[300];
   mps_history *history = api_any(a, API_HISTORY)->handle;
-  api_path(a, path, "history");
+  const bool close = api_chance(a, 20);
+  if (!close) api_path(a, path, "history");
   const int64_t every = api_least(a, "every", 1, 3);
-  (void)api_end(a, mps_history_open(history, api_chance(a, 20) ? NULL : path, every));
+  (void)api_end(a, mps_history_open(history, close ? NULL : path, every));
 }
 
 static void flush(api *a) {

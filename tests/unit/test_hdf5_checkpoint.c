@@ -199,7 +199,7 @@ TEST(bad_arguments_of_writing) {
   BAD("time is nan");
   info = some_info();
   info.dt = -1.0;
-  BAD("dt -1");
+  BAD("dt is -1 s");
   info.dt = INFINITY;
   BAD("dt inf");
   info = some_info();

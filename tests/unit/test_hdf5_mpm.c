@@ -292,7 +292,7 @@ TEST_SERIAL(blocks_elsewhere_are_refused) {
     assert_int_equal(write(again.fd, data, (size_t)size), size);
     close(fd);
     OK(mpsi_replace_commit(context, "test", &again));
-    FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "blocks do not hold");
+    FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "blocks do not contain");
     OK(mps_mpm_step(x.s.mpm, 1));
   }
 }

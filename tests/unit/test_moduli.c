@@ -98,7 +98,7 @@ TEST(materials_tell_their_moduli) {
   assert_true(first[0] == m.young && first[1] == 7.0);
   DEF(material_user, law, .update = nothing, .wave_modulus = 1e6);
   OK(mps_material_create_user(context, &law, &own));
-  FAILS(mps_material_get_moduli(own, 1e3, &m), MPS_ERROR_UNSUPPORTED, "user has no elastic");
+  FAILS(mps_material_get_moduli(own, 1e3, &m), MPS_ERROR_UNSUPPORTED, "'law' has no elastic");
   REFUSES(mps_material_get_moduli(sand, -1.0, &m), "density is -1");
 }
 

@@ -194,7 +194,7 @@ TEST_SERIAL(weights_are_a_kernel) {
   mps_mpm_destroy(&s.mpm);
   assert_null(def.kernel);
   OK(mps_kernel_create(context, MPS_KERNEL_MPS, 0.2, &def.kernel));
-  REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "kernel is of kind 0");
+  REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "kind is MPS_KERNEL_MPS");
   mps_kernel_destroy(&def.kernel);
   OK(mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.2, &def.kernel));
   REFUSES(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), "must be 1.5 cells");
