@@ -201,7 +201,7 @@ TEST(bad_arguments_of_writing) {
   info.dt = -1.0;
   BAD("dt is -1 s");
   info.dt = INFINITY;
-  BAD("dt inf");
+  BAD("dt is inf");
   info = some_info();
   info.step = -2;
   BAD("step -2");
