@@ -82,7 +82,7 @@ static void draw_place(api *a, mps_particles *set, const int64_t **ids, int64_t 
     lower[c] = -INFINITY, upper[c] = INFINITY;
     if (c == 1) upper[c] = api_near(a, "upper", 0.1, 0.05);
   }
-  if (!isnan(upper[1])) a->wrong = 0;
+  a->wrong = 0; /* NaN is no bound */
 }
 
 static void draw_boundary(api *a, mps_dynamics *dynamics, mps_dynamics_boundary_def *def,
