@@ -52,6 +52,7 @@ static int run(app *a, flume *m) {
   if (m->samples == 0)
     return code == APP_INTERRUPTED && a->rank == 0 && !summary_bare(a, m->s.out) ? APP_FAILED
                                                                                  : code;
+  if (!app_check(a, mps_history_flush(m->rows.history))) return APP_FAILED;
   if (!app_agree(a, a->rank > 0 || flume_write(a, m))) return APP_FAILED;
   return m->saves.lost && code == APP_OK ? APP_FAILED : code;
 }

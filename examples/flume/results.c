@@ -393,7 +393,6 @@ bool flume_write(app *a, flume *m) {
   if (good && flume_has_slope(m)) good = write_run_up(a, m);
   if (good && g.separated) good = write_waves(a, m, &g) && write_spectrum(a, m, &g);
   if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
-  if (good) good = app_check(a, mps_history_flush(m->rows.history));
   good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);
   flume_free_figures(&g);
   if (good) app_tell_results(a, m->s.out);

@@ -204,7 +204,7 @@ TEST(bad_arguments_of_writing) {
   BAD("dt is inf");
   info = some_info();
   info.step = -2;
-  BAD("step -2");
+  BAD("step is -2");
   info = some_info();
   memset(info.user_key, 'x', sizeof info.user_key);
   BAD("at most 63 characters");

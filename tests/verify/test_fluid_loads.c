@@ -287,7 +287,7 @@ TEST(what_is_refused) {
   REFUSED(bad.kind = 3, "kind is 3");
   REFUSED(bad.rate = -1.0, "rate is -1 1/s");
   REFUSED(bad.rise = 2, "rise is 2");
-  REFUSED((bad.kind = MPS_FLUID_LOAD_DAMPING, bad.rise = 1), "lower[0] and upper[0]");
+  REFUSED((bad.kind = MPS_FLUID_LOAD_DAMPING, bad.rise = 1), "lower[0] is nan m, must be finite");
   REFUSED(bad.acceleration[1] = NAN, "acceleration[1]");
   REFUSED(bad.acceleration[2] = 1.0, "acceleration[2] is 1 m/s2");
   REFUSED(bad.pressure = INFINITY, "pressure is inf Pa");

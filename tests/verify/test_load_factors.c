@@ -80,10 +80,12 @@ TEST(a_number_is_no_motion) {
   }
   scoped_signal *none = NULL;
   assert_true(mps_signal_value(NULL, 1.0) == 0.0);
-  REFUSES(mps_signal_create_sine(context, 0, 1.0, 1.0, 0.0, &none), "quantity is 0, allowed are");
-  REFUSES(mps_signal_create_ramp(context, 4, 0.0, 1.0, 0.0, &none), "quantity is 4, allowed are");
+  REFUSES(mps_signal_create_sine(context, 0, 1.0, 1.0, 0.0, &none),
+          "quantity is MPS_SIGNAL_QUANTITY_ACCELERATION, allowed are");
+  REFUSES(mps_signal_create_ramp(context, 4, 0.0, 1.0, 0.0, &none),
+          "quantity is MPS_SIGNAL_QUANTITY_VALUE_STEPS, allowed are");
   REFUSES(mps_signal_create_user(context, 1, line_of_time, &slope, NULL, &none),
-          "quantity is 1, allowed are");
+          "quantity is MPS_SIGNAL_QUANTITY_VELOCITY, allowed are");
   REFUSES(mps_signal_create_table(context, 5, SAMPLES, jump_at, jump_to, &none),
           "quantity is 5, allowed are");
   /* of a number only its size is bounded */
