@@ -81,8 +81,10 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   if (status == MPS_OK) status = mps_mpm_create(context, set, law, &def, &mpm);
   if (status == MPS_OK) status = mps_mpm_run(mpm, 5e-3, 1, NULL, NULL);
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  char field[100]; /* of the first history column */
-  snprintf(field, sizeof field, "%s.%s", mps_material_name(law), mps_material_history_name(law, 0));
+  const char *column = mps_material_history_name(law, 0);
+  char field[100]; /* of the first history column: the library's own laws use fields of its table */
+  snprintf(field, sizeof field, "%s.%s", mps_material_name(law), column);
+  if (!mps_particles_has_field(set, field)) snprintf(field, sizeof field, "%s", column);
   if (status == MPS_OK) status = mps_particles_view(set, field, &kept);
   *length = *plastic = 0.0;
   for (int64_t k = 0; status == MPS_OK && k < kept.shape[0]; k++) {
