@@ -2,11 +2,16 @@
  * the reference: {"mps_x_def": [[member, unit, default, allowed, [rule, ...]], ...], ...}.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/definition/definition.h"
+#include "core/internal.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* What messages about a value ask for; the tables have none. */
+mpsi_name mpsi_name_of(const char *enumeration, int32_t value) { return (mpsi_name){""}; }
+const char *mpsi_enumeration_of(const char *name) { return NULL; }
 
 static const char *allowed(const mpsi_def_member *m, const mpsi_allowed *a, char text[MPSI_WHY]) {
   text[0] = '\0';

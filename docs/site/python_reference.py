@@ -79,7 +79,7 @@ def class_lines(node, indent=0):
             behind = node.body[k + 1] if k + 1 < len(node.body) else None
             said = behind.value.value if isinstance(behind, ast.Expr) and isinstance(behind.value, ast.Constant) else ""
             lines += [f"   .. py:attribute:: {item.target.id}", f"      :type: {ast.unparse(item.annotation)}", "      :no-contents-entry:", "", *body(said, 6)]
-        elif isinstance(item, ast.FunctionDef) and (not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__len__")):
+        elif isinstance(item, ast.FunctionDef) and (not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__setitem__", "__delitem__", "__contains__", "__len__")):
             lines += function(item, "method", 3)
     return lines
 
