@@ -33,8 +33,10 @@ static void create(api *a) {
   api_say(a, "\"%s\", ", names[name]);
   if (name > 2) api_wrong(a, "name");
   const int32_t count = (int32_t)api_whole(a, "count", 1, 2);
+  const bool none = count > 2 || api_null(a, "columns"); /* there are names of two */
+  if (count > 2) api_wrong(a, "columns");
   const mps_status status = mps_history_create(
-      solver, api_null(a, "name") ? NULL : names[name], api_null(a, "columns") ? NULL : columns,
+      solver, api_null(a, "name") ? NULL : names[name], none ? NULL : columns,
       api_chance(a, 30) ? units : NULL, count, api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_HISTORY, made, o);
 }

@@ -35,8 +35,8 @@
   mps_##noun *name = NULL;                                                                         \
   OK(mps_##noun##_##how(__VA_ARGS__, &name))
 
-/* A point or vector as an argument. */
-#define AT(...) ((const double[]){__VA_ARGS__})
+/* A point or vector as an argument: of three numbers, as a set in space reads three of AT(0.0). */
+#define AT(...) ((const double[3]){__VA_ARGS__})
 
 /* What follows, a statement or a block, writes the field between edit and commit:
  *   EDIT(v, set, "velocity")
