@@ -222,9 +222,10 @@ static mps_status fill(mps_history *h, const char *function, double time, int32_
 }
 
 static mps_status complete_file(mps_history *h, const char *function) {
-  if (!writes(h)) h->file.rows = h->rows;
-  return mpsi_domain_agree(h->domain, function,
-                           writes(h) ? mpsi_history_append(h, function) : MPS_OK);
+  MPSI_TRY(mpsi_domain_agree(h->domain, function,
+                             writes(h) ? mpsi_history_append(h, function) : MPS_OK));
+  h->file.rows = h->rows; /* on all ranks, or they disagree on when the next block is full */
+  return MPS_OK;
 }
 
 /* Of several ranks: the row of rank 0. */
