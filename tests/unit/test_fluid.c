@@ -396,14 +396,15 @@ TEST(bodies_come_and_go) {
 }
 
 /* A box that dips into water along a signal: moved by the fluid it is where the caller's
- * mps_body_advance before each step puts it, also after a rollback; a step that is not made leaves it. */
-TEST(driven_bodies_follow_their_signals) {
+ * mps_body_advance before each step puts it, also after a rollback; a step that is not made leaves
+ * it. */
+static void follows_its_signals(double l0, double x) {
   const double dt = 2e-3;
   mps_body_state end[2];
   mps_reaction r[2];
   for (int run = 0; run < 2; run++) {
-    scoped_tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, dt);
-    DEF(body, at, .position[0] = 0.3, .position[1] = 0.42);
+    scoped_tank t = tank_make(context, 0.6, 0.3, l0, NULL, dt);
+    DEF(body, at, .position[0] = x, .position[1] = 0.42);
     scoped_body *box = NULL;
     scoped_signal *sine = NULL;
     scoped_snapshot *snapshot = NULL;
@@ -418,7 +419,7 @@ TEST(driven_bodies_follow_their_signals) {
       FAILS(mps_body_advance(box, dt), MPS_ERROR_STATE, "MPS_CONTACT_MOVER_OTHER");
       OK(mps_fluid_step(t.fluid, 7));
       OK(mps_fluid_rollback(t.fluid, snapshot));
-      OK(mps_fluid_begin_step(t.fluid, 10.0 * dt));
+      OK(mps_fluid_begin_step(t.fluid, 8.0 * dt));
       OK(mps_fluid_solve_pressure(t.fluid));
       OK(mps_fluid_abandon_step(t.fluid));
       OK(mps_body_get_state(box, &end[1]));
@@ -431,9 +432,15 @@ TEST(driven_bodies_follow_their_signals) {
     OK(mps_contact_get_reaction(contact, -1, &r[run]));
     OK(mps_body_get_state(box, &end[run]));
   }
-  assert_true(r[0].force[1] > 100.0);
+  assert_true(r[0].force[1] > 30.0); /* N: it dips in by some 0.02 m of 0.2 */
   assert_memory_equal(&r[0], &r[1], sizeof r[0]);
   assert_memory_equal(&end[0], &end[1], sizeof end[0]);
+}
+
+TEST(driven_bodies_follow_their_signals) {
+  const double l0[] = {0.03, 0.02, 0.015},
+               x[] = {0.3, 0.2537, 0.3463}; /* off the lattice, mirrored */
+  for (int k = 0; k < 3; k++) follows_its_signals(l0[k], x[k]);
 }
 
 /* Water pushed sideways by a in every particle leans on the right wall and off the left one, alike;
