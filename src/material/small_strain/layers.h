@@ -12,7 +12,7 @@
 #include "material/tensor.h"
 
 #define AHEAD 4        /* layers from the fetch of deviators to their step */
-#define LAYER_CHUNK 32 /* particles whose sums are in memory at a time */
+#define LAYER_CHUNK 64 /* particles whose sums are in memory at a time */
 
 /* Sums over the layers, of the particles of a chunk. */
 typedef struct layer_sums {

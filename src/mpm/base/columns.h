@@ -49,6 +49,12 @@ static inline int mpsi_stencil_border(int32_t stencil, int c) {
   return (int)(stencil >> (MPSI_STENCIL_BITS + 2 * c) & 3) - 1;
 }
 
+/* Along any axis. */
+static inline bool mpsi_stencil_on_border(int32_t stencil, int dim) {
+  const int32_t none = 1 | 1 << 2 | (dim == 3 ? 1 << 4 : 0);
+  return stencil >> MPSI_STENCIL_BITS != none;
+}
+
 /* Fraction of the velocity that the nodes do not represent that particles keep in a step of dt. */
 static inline double mpsi_kept_fraction(const mps_mpm_def *def, double dt) {
   return def->flip_time > 0.0 ? exp(-dt / def->flip_time) : 0.0;

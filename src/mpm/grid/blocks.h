@@ -62,6 +62,7 @@ typedef struct mpsi_cell_block {
   uint8_t first;              /* bit q: this is the first to add to to[q] */
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
   bool lost;                  /* that particle is outside the domain; all are finite */
+  bool tight;                 /* its water is within a step of the bounds of water/bounds.c */
   double speed;               /* largest c + |v|, m/s */
   double vis_viva;            /* twice the kinetic energy of its particles, J */
   double flow;                /* the same of the flow of pore water (laws.h) */

@@ -63,9 +63,12 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   double speed, flow, most[MPSI_SWEEP_SUMS];
   mps_status own = MPS_OK, status = MPS_OK;
   read_blocks(mpm, &bad, &lost, &speed, &flow);
+  char what[256];
   if (bad >= 0 || lost >= 0)
     own = report_bad(mpm->context, &mpm->grid, &mpm->p, run, function, bad >= 0 ? bad : lost,
-                     bad >= 0 ? NOT_FINITE : "has left the domain");
+                     bad < 0                                             ? "has left the domain"
+                     : mpsi_pore_describe(mpm, bad, what, sizeof what) ? what
+                                                                         : NOT_FINITE);
   if (bad < 0)
     mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
   mpsi_mpm_sweep_sums(&mpm->contact, most);

@@ -20,8 +20,8 @@
  * which takes energy out.
  *
  * A step is saved (undo.h) where it can end beyond all bounds: after a change by the caller, beyond
- * the Courant limit, where a load jumps, or where particles or bodies move by more than 1/20 of a
- * cell in the step. Otherwise speeds would have to grow twentyfold within it.
+ * the Courant limit, where a load jumps, where water is near its bounds, or where particles or
+ * bodies move by more than 1/20 of a cell in the step. Otherwise speeds would have to grow twentyfold within it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 #include "mpm/boundary/free_field.h"
@@ -162,6 +162,7 @@ double mpsi_bound_fastest(const mps_mpm *mpm) {
   double fastest = 0.0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (cells->tight) return INFINITY;
     double square = cells->vis_viva / mpm->bound.lightest;
     if (square > most * most) { /* not so fast if all share it */
       square = 0.0;

@@ -4,6 +4,7 @@
  * change after that.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "mpm/water/water.h"
 
 #include <string.h>
 
@@ -69,7 +70,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   for (int c = 0; c < mpm->grid.dim && mpm->water; c++)
     seepage[c] = mpsi_particles_column(mpm->p.set, "seepage", c);
   mpsi_bound_begin(mpm);
-  u->on = !mpsi_bound_is_calm(mpm) || mpm->water || mpsi_bound_by_law(&mpm->p);
+  u->on = !mpsi_bound_is_calm(mpm) || mpsi_pore_predicts(mpm) || mpsi_bound_by_law(&mpm->p);
   if (!u->on) return MPS_OK;
   int64_t most = MPSI_UNDO_COLUMNS, sums = 0;
   for (int32_t k = 0; k < b->count; k++) sums += b->boundary[k].sums != NULL;

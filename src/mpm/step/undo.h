@@ -1,7 +1,7 @@
 /* undo.h - restores the state before a step that fails half way, when some particles have moved:
  * a law of the caller refuses, a particle gets values that are not finite or not possible
  * (water/bounds.c), or all get more energy than there is (bound.c). Steps that continue a calm
- * motion of ground without water and such laws save nothing.
+ * motion without such laws, with water far inside its bounds or none, save nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
@@ -41,7 +41,7 @@ void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries
 typedef struct mpsi_bound {
   double allowed;  /* J: energy counted when it was last renewed, and the works done since */
   double kinetic;  /* J, after the last step */
-  double fastest;  /* m/s: no particle was faster after the last step */
+  double fastest;  /* m/s: no particle was faster after the last step; infinite where water is tight */
   double mass;     /* kg, of all particles */
   double lightest; /* kg */
   double most;     /* J, bound of the step being made */
@@ -58,7 +58,8 @@ void mpsi_bound_begin(mps_mpm *mpm);
 void mpsi_bound_check(mps_mpm *mpm);
 /* Completes a step that is kept. */
 void mpsi_bound_keep(mps_mpm *mpm);
-/* After a step that is kept: a speed (m/s) that no particle of this rank exceeds. */
+/* After a step that is kept: a speed (m/s) that no particle of this rank exceeds; infinite where
+ * its water is within a step of its bounds. */
 double mpsi_bound_fastest(const mps_mpm *mpm);
 /* Writes what is wrong with the particle `beyond`. */
 void mpsi_bound_describe(const mps_mpm *mpm, char *out, size_t size);

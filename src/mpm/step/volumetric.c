@@ -91,6 +91,18 @@ static cells_of find_sums(const mpsi_grid *grid, const mpsi_columns *p,
   return out;
 }
 
+/* Sums of the particle's cell where it is in that alone and no thin body is near, which is nearly
+ * always so; NULL elsewhere. */
+static inline double *find_only_sums(const mpsi_grid *grid, const mpsi_columns *p,
+                                     const mpsi_cell_block *cells, const mpsi_worker *worker,
+                                     int64_t particle) {
+  const int32_t stencil = p->stencil[particle];
+  int at[3];
+  if (cells->thin || mpsi_stencil_on_border(stencil, grid->dim)) return NULL;
+  mpsi_unravel(mpsi_stencil_node(stencil), MPSI_TILE_SIDE, at);
+  return mpsi_sums_at(grid, cells, worker, false, at[0], at[1], at[2]);
+}
+
 static const double level[3] = {0.0, 0.0, 0.0}; /* zero gradient */
 
 /* ---- by node --------------------------------------------------------------------------------- */
@@ -245,6 +257,12 @@ static void sum_rates(void *data, int64_t b, int32_t number) {
       add_to_nodes(&mpm->grid, cells, worker, &s, V[k], trace, level);
       continue;
     }
+    double *only = find_only_sums(&mpm->grid, &mpm->p, cells, worker, k);
+    if (only) {
+      only[MPSI_SUM_VOLUME] += V[k];
+      only[MPSI_SUM_VALUE] += V[k] * trace;
+      continue;
+    }
     const cells_of of = find_sums(&mpm->grid, &mpm->p, &mpm->contact, cells, worker, k);
     const double part = of.count > 1 ? V[k] / of.count : V[k];
     for (int i = 0; i < of.count; i++) {
@@ -263,12 +281,15 @@ static void mean_diagonals(const mpsi_transfer *work, int64_t begin, int64_t end
   find_diagonal(grid, p, L);
   for (int64_t k = begin; k < end; k++) {
     const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
+    const double *only;
     double mean;
     if (keeps_own(p, k)) {
       mean = own;
     } else if (by_nodes(work->def)) {
       const support s = support_of(grid, p, work->contact, cells, k);
       mean = mean_of_nodes(grid, cells, &s, level);
+    } else if ((only = find_only_sums(grid, p, cells, NULL, k))) {
+      mean = only[MPSI_SUM_VALUE] / only[MPSI_SUM_VOLUME];
     } else {
       const cells_of of = find_sums(grid, p, work->contact, cells, NULL, k);
       mean = 0.0;

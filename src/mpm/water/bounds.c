@@ -5,7 +5,8 @@
  *   |v| dt <= h       within the Courant limit dt <= h/(c + v) no motion crosses a cell in a step:
  *                     a speed beyond it takes an acceleration by strains above 1 within the step
  *
- * or the step has diverged, and is undone (step/undo.h). Steps with implicit pressures change
+ * or the step has diverged, and is undone (step/undo.h). A calm step, whose strains are below 1/10,
+ * cannot come there from .1 <= n <= .9 and |p| <= K_w/4: others are saved. Steps with implicit pressures change
  * porosities after the motion (cell_loops.c): here those which they will have.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
@@ -32,19 +33,21 @@ static bool is_possible(const mps_mpm *mpm, int64_t k) {
          speed_of(mpm, k) * mpm->run.dt <= mpm->grid.cell;
 }
 
-/* Whether all particles [begin, end) are possible, without branches. */
-static bool are_possible(const mps_mpm *mpm, int64_t begin, int64_t end) {
+/* Whether all particles [begin, end) are far inside the bounds of n and p, without branches. */
+static bool are_far_inside(const mps_mpm *mpm, int64_t begin, int64_t end) {
   const mpsi_columns *p = &mpm->p;
   const bool done = mpsi_pore_responds(mpm->water);
   const double *n = p->n, *u = p->u, *former = mpm->water->former, *V = p->V;
-  const double bulk = mpm->water->def.bulk;
+  const double most = 0.25 * mpm->water->def.bulk;
   int good = 1;
   if (done)
     for (int64_t k = begin; k < end; k++)
-      good &= (n[k] > 0.0) & (n[k] < 1.0) & (fabs(u[k]) <= bulk);
-  else /* 1 - n, of the volume before the step, is below the volume after it */
-    for (int64_t k = begin; k < end; k++)
-      good &= (V[k] > 0.0) & ((1.0 - n[k]) * former[k] < V[k]) & (fabs(u[k]) <= bulk);
+      good &= (n[k] >= 0.1) & (n[k] <= 0.9) & (fabs(u[k]) <= most);
+  else /* grains, of the volume before the step, in the volume after it */
+    for (int64_t k = begin; k < end; k++) {
+      const double grains = (1.0 - n[k]) * former[k];
+      good &= (grains >= 0.1 * V[k]) & (grains <= 0.9 * V[k]) & (fabs(u[k]) <= most);
+    }
   return good != 0;
 }
 
@@ -53,8 +56,8 @@ static void find_impossible(void *data, int64_t b, int32_t worker) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   const bool slow = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED &&
                     cells->speed * mpm->run.dt <= mpm->grid.cell; /* c + |v| of all of them */
-  if ((cells->bad >= 0 && !cells->lost) || (slow && are_possible(mpm, cells->begin, cells->end)))
-    return;
+  cells->tight = !are_far_inside(mpm, cells->begin, cells->end);
+  if ((cells->bad >= 0 && !cells->lost) || (slow && !cells->tight)) return;
   for (int64_t k = cells->begin; k < cells->end; k++)
     if (!is_possible(mpm, k)) {
       cells->bad = k;
