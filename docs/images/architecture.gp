@@ -15,7 +15,7 @@ set xrange [0:120]
 set yrange [0:64]
 eval box(1, 2, 56, 116, 6.5, '#eef2f7')
 eval head(60, 60.6, 'programs')
-eval text(60, 57.8, 'examples/, and yours: they see include/mps/ only, and link one library')
+eval text(60, 57.8, 'programs/, and yours: they see include/mps/ only, and link one library')
 array upper[5] = ["mpm", "dynamics", "implicit", "fluid", "couple"]
 array upper1[5] = ["soil on a grid that", "explicit: waves through", "elastic structures:", "water with a", "two codes that act on"]
 array upper2[5] = ["follows the particles", "ground, step by step", "statics, steps, modes", "free surface", "one another in a step"]

@@ -22,7 +22,7 @@ def numbers(text):
 
 def code_of(root):
     """Source files that hold equations."""
-    return [p for folder in ("src", "examples") for p in sorted((root / folder).rglob("*.[ch]"))]
+    return [p for folder in ("src", "programs") for p in sorted((root / folder).rglob("*.[ch]"))]
 
 
 def owner(text, place):

@@ -14,7 +14,7 @@ from pygments.util import ClassNotFound
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DEFINITION = re.compile(r"^(?!typedef|return|else)(?:[A-Za-z_][\w\s\*]*?[\s\*])(\w+)\s*\([^;{}()]*(?:\([^()]*\)[^;{}()]*)*\)\s*\{", re.M)
-FOLDERS = ("src", "include", "examples", "tests", "bench", "scripts", "python", "cmake", "docs")
+FOLDERS = ("src", "include", "programs", "examples", "tests", "bench", "scripts", "python", "cmake", "docs")
 
 
 class Sources:
@@ -22,7 +22,7 @@ class Sources:
 
     def __init__(self):
         self.functions, self.basenames, self.used = {}, {}, set()
-        for path in sorted([*(ROOT / "src").rglob("*.[ch]"), *(ROOT / "examples").rglob("*.[ch]")]):
+        for path in sorted([*(ROOT / "src").rglob("*.[ch]"), *(ROOT / "programs").rglob("*.[ch]")]):
             name, text = path.relative_to(ROOT).as_posix(), path.read_text()
             self.basenames.setdefault(path.name, []).append(name)
             for match in DEFINITION.finditer(text):
@@ -97,7 +97,7 @@ def link_code(app, doctree, page):
         return
     if not hasattr(app, "mps_reference"):
         app.mps_reference, app.mps_sources = reference_of(app), Sources()
-        app.mps_programs = {p.stem for p in (ROOT / "examples").glob("mps-*.c")}
+        app.mps_programs = {p.stem for p in (ROOT / "programs").glob("mps-*.c")}
     literals = [n for n in doctree.findall(nodes.literal)]
     files = [(n.parent, app.mps_sources.file(n.astext())) for n in literals]
     for literal in literals:

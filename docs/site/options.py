@@ -48,7 +48,7 @@ def parse(text):
 
 def run_help(build, name):
     """What --help of a program prints, or None where the build has no such program."""
-    for path in (build / "examples" / name, build / "tests/examples" / f"{name}-mock"):
+    for path in (build / "programs" / name, build / "tests/programs" / f"{name}-mock"):
         if path.is_file() and os.access(path, os.X_OK):
             done = subprocess.run([path, "--help"], capture_output=True, text=True, check=True)
             return done.stdout.replace(f"{name}-mock", name)
@@ -57,7 +57,7 @@ def run_help(build, name):
 
 def examples(root, name):
     """(what, command) of the manual page."""
-    text = (root / "examples/manual" / f"{name}.h2m").read_text().partition("[EXAMPLES]")[2].partition("\n[")[0]
+    text = (root / "programs/manual" / f"{name}.h2m").read_text().partition("[EXAMPLES]")[2].partition("\n[")[0]
     found = []
     for said, commands in re.findall(r"^\.TP\n(.*?)\n((?:^\.(?:nh|hy|B|BR|I) ?.*\n?)+)", text, re.M):
         command = "\n".join(line.removeprefix(".B ").replace("\\-", "-").replace("\\e", "\\") for line in commands.splitlines() if line.startswith(".B "))
@@ -133,7 +133,7 @@ All results are written below the directory of `--out`.
 
 def stage(root, build, write):
     """Writes all pages; returns the names of the programs that have one."""
-    names = sorted(p.stem for p in (root / "examples").glob("mps-*.c"))
+    names = sorted(p.stem for p in (root / "programs").glob("mps-*.c"))
     texts = {name: run_help(pathlib.Path(build), name) for name in names} if build else {}
     shown = [name for name in names if texts.get(name)]
     rows = []

@@ -37,7 +37,7 @@ def library(build):
 
 def environment(build):
     """Variables under which the programs of a page find this build."""
-    path = f"{build / 'examples'}{os.pathsep}{os.environ['PATH']}"
+    path = f"{build / 'programs'}{os.pathsep}{os.environ['PATH']}"
     return {"PATH": path, "PYTHONPATH": str(build / "python"), "LIBMPS_LIBRARY": str(library(build)), "MPLBACKEND": "Agg",
             "LD_LIBRARY_PATH": str(build / "src"), "OMP_WAIT_POLICY": "passive", "PYTHONDONTWRITEBYTECODE": "1"}
 
@@ -56,7 +56,7 @@ class Page:
         sha = hashlib.sha256(repr([b[:2] for b in self.blocks]).encode())
         sha.update(library(build).read_bytes())
         programs = sorted(set(re.findall(r"\bmps-[a-z-]+", " ".join(b[1] for b in self.blocks if b[0] in ("sh", "python")))))
-        for file in [build / "examples" / p for p in programs] + sorted((build / "python/libmps").glob("*.py")):
+        for file in [build / "programs" / p for p in programs] + sorted((build / "python/libmps").glob("*.py")):
             if file.is_file():
                 sha.update(file.read_bytes())
         return sha.hexdigest()

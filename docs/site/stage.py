@@ -139,7 +139,7 @@ def check_gallery(root):
     """Every program has its place in the gallery, with a command and a picture."""
     shown = (root / "docs/gallery.md").read_text()
     parts = {part.partition("\n")[0]: part for part in re.split(r"^## ", shown, flags=re.M)}
-    names = [p.stem for p in sorted((root / "examples").glob("mps-*.c"))]
+    names = [p.stem for p in sorted((root / "programs").glob("mps-*.c"))]
     missing = [name for name in names if name not in parts]
     if missing:
         raise SystemExit(f"docs: programs without a place in docs/gallery.md: {', '.join(missing)}")

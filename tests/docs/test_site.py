@@ -98,8 +98,8 @@ class Pages(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             (root / "docs").mkdir()
-            (root / "examples").mkdir()
-            (root / "examples/mps-new.c").touch()
+            (root / "programs").mkdir()
+            (root / "programs/mps-new.c").touch()
             (root / "docs/gallery.md").write_text("# Gallery\n\n## mps-old\n")
             with self.assertRaisesRegex(SystemExit, "without a place.*mps-new"):
                 stage.check_gallery(root)
@@ -157,7 +157,7 @@ Help
         self.assertEqual([(heading, [row.name for row in rows]) for heading, rows in sections], [("Options", ["--json"])])
 
     def test_every_program_has_examples_of_its_manual_page(self):
-        for path in sorted((ROOT / "examples").glob("mps-*.c")):
+        for path in sorted((ROOT / "programs").glob("mps-*.c")):
             found = options.examples(ROOT, path.stem)
             self.assertTrue(found, path.stem)
             self.assertTrue(all(command.startswith(path.stem) for _, command in found), found)

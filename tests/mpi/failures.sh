@@ -2,7 +2,7 @@
 # failures.sh DIRECTORY MPIRUN...: what ends early on several ranks, of a program of each solver but that
 # of mps-wave (programs.sh): a table that cannot be written, ranks that were given different things, one that
 # dies, one that is asked to stop. One message, an exit status, and the state kept; every wait has a limit.
-. "$(dirname "$0")/../examples/checks.sh"
+. "$(dirname "$0")/../programs/checks.sh"
 programs=$1
 shift
 mpirun=$*

@@ -1,7 +1,7 @@
 #!/bin/sh
 # programs.sh DIRECTORY MPIRUN...: mps-wave on ranks, as a user starts it: the files of one process,
 # one message where it ends early, and the last checkpoint where a rank dies. Every run has a limit.
-. "$(dirname "$0")/../examples/checks.sh"
+. "$(dirname "$0")/../programs/checks.sh"
 programs=$1
 shift
 mpirun=$*

@@ -2,7 +2,7 @@
 # refused.sh PROGRAM MPIRUN...: of two ranks that solve together by PETSc one is refused an allocation
 # there. It gets a status with a record, and so does the other where it does not wait within PETSc;
 # libmps-petsc prints nothing and ends no process, and none hangs.
-. "$(dirname "$0")/../examples/checks.sh"
+. "$(dirname "$0")/../programs/checks.sh"
 program=$1
 shift
 mpirun=$*

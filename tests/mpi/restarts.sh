@@ -2,7 +2,7 @@
 # restarts.sh DIRECTORY MPIRUN...: runs of several ranks whose last rank is killed, which other numbers of
 # ranks take to the end: the results of one process in one go, to the bit. Programs that failures.sh,
 # programs.sh and same_files.sh do not cut.
-. "$(dirname "$0")/../examples/checks.sh"
+. "$(dirname "$0")/../programs/checks.sh"
 programs=$1
 shift
 mpirun=$*

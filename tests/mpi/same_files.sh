@@ -1,7 +1,7 @@
 #!/bin/sh
 # same_files.sh DIRECTORY MPIRUN...: programs on 3 ranks print and write what they do in one process,
 # to the bit.
-. "$(dirname "$0")/../examples/checks.sh"
+. "$(dirname "$0")/../programs/checks.sh"
 programs=$1
 shift
 mpirun=$*
@@ -39,7 +39,7 @@ same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 6x6x6 --h 0
 same layer mps-consolidation --cells 8 --times 0.01
 same mandel mps-consolidation --case mandel --cells 16 --scheme implicit --times 0.002,0.01
 # Layers of other laws and permeabilities, of which a rank may have none; water in a slope.
-data=$(dirname "$0")/../examples/data
+data=$(dirname "$0")/../programs/data
 same layers mps-consolidation --layers "$data/consolidation_layers.csv" --times 0.002
 same slope mps-slope --h 1 --factor 1 --falls 0.3 --water-table 0 --drawdown 10
 same backfill mps-wall --h 0.1 --path 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa

@@ -1,4 +1,4 @@
-"""run_cosimio.py PROGRAM: examples/small/cosimio.py as two processes, by CoSimIO where python3 finds it, else by the
+"""run_cosimio.py PROGRAM: examples/cosimio.py as two processes, by CoSimIO where python3 finds it, else by the
 stand-in in this folder: the frequency is that of potential flow to 1 %. SPDX-License-Identifier: BSD-3-Clause"""
 import importlib.util
 import os

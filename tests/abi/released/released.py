@@ -22,7 +22,7 @@ import headers as reading  # noqa: E402
 
 SOURCES = ("scenes.h", "scenes.c", "solvers.c", "calls.c", "client.cpp")
 PLUGIN = ROOT / "tests/install/plugin"
-#: Programs of examples/small that use the stable interface alone, and print a table.
+#: Programs of examples that use the stable interface alone, and print a table.
 EXAMPLES = ("servo", "coupling")
 SYSTEM = ["-lm", "-lpthread", "-ldl"]
 #: Differences of numbers that other compilers, instruction sets and libraries make, of the largest number of a line or

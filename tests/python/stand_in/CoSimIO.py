@@ -1,4 +1,4 @@
-"""Stand-in of the functions of CoSimIO that examples/small/cosimio.py calls: two programs and a socket in the present
+"""Stand-in of the functions of CoSimIO that examples/cosimio.py calls: two programs and a socket in the present
 directory. SPDX-License-Identifier: BSD-3-Clause"""
 import time
 from multiprocessing.connection import Client, Listener

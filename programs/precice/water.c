@@ -32,7 +32,7 @@ static const char purpose[] =
     "A tank of water as a participant of a preCICE coupling (version 3): its right wall bends as "
     "another code says,\n"
     "and that receives the forces of the water. The defaults are those of "
-    "examples/precice/water-config.xml.";
+    "programs/precice/water-config.xml.";
 
 static int parse(settings *s, int argc, char **argv) {
   *s = (settings){.coupling = {.config = "water-config.xml",

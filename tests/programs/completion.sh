@@ -32,7 +32,7 @@ same "$(complete_line mps-wave --height '')" ""
 touch "$work/ground one.csv"
 same "$(complete_line mps-wave --layers "$work/ground")" "$work/ground one.csv"
 
-manual=$(dirname "$0")/../../examples/manual
+manual=$(dirname "$0")/../../programs/manual
 sed -n 's/^\.B \(mps.*\)/\1/p' "$manual"/mps-*.h2m | tr -d '\\' | grep -v '|' >"$work/commands"
 [ "$(wc -l <"$work/commands")" -ge 20 ] || fail "few commands in the manual pages"
 while read -r program arguments; do

@@ -1,6 +1,6 @@
 #!/bin/sh
 # precice-sides-real.sh BIN PRECICE: a wall of water and a rigid body in soil by preCICE itself; BIN has the programs, PRECICE
-# the configurations (examples/precice).
+# the configurations (programs/precice).
 #
 # Water, .9 m deep, on one side of the flap (1 m, .1 m thick, E 1 GPa, nu .3, 3000 kg/m3), which stands straight at first.
 # Ritz's method, Timoshenko's beam with the added mass of the layers coth(k L)/k: 2.4386e-3 m in statics, 50.00 rad/s (60.91

@@ -1,6 +1,6 @@
 #!/bin/sh
 # brief.sh DIRECTORY: every program for a few steps, to the end and with all its results. The sanitized
-# builds run this, where the other tests of programs would take too long (tests/examples/CMakeLists.txt).
+# builds run this, where the other tests of programs would take too long (tests/programs/CMakeLists.txt).
 . "$(dirname "$0")/checks.sh"
 run() { # run PROGRAM OPTIONS...: it ends well and writes a summary of numbers
   program=$1

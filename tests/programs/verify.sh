@@ -6,8 +6,8 @@ programs=$1
 verify=$2
 here=$(mktemp -d)
 trap 'rm -rf "$here"' EXIT
-mkdir -p "$here/docs/cases" "$here/build/examples"
-ln -s "$programs"/mps-* "$here/build/examples/"
+mkdir -p "$here/docs/cases" "$here/build/programs"
+ln -s "$programs"/mps-* "$here/build/programs/"
 cat >"$here/docs/cases/page.ini" <<'END'
 [slips]
 group = discs

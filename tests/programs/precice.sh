@@ -1,7 +1,7 @@
 #!/bin/sh
 # precice.sh PROGRAM: mps-precice with the tests' stand-in of preCICE: ten windows, each repeated three times.
 . "$(dirname "$0")/checks.sh"
-cp "$(dirname "$0")/../../examples/precice/precice-config.xml" "$work"
+cp "$(dirname "$0")/../../programs/precice/precice-config.xml" "$work"
 cd "$work"
 "$1" --spacing 25mm --dt 8ms --threads 1 --frames 5 --out "$work/flap" >"$work/log" || fail "$(cat "$work/log")"
 has "$work/log" "10 time windows, 90 steps, 20 of them repeated"
