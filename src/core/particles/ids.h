@@ -12,12 +12,12 @@
 #define MPSI_IDS_MOST INT32_MAX /* particles of a set with a table */
 
 typedef struct mpsi_ids {
-  bool sparse;     /* a table: chosen while the map is empty */
-  int64_t room;    /* ids of the array, or slots of the table, below 2^32 */
-  int64_t count;   /* ids in the table */
-  int64_t *index;  /* of the array: -1 of an id that is not here */
-  int64_t *id;     /* of the table: -1 of a free slot */
-  int32_t *places; /* of the table: the index of each */
+  bool sparse;      /* a table: chosen while the map is empty */
+  int64_t capacity; /* ids of the array, or slots of the table, below 2^32 */
+  int64_t count;    /* ids in the table */
+  int64_t *index;   /* of the array: -1 of an id that is not here */
+  int64_t *id;      /* of the table: -1 of a free slot */
+  int32_t *places;  /* of the table: the index of each */
 } mpsi_ids;
 
 /* Room for ids below `made`, of which `count` are here at once; false: refused, and nothing has

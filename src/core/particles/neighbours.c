@@ -286,14 +286,14 @@ static void find_pairs(void *data, int64_t block, int32_t worker) {
 /* Memory for `count` items without the former contents, in place of `memory`, or NULL; with an
  * eighth to spare, so that lists which change a little from step to step do not allocate at each.
  */
-static void *make_room(mps_context *context, void *memory, int64_t *capacity, int64_t count,
-                       size_t size) {
+static void *enlarge(mps_context *context, void *memory, int64_t *capacity, int64_t count,
+                     size_t size) {
   if (memory && count <= *capacity) return memory;
   mpsi_free(context, memory);
   *capacity = count + count / 8;
-  void *room = mpsi_alloc(context, *capacity, size);
-  if (!room) *capacity = 0;
-  return room;
+  memory = mpsi_alloc(context, *capacity, size);
+  if (!memory) *capacity = 0;
+  return memory;
 }
 
 mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def *def,
@@ -349,13 +349,13 @@ static mps_status check_view(const mps_neighbours *nb, const char *function,
 static bool make_scratch(mps_neighbours *nb, int64_t n, int64_t blocks) {
   mps_context *context = nb->context;
   csr *out = &nb->spare;
-  nb->items = make_room(context, nb->items, &nb->items_capacity, n, sizeof *nb->items);
-  nb->sorted = make_room(context, nb->sorted, &nb->sorted_capacity, n, sizeof *nb->sorted);
-  nb->x = make_room(context, nb->x, &nb->x_capacity, n * nb->def.dim, sizeof *nb->x);
-  nb->histogram = make_room(context, nb->histogram, &nb->histogram_capacity, blocks * DIGITS,
-                            sizeof *nb->histogram);
+  nb->items = enlarge(context, nb->items, &nb->items_capacity, n, sizeof *nb->items);
+  nb->sorted = enlarge(context, nb->sorted, &nb->sorted_capacity, n, sizeof *nb->sorted);
+  nb->x = enlarge(context, nb->x, &nb->x_capacity, n * nb->def.dim, sizeof *nb->x);
+  nb->histogram = enlarge(context, nb->histogram, &nb->histogram_capacity, blocks * DIGITS,
+                          sizeof *nb->histogram);
   out->offsets =
-      make_room(context, out->offsets, &out->offsets_capacity, n + 1, sizeof *out->offsets);
+      enlarge(context, out->offsets, &out->offsets_capacity, n + 1, sizeof *out->offsets);
   return nb->items && nb->sorted && nb->x && nb->histogram && out->offsets;
 }
 
@@ -385,8 +385,8 @@ mps_status mps_neighbours_build(mps_neighbours *neighbours, const mps_view *posi
     mpsi_parallel_for(nb->context, blocks, find_pairs, &b);
     for (int64_t i = 0; i < n; i++) out->offsets[i + 1] += out->offsets[i];
   }
-  out->indices = make_room(nb->context, out->indices, &out->indices_capacity, out->offsets[n],
-                           sizeof *out->indices);
+  out->indices = enlarge(nb->context, out->indices, &out->indices_capacity, out->offsets[n],
+                         sizeof *out->indices);
   if (!out->indices)
     return mpsi_fail(nb->context, __func__, MPS_ERROR_MEMORY, "could not allocate %lld neighbours",
                      (long long)out->offsets[n]);

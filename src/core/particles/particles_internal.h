@@ -43,7 +43,7 @@ mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const
 mps_status mpsi_particles_permute(mps_particles *particles, const char *function,
                                   const int64_t *order);
 /* The same without allocating, on the context's threads: `scratch` are 1 to MPSI_PERMUTE_COLUMNS
- * places with room for count items of 8 bytes each. More are faster on more threads. */
+ * places with memory for count items of 8 bytes each. More are faster on more threads. */
 #define MPSI_PERMUTE_COLUMNS 3
 mps_status mpsi_particles_permute_in(mps_particles *particles, const char *function,
                                      const int64_t *order, void *const *scratch, int32_t columns);
@@ -170,7 +170,7 @@ mps_status mpsi_particles_back_up(mps_particles *particles, const char *function
 void mpsi_particles_go_back(mps_particles *particles, mpsi_backup *backup);
 void mpsi_backup_drop(mps_particles *particles, mpsi_backup *backup);
 
-/* A set keeps `count` of its particles, rows[0], rows[1], ... in this order, with room for
+/* A set keeps `count` of its particles, rows[0], rows[1], ... in this order, with memory for
  * `capacity`, and drops the rest, for a solver whose particles lie on several ranks. The whole is
  * in *former, to be restored or freed. */
 typedef struct mpsi_storage mpsi_storage;

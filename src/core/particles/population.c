@@ -32,7 +32,7 @@ mps_status mpsi_particles_check_free(const mps_particles *p, const char *functio
       "the particle set is held by %s, which takes no more particles: destroy it first", holder);
 }
 
-/* Makes room for so many particles; false: no memory, and nothing has changed. The columns have
+/* Gets memory for so many particles; false: no memory, and nothing has changed. The columns have
  * then moved, and their former memory is kept until finish_columns, which frees it or moves the
  * columns back: then the caller's views are valid again. */
 static bool reserve(mps_particles *p, int64_t capacity) {

@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c, whole_cells.c; common code is in
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c, inner_cells.c; common code is in
  * loops.h. SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
@@ -56,7 +56,7 @@ typedef struct mpsi_kernels {
   mpsi_transfer_fn pore_begin_block, pore_respond;
   void (*pore_strain)(const mpsi_transfer *work, const double *former, int64_t begin, int n);
   /* Of cells of a block of nodes that have whole ones on all faces: pressures at the end of the
-   * step with flow; slopes of these (water/whole_cells.c). */
+   * step with flow; slopes of these (water/inner_cells.c). */
   void (*pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
   void (*pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
   mpsi_fit_fn fit;

@@ -230,7 +230,7 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
   if (!mpm) return mpsi_null(__func__, "mpm");
   mpsi_exact sum[2] = {{{0}}};
   mps_status status = check_water(mpm->context, mpm->water, __func__);
-  if (status == MPS_OK && (number < -1 || number >= mpm->water->faces))
+  if (status == MPS_OK && (number < -1 || number >= mpm->water->face_count))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "number is %d: there is no pore face of this number, and the free surface "
                        "is -1",
@@ -321,13 +321,13 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
   mps_pore_face_def def;
   mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
-  if (status == MPS_OK && mpm->water->faces == MPS_PORE_MAX_FACES)
+  if (status == MPS_OK && mpm->water->face_count == MPS_PORE_MAX_FACES)
     status =
         mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                   "the solver has %d pore faces, the most that are allowed", MPS_PORE_MAX_FACES);
   MPSI_TRY(agree_on_face(mpm, __func__, status, &def, -1));
-  if (number) *number = (int32_t)mpm->water->faces;
-  mpm->water->face[mpm->water->faces++] = def;
+  if (number) *number = (int32_t)mpm->water->face_count;
+  mpm->water->face[mpm->water->face_count++] = def;
   warn_of_face(mpm, &def);
   return MPS_OK;
 }
@@ -337,7 +337,7 @@ mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_fa
   mps_pore_face_def def;
   mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
-  if (status == MPS_OK && (number < 0 || number >= mpm->water->faces))
+  if (status == MPS_OK && (number < 0 || number >= mpm->water->face_count))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "number is %d: there is no pore face of this number", number);
   MPSI_TRY(agree_on_face(mpm, __func__, status, &def, number));

@@ -6,7 +6,7 @@
  * several ranks the tiles of border blocks travel, and the cells have the bits of one rank.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cell_loops.h"
-#include "layers.h"
+#include "halo.h"
 #include "mpm/base/kernels.h"
 #include "mpm/ranks/messages.h"
 
@@ -148,7 +148,7 @@ void mpsi_pore_find_cells(mps_mpm *mpm) {
                           .arrive = mpsi_mpm_receive_messages};
   if (mpm->partition)
     mpsi_mpm_send_messages(mpm->context, mpm->partition, "mps_mpm_step",
-                           mpsi_pore_sum_doubles(mpm->water->layers), pack, mpm);
+                           mpsi_pore_sum_doubles(mpm->water->halo), pack, mpm);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &sums);
   mpsi_pore_exchange(mpm, MPSI_PORE_FILLED);
 }

@@ -6,7 +6,7 @@
  * nothing and lies on the line between its neighbour inside and the surface. Most cells have others
  * on all their faces, which the marks of a block show for all its cells at once.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "layers.h"
+#include "halo.h"
 #include "water.h"
 
 #include <string.h>
@@ -84,7 +84,7 @@ static bool in_body(const mpsi_contacts *contacts, const double *x) {
 
 /* The last definition that holds the face's centre x and direction, or -1. */
 static int find_face(const mpsi_grid *grid, mpsi_water *water, const double *x, int direction) {
-  for (int64_t f = water->faces - 1; f >= 0; f--) {
+  for (int64_t f = water->face_count - 1; f >= 0; f--) {
     const mps_pore_face_def *def = &water->face[f];
     bool in = def->sides == 0 || (def->sides >> direction & 1) != 0;
     for (int c = 0; c < grid->dim; c++) in = in && x[c] >= def->lower[c] && x[c] <= def->upper[c];
@@ -96,7 +96,7 @@ static int find_face(const mpsi_grid *grid, mpsi_water *water, const double *x, 
 /* What is beyond face `direction` of cell k of block g, whose box has its centre at x. */
 static void find_beyond(const mpsi_grid *grid, const mpsi_contacts *contacts, mpsi_water *water,
                         int64_t g, int k, int direction, const double *x, mpsi_pore_cell *cell,
-                        mpsi_pore_edge *edge) {
+                        mpsi_pore_faces *faces) {
   const int axis = direction / 2, up = direction & 1;
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
@@ -104,40 +104,44 @@ static void find_beyond(const mpsi_grid *grid, const mpsi_contacts *contacts, mp
   const bool side = up ? at + 1 >= grid->high[axis] : at <= grid->low[axis];
   const double half = up ? 0.5 * grid->cell : -0.5 * grid->cell;
   double to[3] = {x[0], x[1], x[2]};
-  edge->beyond[direction] = MPSI_PORE_CELL;
-  edge->face[direction] = -1;
+  faces->beyond[direction] = MPSI_PORE_CELL;
+  faces->face[direction] = -1;
   if (!side && mpsi_pore_beside(grid, water, g, k, direction)) return;
   to[axis] += 2.0 * half;
   if (!side) cell->free |= (uint8_t)(1u << direction);
   const bool closed = side || in_body(contacts, to);
   to[axis] = x[axis] + half;
   const int face = find_face(grid, water, to, direction);
-  edge->face[direction] = (int8_t)face;
-  edge->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
+  faces->face[direction] = (int8_t)face;
+  faces->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
   if (face >= 0)
-    edge->beyond[direction] =
+    faces->beyond[direction] =
         water->face[face].kind == MPS_PORE_FACE_DRAINED ? MPSI_PORE_DRAINED : MPSI_PORE_CLOSED;
 }
 
 /* The filled part of a cell whose box is at radius r. */
 static void find_filled(const mpsi_grid *grid, mpsi_water *water, double r, mpsi_pore_cell *cell,
-                        mpsi_pore_edge *edge) {
+                        mpsi_pore_faces *faces) {
   const double h = grid->cell;
   const double box = (grid->dim == 3 ? h * h * h : h * h) * r;
   int axes = 0;
   for (int c = 0; c < grid->dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
   const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (grid->measure * box));
   const double part = axes <= 1 ? f : axes == 2 ? sqrt(f) : cbrt(f);
-  edge->space = box * f;
+  faces->space = box * f;
   for (int c = 0; c < 3; c++) {
     const int sides = c < grid->dim ? cell->free >> (2 * c) & 3 : 0;
-    edge->fill[c] = sides != 0 ? part : 1.0;
-    edge->shift[c] = 0.5 * h * (1.0 - edge->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
-    cell->p += c < grid->dim ? cell->g[c] * edge->shift[c] : 0.0;
+    faces->fill[c] = sides != 0 ? part : 1.0;
+    faces->shift[c] = 0.5 * h * (1.0 - faces->fill[c]) *
+                      (sides == 1   ? 1.0
+                       : sides == 2 ? -1.0
+                                    : 0.0);
+    cell->p += c < grid->dim ? cell->g[c] * faces->shift[c] : 0.0;
   }
   const bool stores = !water->flows || !mpsi_pore_responds(water); /* whatever its filled part */
   for (int d = 0; d < 2 * grid->dim && !stores; d++)
-    if (f < 0.5 && (cell->free >> d & 1) && edge->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+    if (f < 0.5 && (cell->free >> d & 1) && faces->beyond[d] == MPSI_PORE_DRAINED)
+      cell->thin = true;
 }
 
 /* Of a cell that is not inside. */
@@ -145,12 +149,12 @@ static void find_edge(const mpsi_grid *grid, const mpsi_contacts *contacts, mpsi
                       int64_t g, int k, const int *place, mpsi_pore_cell *cell) {
   const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
-  mpsi_pore_edge *edge = water->edge + (cell - water->cell);
+  mpsi_pore_faces *faces = water->faces + (cell - water->cell);
   double x[3];
   mpsi_node_position(grid, grid->nodes[g].at, local, x);
   for (int d = 0; d < 2 * grid->dim; d++)
-    find_beyond(grid, contacts, water, g, k, d, x, cell, edge);
-  find_filled(grid, water, ring ? x[0] : 1.0, cell, edge);
+    find_beyond(grid, contacts, water, g, k, d, x, cell, faces);
+  find_filled(grid, water, ring ? x[0] : 1.0, cell, faces);
 }
 
 static void find_faces(void *data, int64_t g, int32_t worker) {

@@ -13,7 +13,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cell_loops.h"
 #include "implicit.h"
-#include "layers.h"
+#include "halo.h"
 #include "mpm/boundary/free_field.h"
 #include "mpm/base/kernels.h"
 
@@ -32,8 +32,8 @@ static double weight_of_water(mpsi_water *water) { return water->def.density * M
  * parts of a cell and of the one beside it. */
 static double area_of(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
                       const mpsi_pore_cell *beside, int direction, double radius) {
-  const double *own = mpsi_pore_edge_of(water, cell)->fill;
-  const double *other = beside ? mpsi_pore_edge_of(water, beside)->fill : own;
+  const double *own = mpsi_pore_faces_of(water, cell)->fill;
+  const double *other = beside ? mpsi_pore_faces_of(water, beside)->fill : own;
   double area = radius;
   for (int c = 0; c < grid->dim; c++)
     if (c != direction / 2)
@@ -89,8 +89,8 @@ static face_flow to_cell(const mpsi_grid *grid, mpsi_water *water, const mps_mpm
                          double p, double p_beside, double area) {
   const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
   const double still = water->def.density * def->gravity[axis];
-  const double distance = grid->cell + sign * (mpsi_pore_edge_of(water, beside)->shift[axis] -
-                                               mpsi_pore_edge_of(water, cell)->shift[axis]);
+  const double distance = grid->cell + sign * (mpsi_pore_faces_of(water, beside)->shift[axis] -
+                                               mpsi_pore_faces_of(water, cell)->shift[axis]);
   const double drive = (p_beside - p) / distance - sign * still; /* outwards */
   const double sum = cell->k + beside->k, own = sum > 0.0 ? 2.0 * beside->k / sum : 1.0;
   return (face_flow){.slope = sign * drive * own + still,
@@ -115,17 +115,18 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
   const face_flow none = {.known = false};
   *behind = NULL;
   if (!mpm->water->flows &&
-      mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] != MPSI_PORE_CELL)
+      mpsi_pore_faces_of(mpm->water, cell)->beyond[direction] != MPSI_PORE_CELL)
     return none;
-  if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_CLOSED)
+  if (mpsi_pore_faces_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_CLOSED)
     return (face_flow){.slope = mpm->water->def.density * mpm->def.gravity[axis],
-                       .distance = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis],
+                       .distance = 0.5 * h * mpsi_pore_faces_of(mpm->water, cell)->fill[axis],
                        .known = true};
-  if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
-    const double way = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis];
+  if (mpsi_pore_faces_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
+    const double way = 0.5 * h * mpsi_pore_faces_of(mpm->water, cell)->fill[axis];
     *behind = cell;
-    return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, cell)->face[direction], direction, x,
-                      way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
+    return to_drained(mpm, cell, mpsi_pore_faces_of(mpm->water, cell)->face[direction], direction,
+                      x, way, p,
+                      area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
   }
   const mpsi_pore_cell *beside = mpsi_pore_beside(&mpm->grid, mpm->water, g, k, direction);
   const double area = mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction,
@@ -135,13 +136,13 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
     return to_cell(&mpm->grid, mpm->water, &mpm->def, cell, beside, direction, p,
                    pressure_of(beside, end), area);
   if (!(beside->free >> direction & 1) ||
-      mpsi_pore_edge_of(mpm->water, beside)->beyond[direction] != MPSI_PORE_DRAINED)
+      mpsi_pore_faces_of(mpm->water, beside)->beyond[direction] != MPSI_PORE_DRAINED)
     return none;
   *behind = beside;
-  const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm->water, cell)->shift[axis];
-  const double way = own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis];
-  return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, beside)->face[direction], direction, x,
-                    way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
+  const double own = 0.5 * h + sign * -mpsi_pore_faces_of(mpm->water, cell)->shift[axis];
+  const double way = own + h * mpsi_pore_faces_of(mpm->water, beside)->fill[axis];
+  return to_drained(mpm, cell, mpsi_pore_faces_of(mpm->water, beside)->face[direction], direction,
+                    x, way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
 }
 
 /* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
@@ -151,22 +152,22 @@ static double centre_of(const mpsi_grid *grid, mpsi_water *water, int64_t g, int
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
   mpsi_node_position(grid, grid->nodes[g].at, local, x);
-  for (int c = 0; c < grid->dim; c++) x[c] += mpsi_pore_edge_of(water, cell)->shift[c];
+  for (int c = 0; c < grid->dim; c++) x[c] += mpsi_pore_faces_of(water, cell)->shift[c];
   return (double)grid->nodes[g].at[0] * MPSI_SIDE + place[0];
 }
 
-/* ---- cells among whole cells ----------------------------------------------------------------- */
+/* ---- cells among inner cells ----------------------------------------------------------------- */
 
-/* Cells of a block that are inside, with cells on all faces that have no free face: whole_cells.c.
+/* Cells of a block that are inside, with cells on all faces that have no free face: inner_cells.c.
  * Returns whether there are any. */
-static bool find_whole(const mpsi_grid *grid, const mpsi_water *water, int64_t g, uint64_t *whole) {
+static bool find_inner(const mpsi_grid *grid, const mpsi_water *water, int64_t g, uint64_t *inner) {
   uint64_t any = 0;
-  memset(whole, 0, MPSI_PORE_WORDS * sizeof *whole);
+  memset(inner, 0, MPSI_PORE_WORDS * sizeof *inner);
   if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) return false;
-  mpsi_pore_surrounded(grid, water, g, true, whole);
+  mpsi_pore_surrounded(grid, water, g, true, inner);
   for (int w = 0; w < MPSI_PORE_WORDS; w++) {
-    whole[w] &= water->block[g].inside[w];
-    any |= whole[w];
+    inner[w] &= water->block[g].inside[w];
+    any |= inner[w];
   }
   return any != 0;
 }
@@ -188,25 +189,25 @@ static double flux_into(mps_mpm *mpm, int64_t g, int k, bool end, const mpsi_por
     const face_flow f = at_face(mpm, g, k, d, end, cell, x, X, &behind);
     if (f.known) flux += f.flux;
     if (f.known && behind)
-      let_out(mpm->water, g, mpsi_pore_edge_of(mpm->water, behind)->face[d], -f.flux);
+      let_out(mpm->water, g, mpsi_pore_faces_of(mpm->water, behind)->face[d], -f.flux);
   }
   return flux;
 }
 
 /* m3 that stores water, of a cell that is not inside. One less than half full at an impervious
  * surface: else its steps would be short. */
-static double space_of(const mpsi_pore_edge *edge) {
-  const double filled = edge->fill[0] * edge->fill[1] * edge->fill[2];
-  return fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
+static double space_of(const mpsi_pore_faces *faces) {
+  const double filled = faces->fill[0] * faces->fill[1] * faces->fill[2];
+  return fmax(faces->space, 0.5 * faces->space / fmax(1e-3, filled));
 }
 
-/* Of a cell that is not among whole ones (whole_cells.c). */
+/* Of a cell that is not among inner ones (inner_cells.c). */
 static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   mpsi_water *water = mpm->water;
   const double h = mpm->grid.cell;
   double space = mpm->grid.dim == 3 ? h * h * h : h * h;
   cell->gain = flux_into(mpm, g, k, false, cell);
-  if (!cell->inside) space = space_of(mpsi_pore_edge_of(water, cell));
+  if (!cell->inside) space = space_of(mpsi_pore_faces_of(water, cell));
   cell->now = cell->p + water->def.bulk / cell->n * (water->elapsed * cell->gain / space) +
               mpsi_pore_squeeze(mpm->water, cell);
 }
@@ -215,11 +216,11 @@ static void find_pressures(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
-  uint64_t whole[MPSI_PORE_WORDS];
+  uint64_t inner[MPSI_PORE_WORDS];
   memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
-  if (find_whole(&mpm->grid, mpm->water, g, whole)) mpm->kernels->pore_advance(&work, g, whole);
+  if (find_inner(&mpm->grid, mpm->water, g, inner)) mpm->kernels->pore_advance(&work, g, inner);
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
-    for (uint64_t left = mpm->water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
+    for (uint64_t left = mpm->water->block[g].filled[w] & ~inner[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
       if (!cell[k].thin) advance(mpm, g, k, &cell[k]); /* else find_slopes finds its gain */
     }
@@ -255,20 +256,20 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
   centre_of(grid, water, g, k, cell, x);
   for (int d = 0; d < 2 * grid->dim; d++) {
     const int axis = d / 2, sign = d & 1 ? 1 : -1;
-    if (!(cell->free >> d & 1) || mpsi_pore_edge_of(water, cell)->beyond[d] != MPSI_PORE_DRAINED)
+    if (!(cell->free >> d & 1) || mpsi_pore_faces_of(water, cell)->beyond[d] != MPSI_PORE_DRAINED)
       continue;
     const mpsi_pore_cell *inside = mpsi_pore_beside(grid, water, g, k, d ^ 1);
     double at[3] = {x[0], x[1], x[2]};
-    at[axis] += sign * 0.5 * h * mpsi_pore_edge_of(water, cell)->fill[axis];
+    at[axis] += sign * 0.5 * h * mpsi_pore_faces_of(water, cell)->fill[axis];
     const double surface =
-        given_pressure(grid, water, def, mpsi_pore_edge_of(water, cell)->face[d], at);
+        given_pressure(grid, water, def, mpsi_pore_faces_of(water, cell)->face[d], at);
     cell->g[axis] = 0.0;
     if (!inside || inside->thin) continue;
-    const double way = 0.5 * h - sign * mpsi_pore_edge_of(water, inside)->shift[axis] +
-                       h * mpsi_pore_edge_of(water, cell)->fill[axis];
+    const double way = 0.5 * h - sign * mpsi_pore_faces_of(water, inside)->shift[axis] +
+                       h * mpsi_pore_faces_of(water, cell)->fill[axis];
     const double slope = (surface - inside->now) / way; /* outwards */
     cell->g[axis] = sign * slope;
-    sum += surface - slope * 0.5 * h * mpsi_pore_edge_of(water, cell)->fill[axis];
+    sum += surface - slope * 0.5 * h * mpsi_pore_faces_of(water, cell)->fill[axis];
     lines++;
   }
   cell->now = lines > 0 ? sum / lines : 0.0;
@@ -276,9 +277,10 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
 
 static int drained_face(mpsi_water *water, const mpsi_pore_cell *cell) {
   int d = 0;
-  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
+  while (
+      !((cell->free >> d & 1) && mpsi_pore_faces_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
     d++;
-  return mpsi_pore_edge_of(water, cell)->face[d];
+  return mpsi_pore_faces_of(water, cell)->face[d];
 }
 
 /* What the particles of a thin cell lose as their pressures go back to the line leaves through one
@@ -294,10 +296,10 @@ static void find_slopes(void *data, int64_t g, int32_t worker) {
   mpsi_water *water = mpm->water;
   const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
-  uint64_t whole[MPSI_PORE_WORDS];
-  if (find_whole(&mpm->grid, water, g, whole)) mpm->kernels->pore_slopes(&work, g, whole);
+  uint64_t inner[MPSI_PORE_WORDS];
+  if (find_inner(&mpm->grid, water, g, inner)) mpm->kernels->pore_slopes(&work, g, inner);
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
-    for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
+    for (uint64_t left = water->block[g].filled[w] & ~inner[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
       if (!cell[k].thin) {
         find_slope(mpm, g, k, &cell[k]);
@@ -357,7 +359,7 @@ static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, cons
     if (!mpsi_pore_marked(filled, local + i)) continue;
     double centre = cell[i].now; /* of the filled part; then of the box */
     for (int c = 0; c < work->grid->dim && !cell[i].inside; c++)
-      centre -= cell[i].g[c] * mpsi_pore_edge_of(water, cell + i)->shift[c];
+      centre -= cell[i].g[c] * mpsi_pore_faces_of(water, cell + i)->shift[c];
     tile[i][0] = centre;
     for (int c = 0; c < 3; c++) tile[i][1 + c] = cell[i].g[c];
     if (water->flows) gain[i][0] = amount * cell[i].gain / cell[i].volume;
@@ -436,7 +438,7 @@ static void enter_column(mps_mpm *mpm, int side, mpsi_free_field *f) {
     if (!(c->volume > 0.0)) continue;
     c->cell->p = c->p / c->volume;
     c->cell->g[1] = c->g / c->volume;
-    c->cell->p += c->cell->g[1] * mpsi_pore_edge_of(water, c->cell)->shift[1];
+    c->cell->p += c->cell->g[1] * mpsi_pore_faces_of(water, c->cell)->shift[1];
     c->cell->now = c->cell->p;
   }
 }
@@ -454,7 +456,7 @@ static void flow_in_column(mps_mpm *mpm, mpsi_pore_column_cell *c) {
     const face_flow f = at_face(mpm, c->block, c->place, d, false, c->cell, x, X, &behind);
     if (f.known) flux += f.flux;
   }
-  const double space = c->cell->inside ? h * h : space_of(mpsi_pore_edge_of(water, c->cell));
+  const double space = c->cell->inside ? h * h : space_of(mpsi_pore_faces_of(water, c->cell));
   c->cell->now = c->cell->p + water->def.bulk / c->cell->n * (water->elapsed * flux / space);
 }
 
@@ -480,7 +482,7 @@ static void leave_column(const mpsi_grid *grid, mpsi_water *water, mpsi_free_fie
     const mpsi_pore_cell *cell = c ? c->cell : NULL;
     if (!cell) continue;
     f->g[k] = cell->g[1];
-    f->u[k] = cell->now + cell->g[1] * (above - mpsi_pore_edge_of(water, cell)->shift[1]);
+    f->u[k] = cell->now + cell->g[1] * (above - mpsi_pore_faces_of(water, cell)->shift[1]);
   }
   for (int64_t n = 0; n < f->nodes; n++)
     if (water->column[n].cell) *water->column[n].cell = water->column[n].was;

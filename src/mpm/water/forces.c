@@ -9,7 +9,7 @@
 #include "mpm/base/kernels.h"
 #include "mpm/boundary/kinds.h"
 #include "mpm/ranks/messages.h"
-#include "rim.h"
+#include "wide_halo.h"
 
 #include <string.h>
 
@@ -209,7 +209,7 @@ static void find_masses(void *data, int64_t g, int32_t worker) {
     for (int c = 0; c < 3; c++) mpm->water->system->inertia[k][c] = grid->node[k][MPSI_MASS];
 }
 
-/* Rows of forces for the cells that this rank counts, then for those of the rim. */
+/* Rows of forces for the cells that this rank counts, then for those of the wide halo. */
 static mps_status make_rows(mps_mpm *mpm, const char *function) {
   const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
@@ -225,7 +225,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
       memset(s->turned[cell], 0, sizeof s->turned[cell]);
     }
   }
-  for (int64_t k = 0; s->rim && k < s->rim->cells; k++)
+  for (int64_t k = 0; s->wide_halo && k < s->wide_halo->cells; k++)
     s->row[grid->node_count * grid->block_nodes + k] = rows++;
   const int64_t numbers = rows * mpsi_pore_row_numbers(grid);
   if (!MPSI_ENSURE(mpm->context, s, force, numbers))

@@ -16,7 +16,7 @@
 
 #include "mpm/base/kernels.h"
 #include "mpm/boundary/kinds.h"
-#include "rim.h"
+#include "wide_halo.h"
 
 #include <string.h>
 
@@ -29,61 +29,61 @@ typedef struct wall_nodes {
 } wall_nodes;
 
 /* The component is v whatever the pressures. */
-static void hold_component(const wall_nodes *to, int k, int c, double v) {
+static void prescribe(const wall_nodes *to, int k, int c, double v) {
   to->held[k] |= (uint8_t)(1u << c);
   to->velocity[k][c] = v;
 }
 
-static void foresee_friction(const wall_nodes *to, const mpsi_boundary *hold, int side, int k) {
-  const int axis = hold->axis;
-  const double into = (to->velocity[k][axis] - hold->v[axis]) * (side % 2 ? 1.0 : -1.0);
+static void foresee_friction(const wall_nodes *to, const mpsi_boundary *boundary, int side, int k) {
+  const int axis = boundary->axis;
+  const double into = (to->velocity[k][axis] - boundary->v[axis]) * (side % 2 ? 1.0 : -1.0);
   double square = 0.0;
   if (!(into > 0.0)) return;
-  hold_component(to, k, axis, hold->v[axis]);
+  prescribe(to, k, axis, boundary->v[axis]);
   for (int c = 0; c < to->dim; c++)
-    if (!(to->held[k] >> c & 1)) square += pow(to->velocity[k][c] - hold->v[c], 2);
-  const double most = hold->friction * into;
+    if (!(to->held[k] >> c & 1)) square += pow(to->velocity[k][c] - boundary->v[c], 2);
+  const double most = boundary->friction * into;
   const double left = square > most * most ? 1.0 - most / sqrt(square) : 0.0;
   for (int c = 0; c < to->dim; c++) {
     if (to->held[k] >> c & 1) continue;
-    const double v = hold->v[c] + left * (to->velocity[k][c] - hold->v[c]);
+    const double v = boundary->v[c] + left * (to->velocity[k][c] - boundary->v[c]);
     if (left > 0.0)
       to->velocity[k][c] = v;
     else
-      hold_component(to, k, c, v);
+      prescribe(to, k, c, v);
   }
 }
 
-static void foresee_dashpot(const wall_nodes *to, const mpsi_boundary *hold,
+static void foresee_dashpot(const wall_nodes *to, const mpsi_boundary *boundary,
                             const mpsi_dashpot *dashpot, int k) {
   for (int c = 0; c < to->dim && to->inertia[k][c] > 0.0; c++) {
     if (to->held[k] >> c & 1) continue;
-    if (hold->finds) {
-      hold_component(to, k, c, hold->settle > 0.0 ? hold->v[c] : to->velocity[k][c]);
+    if (boundary->finds) {
+      prescribe(to, k, c, boundary->settle > 0.0 ? boundary->v[c] : to->velocity[k][c]);
       continue;
     }
-    const double damping = c == hold->axis ? dashpot->across : dashpot->along;
+    const double damping = c == boundary->axis ? dashpot->across : dashpot->along;
     const double before = to->inertia[k][c];
     to->inertia[k][c] += to->dt * damping;
     to->velocity[k][c] =
-        (before * to->velocity[k][c] + to->dt * (dashpot->rest[c] + damping * hold->v[c])) /
+        (before * to->velocity[k][c] + to->dt * (dashpot->rest[c] + damping * boundary->v[c])) /
         to->inertia[k][c];
   }
 }
 
 static void foresee(const mps_mpm *mpm, const wall_nodes *to, const mpsi_held *at,
-                    const mpsi_boundary *hold, int k) {
-  const mpsi_boundary_kind *kind = mpsi_kind_of(hold);
+                    const mpsi_boundary *boundary, int k) {
+  const mpsi_boundary_kind *kind = mpsi_kind_of(boundary);
   const bool whole = kind->prescribes == MPSI_PRESCRIBES_ALL;
-  const uint32_t dofs = at->boundary < MPSI_SIDES && !whole ? 1u << hold->axis : hold->dofs;
+  const uint32_t dofs = at->boundary < MPSI_SIDES && !whole ? 1u << boundary->axis : boundary->dofs;
   if (kind->friction) {
-    foresee_friction(to, hold, at->boundary, k);
+    foresee_friction(to, boundary, at->boundary, k);
   } else if (kind->absorbs) {
     const mpsi_dashpot *plane = &mpm->boundaries.dashpot[at->dashpot];
-    foresee_dashpot(to, hold, &plane[mpsi_plane_index(hold->axis, k)], k);
+    foresee_dashpot(to, boundary, &plane[mpsi_plane_index(boundary->axis, k)], k);
   } else {
     for (int c = 0; c < to->dim; c++)
-      if (dofs >> c & 1) hold_component(to, k, c, kind->column ? to->velocity[k][c] : hold->v[c]);
+      if (dofs >> c & 1) prescribe(to, k, c, kind->column ? to->velocity[k][c] : boundary->v[c]);
   }
 }
 
@@ -92,15 +92,15 @@ static void apply_boundaries(const mps_mpm *mpm, const wall_nodes *to, int64_t g
   for (int turn = MPSI_TURN_ACROSS; turn < MPSI_TURNS; turn++)
     for (int32_t t = 0; t < grid->nodes[g].held_count; t++) {
       const mpsi_held *at = &mpm->boundaries.held[grid->nodes[g].first_held + t];
-      const mpsi_boundary *hold = &mpm->boundaries.boundary[at->boundary];
+      const mpsi_boundary *boundary = &mpm->boundaries.boundary[at->boundary];
       mpsi_range in;
-      if ((int)mpsi_kind_of(hold)->turn != turn ||
-          !mpsi_find_range(grid->dim, grid->nodes[g].at, hold, &in))
+      if ((int)mpsi_kind_of(boundary)->turn != turn ||
+          !mpsi_find_range(grid->dim, grid->nodes[g].at, boundary, &in))
         continue;
       for (int k = in.low[2]; k <= in.high[2]; k++)
         for (int j = in.low[1]; j <= in.high[1]; j++)
           for (int i = in.low[0]; i <= in.high[0]; i++)
-            foresee(mpm, to, at, hold, mpsi_local_under(i, j, k));
+            foresee(mpm, to, at, boundary, mpsi_local_under(i, j, k));
     }
 }
 

@@ -20,14 +20,14 @@
  *
  * Vectors are by cells, loops by blocks; a block's part of a sum is added in the order of its
  * cells, and the parts exactly, so that no bit depends on the number of threads or ranks. On
- * several ranks each solves for the cells that it counts, with those of its rim (rim.h) beside
- * them. SPDX-License-Identifier: BSD-3-Clause */
+ * several ranks each solves for the cells that it counts, with those of its wide halo (wide_halo.h)
+ * beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 
 #include "contacts.h"
 #include "forces.h"
-#include "layers.h"
-#include "rim.h"
+#include "halo.h"
+#include "wide_halo.h"
 #include "solve/gradients.h"
 #include "solve/operator.h"
 

@@ -1,6 +1,6 @@
 /* state.c - the water of a solver between steps: values that the caller has written, its mass, and
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
-#include "layers.h"
+#include "halo.h"
 #include "solve/coarse.h"
 #include "solve/outside.h"
 #include "water.h"
@@ -42,10 +42,10 @@ void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum) {
 void mpsi_pore_free(mps_mpm *mpm) {
   if (!mpm->water) return;
   const mpsi_water *w = mpm->water;
-  MPSI_FREE(mpm->context, w->cell_room.item, w->column_room.item, w->edge_room.item,
+  MPSI_FREE(mpm->context, w->cell_room.item, w->column_room.item, w->faces_room.item,
             w->block_room.item, w->linked_room.item, w->outflow_room.item, w->former_room.item,
             w->rest_room.item, w->place_room.item);
-  mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
+  mpsi_pore_free_halo(mpm->context, &mpm->water->halo);
   if (mpm->water->system) mpsi_pore_free_coarse(mpm->context, &mpm->water->system->coarse);
   mpsi_pore_free_system(mpm->context, &mpm->water->system);
   mpsi_pore_free_outside(mpm->context, mpm->water->outside);
@@ -58,7 +58,7 @@ void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
   if (!water) return;
   mpsi_state_enter(state, "water");
   mpsi_state_agree_integer(state, "flows", water->flows);
-  mpsi_state_agree_integer(state, "faces", water->faces);
+  mpsi_state_agree_integer(state, "faces", water->face_count);
   mpsi_state_agree_integer(state, "scheme", water->def.scheme);
   mpsi_state_i64(state, "steps", &water->steps, 1);
   mpsi_state_f64(state, "elapsed", &water->elapsed, 1);

@@ -2,7 +2,7 @@
 #include "system.h"
 
 #include "core/base/room_array.h"
-#include "rim.h"
+#include "wide_halo.h"
 
 #include <string.h>
 
@@ -11,14 +11,15 @@ enum { FEWEST_TERMS = 32 * MPSI_SIDE * MPSI_SIDE * MPSI_PORE_SPAN * MPSI_PORE_SP
 
 typedef struct mpsi_pore_system system_of;
 
-/* ---- room ------------------------------------------------------------------------------------ */
+/* ---- memory ------------------------------------------------------------------------------------
+ */
 
 /* Number of the block at `at` of those that the system has, or -1. */
 static int32_t find_block(const mpsi_grid *grid, const system_of *s, const int32_t *at) {
   const int32_t own = mpsi_pore_own_block(grid, at);
   if (own >= 0 && mpsi_mpm_counts_node_block(grid, own)) return own;
-  const int32_t rim = mpsi_pore_rim_block_at(s->rim, at);
-  return rim < 0 ? -1 : (int32_t)grid->node_count + rim;
+  const int32_t wide = mpsi_pore_wide_block_at(s->wide_halo, at);
+  return wide < 0 ? -1 : (int32_t)grid->node_count + wide;
 }
 
 static void find_around_block(const mpsi_grid *grid, system_of *s, int64_t g, const int32_t *of) {
@@ -32,15 +33,17 @@ static void find_around_block(const mpsi_grid *grid, system_of *s, int64_t g, co
 
 static void find_around(const mpsi_grid *grid, system_of *s) {
   for (int64_t g = 0; g < grid->node_count; g++) find_around_block(grid, s, g, grid->nodes[g].at);
-  for (int64_t k = 0; s->rim && k < s->rim->blocks; k++)
-    find_around_block(grid, s, grid->node_count + s->rim->block[k].number, s->rim->block[k].at);
+  for (int64_t k = 0; s->wide_halo && k < s->wide_halo->blocks; k++)
+    find_around_block(grid, s, grid->node_count + s->wide_halo->block[k].number,
+                      s->wide_halo->block[k].at);
 }
 
 static mps_status make_room(mps_mpm *mpm, const char *function) {
   enum { VECTORS = 10 };
   system_of *s = mpm->water->system;
-  const int64_t blocks = mpm->grid.node_count, all = blocks + (s->rim ? s->rim->blocks : 0);
-  const int64_t nodes = blocks * mpm->grid.block_nodes + (s->rim ? s->rim->cells : 0);
+  const int64_t blocks = mpm->grid.node_count,
+                all = blocks + (s->wide_halo ? s->wide_halo->blocks : 0);
+  const int64_t nodes = blocks * mpm->grid.block_nodes + (s->wide_halo ? s->wide_halo->cells : 0);
   const int places = mpsi_pore_box_places(&mpm->grid);
   const bool good =
       MPSI_ENSURE(mpm->context, s, around, all) && MPSI_ENSURE(mpm->context, s, inertia, nodes) &&
@@ -69,13 +72,13 @@ static mps_status make_first(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-/* On several ranks, with another rim than in the last step: all agree on their room. */
+/* On several ranks, with another wide halo than in the last step: all agree on their memory. */
 static mps_status renew(mps_mpm *mpm, const char *function, mps_status status) {
   mps_domain *domain = mpm->domain;
   MPSI_TRY(mpsi_domain_agree(domain, function, status));
-  MPSI_TRY(mpsi_pore_find_rim(mpm, function));
+  MPSI_TRY(mpsi_pore_find_wide_halo(mpm, function));
   status = mpsi_domain_agree(domain, function, make_room(mpm, function));
-  if (status != MPS_OK) mpm->water->system->rim->searches = -1;
+  if (status != MPS_OK) mpm->water->system->wide_halo->searches = -1;
   return status;
 }
 
@@ -84,7 +87,7 @@ mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function, mps_status 
   const system_of *s = mpm->water->system;
   if (!mpm->partition) {
     if (status == MPS_OK) status = make_room(mpm, function);
-  } else if (!s || !s->rim || s->rim->searches != mpm->partition->searches) {
+  } else if (!s || !s->wide_halo || s->wide_halo->searches != mpm->partition->searches) {
     status = renew(mpm, function, status);
   }
   if (status == MPS_OK) find_around(&mpm->grid, mpm->water->system);
@@ -95,7 +98,7 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   system_of *s = *pointer;
   *pointer = NULL;
   if (!s) return;
-  mpsi_pore_free_rim(context, &s->rim);
+  mpsi_pore_free_wide_halo(context, &s->wide_halo);
   const mpsi_pore_contacts *c = &s->contacts;
   MPSI_FREE(context, s->around_room.item, s->inertia_room.item, s->velocity_room.item,
             s->held_room.item, s->row_room.item, s->force_room.item, s->vector_room.item,
@@ -109,7 +112,7 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
 
 int64_t mpsi_pore_number(const mpsi_grid *grid, const system_of *s, int64_t g, int local) {
   if (g < grid->node_count) return mpsi_first_node(grid, g) + local;
-  const int32_t cell = s->rim->cell[(g - grid->node_count) * grid->block_nodes + local];
+  const int32_t cell = s->wide_halo->cell[(g - grid->node_count) * grid->block_nodes + local];
   return cell < 0 ? -1 : grid->node_count * grid->block_nodes + cell;
 }
 
@@ -158,8 +161,9 @@ static void run_block(void *data, int64_t g, int32_t worker) {
 void mpsi_pore_for_blocks(mps_mpm *mpm, mpsi_pore_blocks which, mpsi_pore_task task,
                           double factor) {
   block_loop loop = {mpm, which, task, factor};
-  const bool rim = mpm->water->system->rim && (which == MPSI_PORE_ALL || which == MPSI_PORE_NEAR);
-  const int64_t blocks = mpm->grid.node_count + (rim ? mpm->water->system->rim->blocks : 0);
+  const bool wide =
+      mpm->water->system->wide_halo && (which == MPSI_PORE_ALL || which == MPSI_PORE_NEAR);
+  const int64_t blocks = mpm->grid.node_count + (wide ? mpm->water->system->wide_halo->blocks : 0);
   if (blocks * mpm->grid.block_nodes * mpsi_pore_span_nodes(&mpm->grid) >= FEWEST_TERMS) {
     mpsi_parallel_for(mpm->context, blocks, run_block, &loop);
     return;

@@ -5,8 +5,8 @@
 
 #include "water.h"
 
-typedef struct mpsi_pore_rim mpsi_pore_rim;       /* rim.h */
-typedef struct mpsi_pore_coarse mpsi_pore_coarse; /* solve/coarse.h */
+typedef struct mpsi_pore_wide_halo mpsi_pore_wide_halo; /* wide_halo.h */
+typedef struct mpsi_pore_coarse mpsi_pore_coarse;       /* solve/coarse.h */
 
 enum { MPSI_PORE_AROUND = 27, MPSI_PORE_SPAN = 4 }; /* blocks; nodes of a cell along each axis */
 enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
@@ -69,7 +69,7 @@ typedef struct mpsi_pore_particle {
 } mpsi_pore_particle;
 
 /* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
- * of the rim follow (rim.h), and its blocks those of the grid. */
+ * of the wide halo follow (wide_halo.h), and its blocks those of the grid. */
 struct mpsi_pore_system {
   int32_t (*around)[MPSI_PORE_AROUND]; /* by blocks: those around it, itself in the middle, or -1 */
   int32_t *reach; /* by blocks: numbers of the nodes (and cells) in reach of its own, or -1 */
@@ -92,8 +92,8 @@ struct mpsi_pore_system {
   double *part;    /* of sums, by blocks */
   int64_t unknowns, iterations; /* of all ranks; of the last step */
   mpsi_pore_contacts contacts;
-  mpsi_pore_rim *rim;       /* on several ranks, else NULL */
-  mpsi_pore_coarse *coarse; /* NULL: before the first step */
+  mpsi_pore_wide_halo *wide_halo; /* on several ranks, else NULL */
+  mpsi_pore_coarse *coarse;  /* NULL: before the first step */
   mpsi_room around_room, inertia_room, velocity_room, held_room, row_room, force_room;
   mpsi_room turned_room, conductance_room, vector_room, reach_room, part_room;
 };
@@ -158,8 +158,8 @@ static inline mpsi_pore_particle mpsi_pore_particle_of(const mps_mpm *mpm,
 mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function, mps_status status);
 void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **system);
 
-/* Node or cell `local` of block g of the grid or, behind those, of the rim; -1 where the rim has
- * none. */
+/* Node or cell `local` of block g of the grid or, behind those, of the wide halo; -1 where the wide
+ * halo has none. */
 int64_t mpsi_pore_number(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, int local);
 /* The node or cell at `offset` from the first of block g, in that block or one around it; or -1. */
 int64_t mpsi_pore_at(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g,
@@ -174,9 +174,9 @@ void mpsi_pore_find_reach(mps_mpm *mpm);
 /* Blocks that a loop works on. */
 typedef enum mpsi_pore_blocks {
   MPSI_PORE_COUNTED,  /* those that this rank counts */
-  MPSI_PORE_NEAR,     /* and those of the rim */
+  MPSI_PORE_NEAR,     /* and those of the wide halo */
   MPSI_PORE_COMPUTED, /* those whose cells this rank computes */
-  MPSI_PORE_ALL       /* all of the grid, and those of the rim */
+  MPSI_PORE_ALL       /* all of the grid, and those of the wide halo */
 } mpsi_pore_blocks;
 
 /* Work on blocks, each by itself. */

@@ -1,6 +1,6 @@
 /* update.c - the water's part of a step: what comes before the scatter, and what comes after the
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
-#include "layers.h"
+#include "halo.h"
 
 #include "core/base/room_array.h"
 #include "mpm/boundary/free_field.h"
@@ -19,9 +19,9 @@ enum { EVERY = 8, SLOPES = 32 }; /* steps: at most between two exchanges; in whi
 /* Of blocks of cells that have been laid out; those of other ranks come last. */
 static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                             mpsi_water *water, int64_t column, const char *function) {
-  const int64_t blocks = grid->node_count + (water->layers ? water->layers->blocks : 0);
+  const int64_t blocks = grid->node_count + (water->halo ? water->halo->blocks : 0);
   const int64_t nodes = blocks * grid->block_nodes;
-  if (!MPSI_ENSURE(context, water, cell, nodes) || !MPSI_ENSURE(context, water, edge, nodes) ||
+  if (!MPSI_ENSURE(context, water, cell, nodes) || !MPSI_ENSURE(context, water, faces, nodes) ||
       !MPSI_ENSURE(context, water, block, blocks) ||
       !mpsi_room_ensure(context, &water->linked_room, grid->node_count, sizeof *water->linked_at) ||
       !MPSI_ENSURE(context, water, outflow, grid->node_count) ||
@@ -36,7 +36,7 @@ static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_co
 /* Number of the block of nodes at `at` whose cells are known here, or -1. */
 static int32_t find_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at) {
   const int32_t own = mpsi_pore_own_block(grid, at);
-  if (own >= 0 || !water->layers) return own;
+  if (own >= 0 || !water->halo) return own;
   return mpsi_pore_guest_block(grid, water, at);
 }
 
@@ -66,14 +66,14 @@ static void link_blocks(const mpsi_grid *grid, mpsi_water *water) {
 static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_water *water = mpm->water;
   if (!mpm->partition) return status;
-  if (water->layers && water->layers->searches == mpm->partition->searches) return status;
-  if (status == MPS_OK && !water->layers) {
-    water->layers = mpsi_alloc(mpm->context, 1, sizeof *water->layers);
-    if (!water->layers) status = mpsi_fail_memory(mpm->context, function, sizeof *water->layers);
-    if (water->layers) *water->layers = (mpsi_pore_layers){.searches = -1};
+  if (water->halo && water->halo->searches == mpm->partition->searches) return status;
+  if (status == MPS_OK && !water->halo) {
+    water->halo = mpsi_alloc(mpm->context, 1, sizeof *water->halo);
+    if (!water->halo) status = mpsi_fail_memory(mpm->context, function, sizeof *water->halo);
+    if (water->halo) *water->halo = (mpsi_pore_halo){.searches = -1};
   }
   status = mpsi_domain_agree(mpm->domain, function, status);
-  if (status == MPS_OK) status = mpsi_pore_find_layers(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_find_halo(mpm, function);
   water->linked = -1;
   return status;
 }

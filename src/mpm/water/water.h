@@ -9,7 +9,7 @@
 
 #include <mps/experimental/pore_water.h>
 
-typedef struct mpsi_pore_layers mpsi_pore_layers;   /* layers.h */
+typedef struct mpsi_pore_halo mpsi_pore_halo;       /* halo.h */
 typedef struct mpsi_pore_system mpsi_pore_system;   /* system.h */
 typedef struct mpsi_pore_outside mpsi_pore_outside; /* solve/outside.h */
 
@@ -45,13 +45,13 @@ typedef struct mpsi_pore_block {
 } mpsi_pore_block;
 
 /* What a cell that is not inside has besides. */
-typedef struct mpsi_pore_edge {
+typedef struct mpsi_pore_faces {
   double fill[3], shift[3]; /* part of the box that is filled along each axis; m, from the box's
                                centre to that of the filled part */
   double space;             /* m3, of the filled part */
   int8_t beyond[6];         /* MPSI_PORE_... of each face */
   int8_t face[6];           /* number of the definition, -1: none */
-} mpsi_pore_edge;
+} mpsi_pore_faces;
 
 /* Of a cell at a side while it has what the column of a free-field side has there. */
 typedef struct mpsi_pore_column_cell {
@@ -78,14 +78,14 @@ struct mpsi_water {
   double viscosity; /* Pa s, of the change of volume, in the forces (README.md) */
   double share;     /* of the slopes between cells, which particles take in this exchange */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
-  int64_t faces;
+  int64_t face_count;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
   mpsi_exact drained[MPSI_PORE_FACES]; /* kg */
   mpsi_exact rate[MPSI_PORE_FACES];    /* kg/s, of the last step */
   mpsi_exact entered;                  /* kg, through all faces */
-  mpsi_pore_cell *cell;   /* by nodes of the grid, then those of other ranks (layers.h) */
-  mpsi_pore_edge *edge;   /* the same: few are in use */
-  mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
+  mpsi_pore_cell *cell;               /* by nodes of the grid, then those of other ranks (halo.h) */
+  mpsi_pore_faces *faces;             /* the same: few are in use */
+  mpsi_pore_block *block;             /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former; /* m3, volumes at the beginning of the step; where pressures are implicit */
   double *rest;   /* of particles, what cells have sums of, where pressures are implicit: before the
@@ -102,9 +102,9 @@ struct mpsi_water {
   int64_t linked;                /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3];       /* and where they were */
   mpsi_pore_column_cell *column; /* by nodes of a column */
-  mpsi_room column_room, cell_room, edge_room, block_room, outflow_room, former_room, rest_room,
+  mpsi_room column_room, cell_room, faces_room, block_room, outflow_room, former_room, rest_room,
       place_room, linked_room;
-  mpsi_pore_layers *layers;   /* on several ranks, else NULL */
+  mpsi_pore_halo *halo;       /* on several ranks, else NULL */
   mpsi_pore_system *system;   /* where pressures are implicit, else NULL */
   mpsi_pore_outside *outside; /* memory of their rows for a linear solver of the caller, or NULL */
 };
@@ -147,10 +147,10 @@ static inline double mpsi_pore_radius(const mpsi_grid *grid, double X) {
 }
 
 /* Of a cell that is inside: one that is filled, with cells on all faces. */
-static inline const mpsi_pore_edge *mpsi_pore_edge_of(mpsi_water *water,
-                                                      const mpsi_pore_cell *cell) {
-  static const mpsi_pore_edge whole = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
-  return cell->inside ? &whole : water->edge + (cell - water->cell);
+static inline const mpsi_pore_faces *mpsi_pore_faces_of(mpsi_water *water,
+                                                        const mpsi_pore_cell *cell) {
+  static const mpsi_pore_faces inner = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
+  return cell->inside ? &inner : water->faces + (cell - water->cell);
 }
 /* The block beside cell k of block g, or -1, and the place there: *k. */
 static inline int32_t mpsi_pore_step(const mpsi_water *water, int64_t g, int *k, int direction) {

@@ -3,7 +3,7 @@
 
 #include "core/base/room_array.h"
 #include "outside.h"
-#include "mpm/water/rim.h"
+#include "mpm/water/wide_halo.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -256,7 +256,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   coarse_of *c = mpm->water->system->coarse;
   const mpsi_grid *grid = &mpm->grid;
   const int64_t nodes = grid->node_count * grid->block_nodes +
-                        (mpm->water->system->rim ? mpm->water->system->rim->cells : 0);
+                        (mpm->water->system->wide_halo ? mpm->water->system->wide_halo->cells : 0);
   const int64_t numbers = (grid->dim << grid->dim) * nodes;
   mps_status status = MPS_OK;
   if (!MPSI_ENSURE(mpm->context, c, velocity, numbers))

@@ -2,12 +2,12 @@
 #include "operator.h"
 
 #include "mpm/water/contacts.h"
-#include "mpm/water/rim.h"
+#include "mpm/water/wide_halo.h"
 
 typedef struct mpsi_pore_system system_of;
 
-/* Velocities of nodes under the pressures `direction`, per dt, of a block of the grid or the rim.
- * Node k is number q of the cell that lies q places before the last of those in reach. */
+/* Velocities of nodes under the pressures `direction`, per dt, of a block of the grid or the wide
+ * halo. Node k is number q of the cell that lies q places before the last of those in reach. */
 void mpsi_pore_find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = mpsi_pore_span_nodes(grid);

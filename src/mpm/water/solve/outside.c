@@ -6,7 +6,7 @@
 #include "outside.h"
 
 #include "core/base/room_array.h"
-#include "mpm/water/rim.h"
+#include "mpm/water/wide_halo.h"
 #include "solver/linear.h"
 
 #include <string.h>
@@ -76,17 +76,17 @@ static mps_status find_place(mps_mpm *mpm, const char *function) {
 }
 
 /* `product`: roots of the reciprocal diagonals, `direction`: numbers of the rows, or -1; both in
- * the rim too. */
+ * the wide halo too. */
 static mps_status send_numbers(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   const int64_t own = mpm->grid.node_count * mpm->grid.block_nodes,
-                rim = s->rim ? s->rim->cells : 0;
+                wide = s->wide_halo ? s->wide_halo->cells : 0;
   mps_status status = MPS_OK;
   for (int64_t k = 0; k < own; k++) s->direction[k] = 0.0;
   (void)for_unknowns(mpm, set_root);
   if (mpm->partition) status = mpsi_pore_send_direction(mpm, function);
   if (status != MPS_OK) return status;
-  if (rim > 0) memcpy(s->product + own, s->direction + own, (size_t)rim * sizeof *s->product);
+  if (wide > 0) memcpy(s->product + own, s->direction + own, (size_t)wide * sizeof *s->product);
   for (int64_t k = 0; k < own; k++) s->direction[k] = -1.0;
   (void)for_unknowns(mpm, set_number);
   return mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;

@@ -1,5 +1,5 @@
-/* layers.c - see layers.h. SPDX-License-Identifier: BSD-3-Clause */
-#include "layers.h"
+/* halo.c - see halo.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "halo.h"
 
 #include "core/base/room_array.h"
 #include "mpm/ranks/messages.h"
@@ -35,8 +35,8 @@ mps_status mpsi_pore_find_notices(const mps_mpm *mpm, const char *function, mpsi
     own[count] = (mpsi_notice){.number = (int32_t)g};
     memcpy(own[count++].at, grid->nodes[g].at, sizeof own->at);
   }
-  status = mpsi_mpm_exchange_notices(mpm->context, mpm->domain, function, status,
-                                     computed, count, own, list, found);
+  status = mpsi_mpm_exchange_notices(mpm->context, mpm->domain, function, status, computed, count,
+                                     own, list, found);
   mpsi_free(mpm->context, own);
   return status;
 }
@@ -48,48 +48,49 @@ static bool is_at_face(const mpsi_grid *grid, const int32_t *at, int direction) 
   return mpsi_pore_own_block(grid, beside) >= 0;
 }
 
-static bool make_room(search *s, mpsi_pore_layers *layers) {
+static bool make_room(search *s, mpsi_pore_halo *halo) {
   mps_context *context = s->mpm->context;
   const int64_t most = s->found;
   s->rank = mpsi_alloc(context, 6 * most, sizeof *s->rank);
   s->index = mpsi_alloc(context, 6 * most, sizeof *s->index);
-  const bool good = s->rank && s->index && MPSI_ENSURE(context, layers, block, 6 * most) &&
-                    MPSI_ENSURE(context, layers, direction, 6 * most) &&
-                    MPSI_ENSURE(context, layers, at, most);
+  const bool good = s->rank && s->index && MPSI_ENSURE(context, halo, block, 6 * most) &&
+                    MPSI_ENSURE(context, halo, direction, 6 * most) &&
+                    MPSI_ENSURE(context, halo, at, most);
   return good;
 }
 
-static mps_status choose(search *s, mpsi_pore_layers *layers) {
+static mps_status choose(search *s, mpsi_pore_halo *halo) {
   const mpsi_grid *grid = &s->mpm->grid;
-  if (!make_room(s, layers)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
+  if (!make_room(s, halo)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
   for (const mpsi_notice *from = s->list; from < s->list + s->found; from++) {
-    const int64_t before = layers->guests;
+    const int64_t before = halo->guests;
     if (mpsi_pore_own_block(grid, from->at) >= 0) continue;
     for (int d = 0; d < 2 * grid->dim; d++) {
       if (!is_at_face(grid, from->at, d)) continue;
-      s->rank[layers->guests] = from->rank;
-      s->index[layers->guests] = 6 * (int64_t)from->number + d;
-      layers->block[layers->guests] = (int32_t)(grid->node_count + layers->blocks);
-      layers->direction[layers->guests++] = (int8_t)d;
+      s->rank[halo->guests] = from->rank;
+      s->index[halo->guests] = 6 * (int64_t)from->number + d;
+      halo->block[halo->guests] = (int32_t)(grid->node_count + halo->blocks);
+      halo->direction[halo->guests++] = (int8_t)d;
     }
-    if (layers->guests > before) memcpy(layers->at[layers->blocks++], from->at, sizeof from->at);
+    if (halo->guests > before) memcpy(halo->at[halo->blocks++], from->at, sizeof from->at);
   }
   return MPS_OK;
 }
 
 int32_t mpsi_pore_guest_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at) {
-  for (int64_t k = 0; k < water->layers->blocks; k++)
-    if (memcmp(water->layers->at[k], at, sizeof water->layers->at[k]) == 0)
+  for (int64_t k = 0; k < water->halo->blocks; k++)
+    if (memcmp(water->halo->at[k], at, sizeof water->halo->at[k]) == 0)
       return (int32_t)(grid->node_count + k);
   return -1;
 }
 
-/* ---- room ------------------------------------------------------------------------------------ */
+/* ---- memory ------------------------------------------------------------------------------------
+ */
 
 /* Of a cell of a layer. */
 typedef struct layer_cell {
   double p, k, now;
-  mpsi_pore_edge edge;
+  mpsi_pore_faces faces;
   uint8_t free;
   bool filled, full, inside, thin;
 } layer_cell;
@@ -111,14 +112,14 @@ static int64_t doubles_of(const mpsi_grid *grid, mpsi_pore_stage stage) {
          (stage == MPSI_PORE_NOW ? 1 : (int64_t)(sizeof(layer_cell) / sizeof(double)));
 }
 
-static mps_status reserve(const search *s, mpsi_pore_layers *layers) {
+static mps_status reserve(const search *s, mpsi_pore_halo *halo) {
   const int64_t *item, layer = doubles_of(&s->mpm->grid, MPSI_PORE_EDGES);
-  const int64_t out = mpsi_halo_items(layers->halo, &item) * layer, in = layers->guests * layer;
-  if (!mpsi_room_ensure(s->mpm->context, &layers->out_room, out, sizeof(double)) ||
-      !mpsi_room_ensure(s->mpm->context, &layers->in_room, in, sizeof(double)))
+  const int64_t out = mpsi_halo_items(halo->messages, &item) * layer, in = halo->guests * layer;
+  if (!mpsi_room_ensure(s->mpm->context, &halo->out_room, out, sizeof(double)) ||
+      !mpsi_room_ensure(s->mpm->context, &halo->in_room, in, sizeof(double)))
     return mpsi_fail_memory(s->mpm->context, s->function, (size_t)(out + in) * sizeof(double));
   return mpsi_mpm_reserve_messages(s->mpm->context, s->mpm->partition, s->function,
-                                   mpsi_pore_sum_doubles(layers));
+                                   mpsi_pore_sum_doubles(halo));
 }
 
 static double widest(const mps_mpm *mpm) {
@@ -133,37 +134,37 @@ static double widest(const mps_mpm *mpm) {
   return most;
 }
 
-static mps_status find(search *s, mpsi_pore_layers *layers) {
+static mps_status find(search *s, mpsi_pore_halo *halo) {
   mps_domain *domain = s->mpm->domain;
   double most = widest(s->mpm);
   mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->list, &s->found);
-  layers->guests = layers->blocks = 0;
-  if (status == MPS_OK) status = choose(s, layers);
+  halo->guests = halo->blocks = 0;
+  if (status == MPS_OK) status = choose(s, halo);
   MPSI_TRY(mpsi_domain_agree_max(domain, s->function, status, 1, &most));
-  layers->most = (int64_t)most;
-  const mpsi_halo_def def = {.guests = layers->guests, .rank = s->rank, .index = s->index};
-  status = mpsi_halo_create(domain, s->function, &def, &layers->halo);
-  return status == MPS_OK ? mpsi_domain_agree(domain, s->function, reserve(s, layers)) : status;
+  halo->most = (int64_t)most;
+  const mpsi_halo_def def = {.guests = halo->guests, .rank = s->rank, .index = s->index};
+  status = mpsi_halo_create(domain, s->function, &def, &halo->messages);
+  return status == MPS_OK ? mpsi_domain_agree(domain, s->function, reserve(s, halo)) : status;
 }
 
-mps_status mpsi_pore_find_layers(mps_mpm *mpm, const char *function) {
-  mpsi_pore_layers *layers = mpm->water->layers;
+mps_status mpsi_pore_find_halo(mps_mpm *mpm, const char *function) {
+  mpsi_pore_halo *halo = mpm->water->halo;
   search s = {.mpm = mpm, .function = function};
-  mpsi_halo_destroy(mpm->context, &layers->halo);
-  const mps_status status = find(&s, layers);
-  if (status != MPS_OK) layers->guests = layers->blocks = 0;
-  layers->searches = status == MPS_OK ? mpm->partition->searches : -1;
+  mpsi_halo_destroy(mpm->context, &halo->messages);
+  const mps_status status = find(&s, halo);
+  if (status != MPS_OK) halo->guests = halo->blocks = 0;
+  halo->searches = status == MPS_OK ? mpm->partition->searches : -1;
   MPSI_FREE(mpm->context, s.list, s.rank, s.index);
   return status;
 }
 
-void mpsi_pore_free_layers(mps_context *context, mpsi_pore_layers **pointer) {
-  mpsi_pore_layers *layers = *pointer;
+void mpsi_pore_free_halo(mps_context *context, mpsi_pore_halo **pointer) {
+  mpsi_pore_halo *halo = *pointer;
   *pointer = NULL;
-  if (!layers) return;
-  mpsi_halo_destroy(context, &layers->halo);
-  MPSI_FREE(context, layers->block_room.item, layers->direction_room.item, layers->at_room.item,
-            layers->out_room.item, layers->in_room.item, layers);
+  if (!halo) return;
+  mpsi_halo_destroy(context, &halo->messages);
+  MPSI_FREE(context, halo->block_room.item, halo->direction_room.item, halo->at_room.item,
+            halo->out_room.item, halo->in_room.item, halo);
 }
 
 /* ---- layers ---------------------------------------------------------------------------------- */
@@ -177,7 +178,7 @@ static void pack_cell(mpsi_water *water, const mpsi_pore_block *block, const mps
   out->p = cell->p, out->k = cell->k;
   if (!water->flows) out->now = cell->now;
   out->free = cell->free, out->inside = cell->inside, out->thin = cell->thin;
-  if (!cell->inside) out->edge = *mpsi_pore_edge_of(water, cell);
+  if (!cell->inside) out->faces = *mpsi_pore_faces_of(water, cell);
 }
 
 /* Exchange of the layers of a stage. */
@@ -211,14 +212,14 @@ static void unpack_cell(mpsi_water *water, mpsi_pore_block *block, mpsi_pore_cel
   if (in->full) mpsi_pore_mark(block->full, k);
   cell->p = in->p, cell->k = in->k, cell->now = in->now;
   cell->free = in->free, cell->inside = in->inside, cell->thin = in->thin;
-  if (!in->inside) water->edge[cell - water->cell] = in->edge;
+  if (!in->inside) water->faces[cell - water->cell] = in->faces;
 }
 
 static void unpack_layer(void *data, int64_t guest, double *in) {
   const mpsi_pore_stage stage = ((const swap *)data)->stage;
   const mpsi_grid *grid = &((const swap *)data)->mpm->grid;
   mpsi_water *water = ((const swap *)data)->mpm->water;
-  const int32_t g = water->layers->block[guest], direction = water->layers->direction[guest];
+  const int32_t g = water->halo->block[guest], direction = water->halo->direction[guest];
   mpsi_pore_block *block = &water->block[g];
   uint64_t filled = 0;
   if (stage == MPSI_PORE_FILLED) memcpy(&filled, in, sizeof filled);
@@ -234,7 +235,7 @@ static void unpack_layer(void *data, int64_t guest, double *in) {
 
 /* Before the marks of a step. */
 static void clear_guests(const mpsi_grid *grid, mpsi_water *water) {
-  for (int64_t k = 0; k < water->layers->blocks; k++) {
+  for (int64_t k = 0; k < water->halo->blocks; k++) {
     mpsi_pore_block *block = &water->block[grid->node_count + k];
     memset(block->filled, 0, sizeof block->filled);
     memset(block->full, 0, sizeof block->full);
@@ -243,12 +244,12 @@ static void clear_guests(const mpsi_grid *grid, mpsi_water *water) {
 
 void mpsi_pore_exchange(mps_mpm *mpm, mpsi_pore_stage stage) {
   if (!mpm->partition) return;
-  const mpsi_pore_layers *layers = mpm->water->layers;
-  double *const room[] = {layers->out_room.item, layers->in_room.item};
+  const mpsi_pore_halo *halo = mpm->water->halo;
+  double *const room[] = {halo->out_room.item, halo->in_room.item};
   swap s = {mpm, stage};
   if (stage == MPSI_PORE_FILLED) clear_guests(&mpm->grid, mpm->water);
   if (mpm->partition->lost == MPS_OK)
     mpm->partition->lost =
-        mpsi_mpm_exchange_items(layers->halo, "mps_mpm_step", doubles_of(&mpm->grid, stage),
-                                layers->guests, room, pack_layer, unpack_layer, &s);
+        mpsi_mpm_exchange_items(halo->messages, "mps_mpm_step", doubles_of(&mpm->grid, stage),
+                                halo->guests, room, pack_layer, unpack_layer, &s);
 }

@@ -1,4 +1,4 @@
-/* whole_cells.c - fluxes and slopes of cells that are filled as a whole, as are those on all their
+/* inner_cells.c - fluxes and slopes of cells that are filled as a whole, as are those on all their
  * faces (flow.c has the equations, and those of other cells). All cells of a plane of a block are
  * computed, face by face, and what is not asked for is left out. Compiled once for each instruction
  * set. SPDX-License-Identifier: BSD-3-Clause */
@@ -27,7 +27,7 @@ static block block_of(const mpsi_grid *grid, const mpsi_water *water, int32_t g)
   return (block){water->cell + mpsi_first_node(grid, g), water->block[g].full};
 }
 
-/* The quantity at `offset` of cell c, 0 where it has a free face: no cell among whole ones asks for
+/* The quantity at `offset` of cell c, 0 where it has a free face: no cell among inner ones asks for
  * it, and another thread may be writing the pressure of one at a drained surface. */
 MPSI_INLINE double read(const block *from, int c, size_t offset) {
   double out;
@@ -135,7 +135,7 @@ MPSI_INLINE void find_faces(const reading *of, int z, int dim, bool flows, plane
 
 /* ---- pressures ------------------------------------------------------------------------------- */
 
-MPSI_INLINE void advance_block(const mpsi_transfer *work, int64_t g, const uint64_t *whole,
+MPSI_INLINE void advance_block(const mpsi_transfer *work, int64_t g, const uint64_t *inner,
                                int dim) {
   mpsi_water *water = work->water;
   const reading of = reading_of(work, g, offsetof(mpsi_pore_cell, p));
@@ -153,7 +153,7 @@ MPSI_INLINE void advance_block(const mpsi_transfer *work, int64_t g, const uint6
         if (dim == 3) all += at.above[j * SIDE + i] - at.below[j * SIDE + i];
         sum[j * SIDE + i] = all * to_flux;
       }
-    for (uint64_t left = whole[z]; left; left &= left - 1) {
+    for (uint64_t left = inner[z]; left; left &= left - 1) {
       const int c = mpsi_pore_lowest(left);
       mpsi_pore_cell *cell = first + z * PLANE + c;
       cell->gain = sum[c];
@@ -163,11 +163,11 @@ MPSI_INLINE void advance_block(const mpsi_transfer *work, int64_t g, const uint6
   }
 }
 
-void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole) {
+void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *inner) {
   if (work->grid->dim == 2)
-    advance_block(work, g, whole, 2);
+    advance_block(work, g, inner, 2);
   else
-    advance_block(work, g, whole, 3);
+    advance_block(work, g, inner, 3);
 }
 
 /* ---- slopes ---------------------------------------------------------------------------------- */
@@ -178,7 +178,7 @@ MPSI_INLINE double slope_of(double before, double behind, double k, double still
   return still + (flows ? mean / (k + DBL_MIN) : mean);
 }
 
-MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_t *whole, int dim,
+MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_t *inner, int dim,
                              bool flows) {
   mpsi_water *water = work->water;
   const reading of = reading_of(work, g, offsetof(mpsi_pore_cell, now));
@@ -195,7 +195,7 @@ MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_
         slope[1][c] = slope_of(at.y[j][i], at.y[j + 1][i], own, of.still[1], flows);
         if (dim == 3) slope[2][c] = slope_of(at.below[c], at.above[c], own, of.still[2], flows);
       }
-    for (uint64_t left = whole[z]; left; left &= left - 1) {
+    for (uint64_t left = inner[z]; left; left &= left - 1) {
       const int c = mpsi_pore_lowest(left);
       double *to = first[z * PLANE + c].g;
       for (int a = 0; a < dim; a++) to[a] += water->share * (slope[a][c] - to[a]);
@@ -203,14 +203,14 @@ MPSI_INLINE void slope_block(const mpsi_transfer *work, int64_t g, const uint64_
   }
 }
 
-void MPSI_LEVELLED(mpsi_pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole) {
+void MPSI_LEVELLED(mpsi_pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *inner) {
   const bool flows = work->water->flows;
   if (work->grid->dim == 2 && !flows)
-    slope_block(work, g, whole, 2, false);
+    slope_block(work, g, inner, 2, false);
   else if (work->grid->dim == 2)
-    slope_block(work, g, whole, 2, true);
+    slope_block(work, g, inner, 2, true);
   else if (!flows)
-    slope_block(work, g, whole, 3, false);
+    slope_block(work, g, inner, 3, false);
   else
-    slope_block(work, g, whole, 3, true);
+    slope_block(work, g, inner, 3, true);
 }
