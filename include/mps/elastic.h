@@ -50,7 +50,10 @@ typedef enum mps_elastic_state {
 } mps_elastic_state;
 
 typedef enum mps_elastic_solver_kind {
-  MPS_ELASTIC_SOLVER_AUTO = 0, /* LLT where the factor fits `memory_limit`, else CG */
+  MPS_ELASTIC_SOLVER_AUTO = 0, /* LLT where the factor fits `memory_limit`, else CG. In 3D fewer than
+                                  eight load cases at rest are solved by CG where that is faster,
+                                  from some 5000 unknowns on in a compact body, by LLT where CG
+                                  does not converge: for loads one after the other take LLT */
   MPS_ELASTIC_SOLVER_LLT = 1,  /* supernodal Cholesky */
   MPS_ELASTIC_SOLVER_LDLT = 2, /* simplicial LDL^T */
   MPS_ELASTIC_SOLVER_CG = 3, /* conjugate gradients with a symmetric Gauss-Seidel preconditioner */

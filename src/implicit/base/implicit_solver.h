@@ -91,7 +91,11 @@ struct mps_elastic {
   mpsi_cholesky_symbolic symbolic;
   bool analysed, factored;
   double factored_shift; /* the factor is that of K + shift * M */
-  bool use_cg;
+  bool use_cg;           /* no factor */
+  bool iterates;         /* a few solutions at rest take less time by conjugate gradients than one
+                            factor: the caller leaves the choice */
+  bool by_cg;            /* the present solution; of K + shift * M */
+  double shift;
   double *rhs, *solution; /* unknowns each */
   double *cg_work;        /* 5 * unknowns, or NULL */
   double *mass;           /* n, or NULL until a motion needs it */

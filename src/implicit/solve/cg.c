@@ -49,7 +49,7 @@ static double dot(const double *a, const double *b, int64_t n) {
 
 /* x = A^-1 b; work is r, z, p, q. */
 static mps_status iterate(const cg *s, const char *function, const double *b, double *x,
-                          double *work, int64_t limit, int64_t *iterations) {
+                          double *work, int64_t limit, int64_t *iterations, bool *good) {
   mps_context *context = s->e->context;
   const int64_t n = s->n;
   double *r = work, *z = work + n, *p = work + 2 * n, *q = work + 3 * n;
@@ -64,6 +64,10 @@ static mps_status iterate(const cg *s, const char *function, const double *b, do
     for (int64_t c = 0; c < n; c++) p[c] = z[c] + beta * p[c];
     multiply(s, p, q);
     const double curvature = dot(p, q, n);
+    if (!(curvature > 0.0) && good) {
+      *good = false;
+      return MPS_OK;
+    }
     if (!(curvature > 0.0))
       return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
                        "conjugate gradients: the matrix is not positive definite (p.Kp = %g at "
@@ -82,13 +86,17 @@ static mps_status iterate(const cg *s, const char *function, const double *b, do
   }
   *iterations += it;
   if (length <= target) return MPS_OK;
+  if (good) {
+    *good = false;
+    return MPS_OK;
+  }
   return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
                    "conjugate gradients reached |r|/|b| = %g in %lld iterations, tolerance is %g",
                    length * s->e->def.tolerance / target, (long long)it, s->e->def.tolerance);
 }
 
 mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, const double *rhs,
-                           double *solution) {
+                           double *solution, bool *good) {
   const int64_t n = e->unknowns;
   if (!e->cg_work) e->cg_work = mpsi_alloc(e->context, 5 * n, sizeof *e->cg_work);
   double *work = e->cg_work; /* kept with the matrix: a step allocates nothing */
@@ -99,6 +107,7 @@ mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, c
       diagonal[e->dof[k]] =
           e->value[e->column[e->dof[k]]] + (shift != 0.0 ? shift * e->mass[k / e->dim] : 0.0);
   const cg s = {.e = e, .diagonal = diagonal, .n = n};
-  const int64_t limit = e->def.iterations > 0 ? e->def.iterations : 10 * n;
-  return iterate(&s, function, rhs, solution, work, limit, &e->report.iterations);
+  const int64_t most = e->def.iterations > 0 ? e->def.iterations : 10 * n;
+  const int64_t limit = good && most > MPSI_CG_PATIENCE ? MPSI_CG_PATIENCE : most;
+  return iterate(&s, function, rhs, solution, work, limit, &e->report.iterations, good);
 }

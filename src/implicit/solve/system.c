@@ -22,6 +22,15 @@
 
 #define CASES_AT_ONCE 16 /* right-hand sides of one triangular solution */
 
+/* Where the caller leaves the choice, fewer load cases at rest than FEW_CASES are solved by
+ * conjugate gradients where the factor takes more operations than FACTOR_FLOPS for each entry of
+ * the lower triangle. Cubes of 2700, 9450, 30 492 unknowns have 1e4, 5e4, 2e5 of these; one
+ * solution, with the factor or by iterations on two threads, took .05 and .014, .61 and .19, 9.8
+ * and .66 s. Slender bars have some hundred: their factor is cheaper. Plates of the plane stay with
+ * the factor, as iterations grow with the number of cells along a side. */
+#define FEW_CASES 8
+#define FACTOR_FLOPS 2e4
+
 static double now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -57,6 +66,7 @@ static mps_status order(mps_elastic *e, const char *function) {
 static mps_status analyse(mps_elastic *e, const char *function) {
   static const mpsi_ordering orderings[] = {MPSI_ORDER_BEST, MPSI_ORDER_AMD, MPSI_ORDER_METIS};
   e->use_cg = e->def.solver == MPS_ELASTIC_SOLVER_CG;
+  e->iterates = false;
   memset(&e->symbolic, 0, sizeof e->symbolic);
   if (e->use_cg || e->unknowns == 0) {
     e->analysed = true;
@@ -79,6 +89,8 @@ static mps_status analyse(mps_elastic *e, const char *function) {
     e->use_cg = true;
     mpsi_cholesky_destroy(&e->cholesky);
   }
+  e->iterates = e->def.solver == MPS_ELASTIC_SOLVER_AUTO && e->dim == 3 &&
+                e->symbolic.flops > FACTOR_FLOPS * (double)e->column[e->unknowns];
   e->analysed = true;
   return MPS_OK;
 }
@@ -91,6 +103,7 @@ static mps_status prepare_outside(mps_elastic *e, const char *function) {
   memset(&e->symbolic, 0, sizeof e->symbolic);
   mpsi_cholesky_destroy(&e->cholesky);
   e->pattern_valid = e->values_valid = e->analysed = e->use_cg = true;
+  e->iterates = false;
   return MPS_OK;
 }
 
@@ -151,11 +164,7 @@ static void shift_diagonal(mps_elastic *e, double shift, double *kept) {
     }
 }
 
-mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shift) {
-  if (e->use_cg || e->unknowns == 0) {
-    e->factored_shift = shift;
-    return MPS_OK;
-  }
+static mps_status factor(mps_elastic *e, const char *function, double shift) {
   if (e->factored && e->factored_shift == shift) return MPS_OK;
   const double start = now();
   double *kept = e->solution;
@@ -177,14 +186,38 @@ mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shif
   return MPS_OK;
 }
 
+mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shift) {
+  e->shift = shift;
+  e->by_cg = e->use_cg;
+  return e->use_cg || e->unknowns == 0 ? MPS_OK : factor(e, function, shift);
+}
+
+/* The same for `count` load cases at rest. Whether a factor is there already makes no difference:
+ * results do not depend on what was solved before. */
+static mps_status prepare_cases(mps_elastic *e, const char *function, int64_t count) {
+  if (!e->iterates || count >= FEW_CASES) return mpsi_elastic_factor(e, function, 0.0);
+  e->shift = 0.0;
+  e->by_cg = true;
+  return MPS_OK;
+}
+
 mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t count,
                                   const double *rhs, double *solution) {
   if (e->unknowns == 0) return MPS_OK;
-  if (!e->use_cg) return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
-  for (int64_t k = 0; k < count; k++)
-    MPSI_TRY((mpsi_elastic_solved_outside(e) ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
-        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns));
-  return MPS_OK;
+  for (int64_t k = 0; k < count && e->by_cg; k++) {
+    const int64_t at = k * e->unknowns;
+    bool good = true;
+    MPSI_TRY(mpsi_elastic_solved_outside(e)
+                 ? mpsi_elastic_solve_outside(e, function, e->shift, rhs + at, solution + at)
+                 : mpsi_elastic_cg(e, function, e->shift, rhs + at, solution + at,
+                                   e->iterates ? &good : NULL));
+    if (!good) { /* stiffnesses of many orders: the factor does not mind */
+      MPSI_TRY(mpsi_elastic_factor(e, function, 0.0));
+      return mpsi_cholesky_solve(e->cholesky, function, count - k, rhs + at, solution + at);
+    }
+  }
+  if (e->by_cg) return MPS_OK;
+  return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
@@ -208,10 +241,9 @@ static mps_status residual(mps_elastic *e, const char *function, const double *l
 static mps_status solve_block(mps_elastic *e, const char *function, int64_t count,
                               const double *loads, double *u, double *rhs, double *solution) {
   const int64_t all = e->n * e->dim;
-  const int32_t passes = e->use_cg ? 1 : 1 + e->def.refinements;
   memset(u, 0, (size_t)(count * all) * sizeof *u);
   for (int64_t k = 0; k < count; k++) mpsi_elastic_expand(e, NULL, true, u + k * all);
-  for (int32_t pass = 0; pass < passes; pass++) {
+  for (int32_t pass = 0; pass < (e->by_cg ? 1 : 1 + e->def.refinements); pass++) {
     mps_status status = MPS_OK;
     for (int64_t k = 0; k < count && status == MPS_OK; k++)
       status = residual(e, function, loads + k * all, u + k * all, rhs + k * e->unknowns);
@@ -247,7 +279,7 @@ static int64_t nonzeros(const mps_elastic *e) {
 
 static int32_t solver_used(const mps_elastic *e) {
   if (mpsi_elastic_solved_outside(e)) return MPS_ELASTIC_SOLVER_FOREIGN;
-  if (e->use_cg) return MPS_ELASTIC_SOLVER_CG;
+  if (e->use_cg || e->iterates) return MPS_ELASTIC_SOLVER_CG;
   return e->def.solver == MPS_ELASTIC_SOLVER_AUTO ? MPS_ELASTIC_SOLVER_LLT : e->def.solver;
 }
 
@@ -283,7 +315,7 @@ static mps_status solve(mps_elastic *e, const char *function, double *u, double 
   MPSI_TRY(mpsi_elastic_weigh(e, function, mass));
   MPSI_TRY(mpsi_elastic_drive(e, function, mpsi_elastic_time(e)));
   MPSI_TRY(mpsi_elastic_gather_loads(e, function, mpsi_elastic_time(e)));
-  MPSI_TRY(mpsi_elastic_factor(e, function, 0.0));
+  MPSI_TRY(prepare_cases(e, function, 1));
   const double start = now();
   e->report.iterations = 0;
   double scale;
@@ -342,7 +374,7 @@ static mps_status solve_cases(mps_elastic *e, const char *function, int64_t coun
   const int64_t all = e->n * e->dim, block = count < CASES_AT_ONCE ? count : CASES_AT_ONCE;
   mps_status status = mpsi_elastic_prepare(e, function);
   if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mpsi_elastic_time(e));
-  if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
+  if (status == MPS_OK) status = prepare_cases(e, function, count);
   if (status != MPS_OK || count == 0) return status;
   const int64_t words = 2 * block * (e->unknowns + all);
   double *rhs = mpsi_alloc(e->context, words, sizeof *rhs);
