@@ -399,7 +399,7 @@ static bool draw_columns(app *a, const simulation *sim) {
                         .slit = AREA_SLIT_SHEARED,
                         .upper = {width * s->width, height * s->width},
                         .walled = true,
-                        .side = AREA_SIDE};
+                        .side = 2 * panel};
   area image[CASES_MAX][FRAMES];
   double least, most = 0.0;
   for (int k = 0; k < sim->count; k++) {
@@ -408,7 +408,7 @@ static bool draw_columns(app *a, const simulation *sim) {
     if (!mpm_snapshots_image(a, s->out, name, FRAMES, sim->column[k].shot, &def, image[k]))
       return false;
     double greatest;
-    area_range(FRAMES, image[k], 1.0, &least, &greatest);
+    area_range(FRAMES, image[k], &least, &greatest);
     most = fmax(most, greatest);
   }
   output f;
@@ -438,7 +438,7 @@ static bool draw_columns(app *a, const simulation *sim) {
                   sim->count > 1 ? c->name : "", sim->count > 1 ? ", " : "", c->shot[shot].time);
       char name[64];
       snprintf(name, sizeof name, "columns_%s.bin", c->name);
-      area_plot(&f, name, &image[k][shot], s->width, 1.0);
+      area_plot(&f, name, &image[k][shot], s->width);
       output_text(&f, "\n");
     }
   output_text(&f, "unset multiplot\n");

@@ -277,11 +277,12 @@ static bool draw_water(app *a, const simulation *sim, double T) {
                         .slit = mps ? AREA_SLIT : AREA_SLIT_SHEARED,
                         .upper = {width * s->base, height * s->base},
                         .walled = true,
-                        .side = AREA_SIDE};
+                        .side = 2 * panel,
+                        .factor = 1e-3};
   area image[FRAMES];
   double least, most;
   if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, &def, image)) return false;
-  area_range(FRAMES, image, 1e-3, &least, &most);
+  area_range(FRAMES, image, &least, &most);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
   output_text(&f,
@@ -302,7 +303,7 @@ static bool draw_water(app *a, const simulation *sim, double T) {
                 "set title 'T = %.2f' offset 0,-0.7\nplot ",
                 k == 1 ? "unset colorbox\n" : "", k % down == down - 1 ? "x/a" : "",
                 k < down ? "y/a" : "", sim->shot[k].time * T);
-    area_plot(&f, "water.bin", &image[k], s->base, 1e-3);
+    area_plot(&f, "water.bin", &image[k], s->base);
     output_text(&f, "\n");
   }
   output_text(&f, "unset multiplot\n");

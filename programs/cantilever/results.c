@@ -177,7 +177,7 @@ static bool draw_shape(const model *m, const char *directory) {
       scale);
   plot_colours(&f, 0.0, image.most, image.least, image.most);
   output_text(&f, "plot ");
-  area_plot(&f, "shape.bin", &image, 1.0, 1.0);
+  area_plot(&f, "shape.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, directory, "shape");
 }

@@ -152,6 +152,7 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
     mark_covered(&c);
     take_off(&c, (reach - 0.5) * step, own * step);
     fill_notches(&c, (int64_t)step);
+    for (size_t k = 0; k < size && def->factor != 0.0; k++) c.value[k] *= (float)def->factor;
     take_range(&c, out);
     out->offset = ftell(file->stream);
     if (fwrite(c.value, sizeof *c.value, size, file->stream) != size) file->error = errno;
@@ -163,21 +164,20 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
   free(c.state);
 }
 
-void area_plot(output *script, const char *name, const area *image, double length, double factor) {
+void area_plot(output *script, const char *name, const area *image, double length) {
   const double step = image->pixel / length;
   output_text(script,
               "'%s' binary skip=%lld array=(%lld,%lld) format='%%float' origin=(%.9g,%.9g) "
-              "dx=%.9g dy=%.9g using ($1*%.9g) with image notitle",
+              "dx=%.9g dy=%.9g using 1 with image notitle",
               name, (long long)image->offset, (long long)image->columns, (long long)image->rows,
               image->lower[0] / length + 0.5 * step, image->lower[1] / length + 0.5 * step, step,
-              step, factor);
+              step);
 }
 
-void area_range(int64_t count, const area *images, double factor, double *least, double *most) {
+void area_range(int64_t count, const area *images, double *least, double *most) {
   *least = *most = 0.0;
   for (int64_t k = 0; k < count; k++) {
-    const double a = factor * images[k].least, b = factor * images[k].most;
-    *least = k ? fmin(*least, fmin(a, b)) : fmin(a, b);
-    *most = k ? fmax(*most, fmax(a, b)) : fmax(a, b);
+    *least = k ? fmin(*least, images[k].least) : images[k].least;
+    *most = k ? fmax(*most, images[k].most) : images[k].most;
   }
 }

@@ -27,6 +27,7 @@ typedef struct area_def {
   double lower[2], upper[2]; /* m, what is shown */
   bool walled;               /* beyond it all is solid: walls, or the body continues */
   int side;                  /* pixels along a side, at most */
+  double factor;             /* of the values in the image over those given; 0: 1 */
   /* a body or a wall at x, y (m), which the picture draws over the image; NULL: none */
   bool (*solid)(const void *user, double x, double y);
   const void *user;
@@ -37,10 +38,11 @@ typedef struct area_def {
 void area_write(output *file, const area_def *def, int64_t count, const double *row, area *out);
 
 /* The element of a gnuplot `plot` that draws it from the file of that name: lengths divided by
- * `length` (m), values times `factor`. */
-void area_plot(output *script, const char *name, const area *image, double length, double factor);
+ * `length` (m). Values are read as they are: an expression for each pixel takes ten times as long.
+ */
+void area_plot(output *script, const char *name, const area *image, double length);
 
-/* Least and greatest value of all images, times `factor`. */
-void area_range(int64_t count, const area *images, double factor, double *least, double *most);
+/* Least and greatest value of all images. */
+void area_range(int64_t count, const area *images, double *least, double *most);
 
 #endif

@@ -49,6 +49,7 @@ static bool image(app *a, output *f, const flume *m, const flume_look *look, con
                         .lower = {v->lower[0], v->lower[1]},
                         .upper = {v->upper[0], v->upper[1]},
                         .side = side,
+                        .factor = 1e-3,
                         .solid = in_solid,
                         .user = m};
   area_write(f, &def, look->count, row, out);
@@ -130,7 +131,7 @@ static bool draw_still(app *a, const flume *m, const section *v) {
   if (!output_open(&f, a, m->s.out, "water.bin")) return false;
   const bool good = image(a, &f, m, &m->look, v, AREA_SIDE, &picture);
   if (!output_close(&f) || !good) return false;
-  area_range(1, &picture, 1e-3, &least, &most);
+  area_range(1, &picture, &least, &most);
   const int high = (int)fmin(fmax(1080.0 * shape, 90.0), 1400.0);
   if (!plot_open(&f, a, m->s.out, "water", 1300, high + 170)) return false;
   output_text(&f, "set title 't = %.2f s%s'\n", m->look.t,
@@ -138,7 +139,7 @@ static bool draw_still(app *a, const flume *m, const section *v) {
   begin(&f, m, v, (int)(990.0 * shape), least, most);
   draw_ends(&f, m, v, m->look.t);
   output_text(&f, "plot ");
-  area_plot(&f, "water.bin", &picture, 1.0, 1e-3);
+  area_plot(&f, "water.bin", &picture, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, m->s.out, "water");
 }
@@ -149,7 +150,7 @@ static bool draw_frames(app *a, const flume *m, const section *v, const area *pi
   const int high = (int)fmin(fmax(760.0 * shape, 70.0), 900.0);
   double least, most;
   output f;
-  area_range(m->frames, picture, 1e-3, &least, &most);
+  area_range(m->frames, picture, &least, &most);
   if (!plot_open_animation(&f, a, m->s.out, "animation", 960, high + 150,
                            span / (double)(m->frames - 1)))
     return false;
@@ -157,7 +158,7 @@ static bool draw_frames(app *a, const flume *m, const section *v, const area *pi
   for (int64_t k = 0; k < m->frames; k++) {
     draw_ends(&f, m, v, m->frame[k].t);
     output_text(&f, "set title 't = %.2f s'\nplot ", m->frame[k].t);
-    area_plot(&f, "frames.bin", &picture[k], 1.0, 1e-3);
+    area_plot(&f, "frames.bin", &picture[k], 1.0);
     output_text(&f, "\n");
   }
   return plot_close_animation(&f, m->s.out, "animation");

@@ -328,7 +328,7 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
               s->depth - footing_row_of(sim, footing_rows(sim) - 1)->path, s->half_width, top);
   plot_colours(&f, 0.0, 0.5 * sim->strain, image.least, image.most);
   output_text(&f, "plot ");
-  area_plot(&f, "shear_bands.bin", &image, 1.0, 1.0);
+  area_plot(&f, "shear_bands.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, s->out, "shear_bands");
 }

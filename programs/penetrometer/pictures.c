@@ -180,7 +180,7 @@ static bool draw_section(app *a, const penetrometer *p) {
                 (from + panel + 18.0) / wide, 16.0 / wide);
     plot_colours(&f, 0.0, most_of(&p->run[0], k), image[k].least, image[k].most);
     output_text(&f, "plot ");
-    area_plot(&f, k ? "plastic_strain.bin" : "displacement.bin", &image[k], 1.0, 1.0);
+    area_plot(&f, k ? "plastic_strain.bin" : "displacement.bin", &image[k], 1.0);
     output_text(&f, "\nset ylabel ''\n");
   }
   output_text(&f, "unset multiplot\n");

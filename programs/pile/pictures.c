@@ -140,12 +140,13 @@ static bool image_sections(app *a, const pile *p, const quantity *q, section *x)
                           .upper = {p->s.width, section_top(p)},
                           .walled = true,
                           .side = AREA_SIDE,
+                          .factor = q->factor,
                           .solid = in_wall,
                           .user = &pipe};
     area_write(&f, &def, p->particles, row, &x->image[n]);
   }
   free(row);
-  area_range(1, &x->image[p->frames_kept - 1], q->factor, &x->least, &x->most);
+  area_range(1, &x->image[p->frames_kept - 1], &x->least, &x->most);
   return good && output_close(&f);
 }
 
@@ -169,7 +170,7 @@ static void plot_section(output *f, const pile *p, const section *x, int64_t fra
       "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#555555' fillstyle "
       "solid noborder front\nplot ",
       p->inner, -p->frame[frame].depth, p->outer, section_top(p));
-  area_plot(f, x->file, &x->image[frame], 1.0, x->q->factor);
+  area_plot(f, x->file, &x->image[frame], 1.0);
   output_text(f, "\n");
 }
 

@@ -161,7 +161,7 @@ static bool draw_map(const plate *p, const char *directory) {
               edge, edge);
   plot_colours(&f, 0.0, 3.0 * p->def->tension, image.least, image.most);
   output_text(&f, "plot ");
-  area_plot(&f, "stress.bin", &image, 1.0, 1.0);
+  area_plot(&f, "stress.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, directory, "stress");
 }

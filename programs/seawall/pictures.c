@@ -62,12 +62,13 @@ static bool image_frames(app *a, const seawall *w, view *v) {
                           .lower = {v->lower[0], v->lower[1]},
                           .upper = {v->upper[0], v->upper[1]},
                           .side = 700,
+                          .factor = 1e-3,
                           .solid = in_solids,
                           .user = &walls};
     area_write(&f, &def, w->frame[k].count, row, &v->image[k]);
   }
   free(row);
-  area_range(w->frames, v->image, 1e-3, &v->least, &v->most);
+  area_range(w->frames, v->image, &v->least, &v->most);
   return good && output_close(&f);
 }
 
@@ -97,7 +98,7 @@ static void plot_water(output *f, const seawall *w, const view *v, int64_t k, co
               "set object 3 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#c0392b' fillstyle "
               "solid 1.0 noborder behind\nset title 't = %.2f s%s' offset 0,-0.6\nplot ",
               frame->piston - 2.0 * s->spacing, frame->piston, s->wall_height, frame->t, note);
-  area_plot(f, "frames.bin", &v->image[k], 1.0, 1e-3);
+  area_plot(f, "frames.bin", &v->image[k], 1.0);
   output_text(f, "\n");
 }
 

@@ -180,7 +180,7 @@ static bool draw_slope(app *a, const simulation *sim) {
   draw_water(&f, s, wide);
   plot_colours(&f, 0.0, 0.5 * greatest(&sim->shot, 2), image.least, image.most);
   output_text(&f, "plot ");
-  area_plot(&f, "slope.bin", &image, 1.0, 1.0);
+  area_plot(&f, "slope.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, s->out, "slope");
 }

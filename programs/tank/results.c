@@ -254,7 +254,8 @@ static bool image_water(app *a, const tank_model *m, const double *lower, const 
                         .slit = AREA_SLIT,
                         .lower = {lower[0], lower[1]},
                         .upper = {upper[0], upper[1]},
-                        .side = AREA_SIDE};
+                        .side = AREA_SIDE,
+                        .factor = 1e-3};
   const bool good = output_open(&f, a, m->s.out, "water.bin");
   if (good) area_write(&f, &def, x.shape[0], row, image);
   free(row);
@@ -280,7 +281,7 @@ static bool draw_water(app *a, const tank_model *m) {
   area image;
   if (!image_water(a, m, lower, upper, &image)) return false;
   double lowest, highest;
-  area_range(1, &image, 1e-3, &lowest, &highest);
+  area_range(1, &image, &lowest, &highest);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)X, (int)Y)) return false;
   if (s->kind == TANK_FLOAT) draw_box(&f, m);
@@ -298,7 +299,7 @@ static bool draw_water(app *a, const tank_model *m) {
       bottom / Y, (bottom + high) / Y, (left + wide + 18.0) / X, 95.0 / Y, 24.0 / X, bar / Y);
   plot_colours(&f, lowest, highest, lowest, highest);
   output_text(&f, "plot ");
-  area_plot(&f, "water.bin", &image, 1.0, 1e-3);
+  area_plot(&f, "water.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, s->out, "water");
 }

@@ -276,7 +276,7 @@ static bool draw_ground(app *a, const simulation *sim) {
               toe, foot, toe);
   plot_colours(&f, 0.0, 0.5 * most_strain(&sim->shot), image.least, image.most);
   output_text(&f, "plot ");
-  area_plot(&f, "ground.bin", &image, 1.0, 1.0);
+  area_plot(&f, "ground.bin", &image, 1.0);
   output_text(&f, "\n");
   return plot_close(&f, s->out, "ground");
 }
