@@ -3,7 +3,6 @@
  * Timoshenko's beam, the section forces with statics.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/elastic.h>
-#include <mps/material.h>
 
 #include <math.h>
 #include <stdio.h>
