@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double cell = 0.05, load = 1000.0;    /* m, Pa; H = 1 m */
+static const double cell = 0.1, load = 1000.0;     /* m, Pa; H = 1 m */
 static const double young = 1e6, poisson = 0.3;    /* Pa, 1: of the skeleton */
 static const double porosity = 0.4, drains = 0.25; /* 1, m2/s: c_v */
 

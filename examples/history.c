@@ -1,5 +1,5 @@
 /* history.c - a table of numbers in time that belongs to a run: it is part of snapshots and
- * checkpoints, and a CSV file follows it. A layer of soil on rock swings in its first mode, by
+ * checkpoints, and a CSV file follows it. A layer of soil on rock oscillates in its first mode, by
  * explicit MPS; the period is read from the table, against 4 H/Vs.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/dynamics.h>

@@ -88,6 +88,10 @@ int main(void) {
   wrong += compare("rms difference of the motion, relative", sqrt(r.difference / r.sum), 0.0, 0.03);
   wrong += compare("kinetic energy that stays, relative", left.kinetic / in.kinetic, 0.0, 1e-3);
 
+  /* 2/omega with the highest frequency of an infinite lattice, sqrt(24) Vs/D, where Vp < 3.6 Vs */
+  const double limit = 2.0 * spacing / (sqrt(24.0) * vs);
+  wrong += compare("largest stable step, s", mps_dynamics_limit(dynamics), limit, 0.01 * limit);
+
   mps_dynamics_destroy(&dynamics);
   mps_signal_destroy(&r.quake);
   mps_particles_destroy(&r.soil);
