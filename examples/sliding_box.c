@@ -27,16 +27,17 @@ static int compare(const char *what, double got, double right, double bound) {
   return !(fabs(got - right) <= bound);
 }
 
-/* A smooth half plane at (x, y), to which the block is where (nx, ny) points; the lower is rough.
- * It moves along component c, faster and slower in 0.1 s, from `start` on for one second. */
-static void add_plate(mps_context *context, mps_mpm *mpm, const double *normal, double at,
+/* A half plane whose normal points to the block; the lower one, whose normal points up, is rough.
+ * Along component c (-1: not at all) it moves for a second from `start` on, 0.1 s of it to gain the
+ * speed and to lose it. */
+static void add_plate(mps_context *context, mps_mpm *mpm, const double *normal, double place,
                       int32_t c, double start, mps_body **plate) {
   const double t[4] = {start, start + 0.1, start + 0.9, start + 1.0},
                v[4] = {0.0, speed, speed, 0.0};
   mps_body_def def = mps_body_defaults();
   mps_contact_def contact = mps_contact_defaults();
   mps_signal *motion = NULL;
-  for (int k = 0; k < 2; k++) def.position[k] = -normal[k] * at;
+  for (int k = 0; k < 2; k++) def.position[k] = -normal[k] * place;
   contact.friction = normal[1] > 0.0 ? mu : 0.0;
   ok(mps_body_create_half_plane(context, &def, normal, plate));
   if (c >= 0) {
