@@ -13,6 +13,7 @@ install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libm
 install(DIRECTORY share/models share/umat DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
 install(FILES share/umat/ABA_PARAM.INC DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps/umat RENAME aba_param.inc)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES docs/site/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/site) # README.md links to it
 
 if(NOT PETSc_FOUND)

@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* umat.f90, as gfortran names it. Its arguments are those of mps_material_umat_fn. */
 extern void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *spd,
@@ -27,7 +28,14 @@ extern void umat_(double *stress, double *statev, double *ddsdde, double *sse, d
 
 static const double young = 2e8, poisson = 0.3, yield = 1e6, hardening = 2e7; /* Pa */
 
-static mps_status make_laws(mps_context *context, mps_material **fortran, mps_material **own) {
+/* Stops where a call fails, with the library's message. */
+static void ok(mps_status status) {
+  if (status == MPS_OK) return;
+  fprintf(stderr, "%s\n", mps_last_error()->message);
+  exit(1);
+}
+
+static void make_laws(mps_context *context, mps_material **fortran, mps_material **own) {
   static const char *const names[] = {"plastic_strain"};
   const double props[4] = {young, poisson, yield, hardening};
   mps_material_umat_def def = mps_material_umat_defaults();
@@ -38,27 +46,26 @@ static mps_status make_laws(mps_context *context, mps_material **fortran, mps_ma
   def.wave_modulus = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
   mps_material_von_mises_def same = mps_material_von_mises_defaults();
   same.young = young, same.poisson = poisson, same.yield_stress = yield, same.hardening = hardening;
-  mps_status status = mps_material_create_umat(context, &def, fortran);
-  return status == MPS_OK ? mps_material_create_von_mises(context, &same, own) : status;
+  ok(mps_material_create_umat(context, &def, fortran));
+  ok(mps_material_create_von_mises(context, &same, own));
 }
 
 /* One particle in pure shear; the error of stress and plastic strain. */
-static mps_status shear(mps_context *context, mps_material *law, double *error) {
+static void shear(mps_context *context, mps_material *law, double *error) {
   mps_material_point point;
   const double e = 0.05, gradient[9] = {e, 0.0, 0.0, 0.0, -e}; /* over 1 s */
   const double G = young / (2.0 * (1.0 + poisson));
   const double p = (2.0 * sqrt(3.0) * G * e - yield) / (3.0 * G + hardening);
   const double s = (yield + hardening * p) / sqrt(3.0);
-  mps_status status = mps_material_point_init(context, law, &point);
-  if (status == MPS_OK) status = mps_material_point_drive(context, law, &point, gradient, 1.0, 50);
+  ok(mps_material_point_init(context, law, &point));
+  ok(mps_material_point_drive(context, law, &point, gradient, 1.0, 50));
   *error = fmax(fabs(point.stress[0] / s - 1.0), fabs(point.history[0] / p - 1.0));
   printf("pure shear: sxx %.6g Pa, closed form %.6g Pa; plastic strain %.6g, %.6g\n",
          point.stress[0], s, point.history[0], p);
-  return status;
 }
 
 /* A bar of 20 x 4 particles whose ends move apart. `length` receives the place of its last one. */
-static mps_status pull(mps_context *context, mps_material *law, double *length, double *plastic) {
+static void pull(mps_context *context, mps_material *law, double *length, double *plastic) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 0.2};
   mps_particles_def of_set = mps_particles_defaults();
   mps_particles *set = NULL;
@@ -69,25 +76,25 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* by default a UMAT and von Mises differ here */
   of_set.spacing = 0.05;
   def.cell = 0.1;
-  mps_status status = mps_particles_create(context, &of_set, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
-  if (status == MPS_OK) status = mps_particles_set(set, "density", 0, 7800.0);
-  if (status == MPS_OK) status = mps_particles_set(set, "velocity", 0, 0.0);
-  if (status == MPS_OK) status = mps_particles_edit(set, "velocity", &v);
-  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  for (int64_t k = 0; status == MPS_OK && k < v.view.shape[0]; k++)
+  ok(mps_particles_create(context, &of_set, &set));
+  ok(mps_particles_fill_box(set, lo, hi, NULL));
+  ok(mps_particles_set(set, "density", 0, 7800.0));
+  ok(mps_particles_set(set, "velocity", 0, 0.0));
+  ok(mps_particles_edit(set, "velocity", &v));
+  ok(mps_particles_view(set, "position", &x));
+  for (int64_t k = 0; k < v.view.shape[0]; k++)
     *mps_edit_f64(&v, k, 0) = 20.0 * (*mps_view_f64(&x, k, 0) - 0.5); /* m/s */
-  if (status == MPS_OK) status = mps_particles_commit(set, &v);
-  if (status == MPS_OK) status = mps_mpm_create(context, set, law, &def, &mpm);
-  if (status == MPS_OK) status = mps_mpm_run(mpm, 5e-3, 1, NULL, NULL);
-  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
+  ok(mps_particles_commit(set, &v));
+  ok(mps_mpm_create(context, set, law, &def, &mpm));
+  ok(mps_mpm_run(mpm, 5e-3, 1, NULL, NULL));
+  ok(mps_particles_view(set, "position", &x));
   const char *column = mps_material_history_name(law, 0);
   char field[100]; /* of the first history column: the library's own laws use fields of its table */
   snprintf(field, sizeof field, "%s.%s", mps_material_name(law), column);
   if (!mps_particles_has_field(set, field)) snprintf(field, sizeof field, "%s", column);
-  if (status == MPS_OK) status = mps_particles_view(set, field, &kept);
+  ok(mps_particles_view(set, field, &kept));
   *length = *plastic = 0.0;
-  for (int64_t k = 0; status == MPS_OK && k < kept.shape[0]; k++) {
+  for (int64_t k = 0; k < kept.shape[0]; k++) {
     *length = fmax(*length, *mps_view_f64(&x, k, 0));
     *plastic = fmax(*plastic, *mps_view_f64(&kept, k, 0));
   }
@@ -95,24 +102,22 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
          *length, *plastic);
   mps_mpm_destroy(&mpm);
   mps_particles_destroy(&set);
-  return status;
 }
 
 int main(void) {
   mps_context *context = NULL;
   mps_material *fortran = NULL, *own = NULL;
   double error = 1.0, length[2] = {0.0, 1.0}, plastic[2] = {0.0, 1.0};
-  if (mps_context_create(NULL, &context, NULL, 0) != MPS_OK) return 1;
-  mps_status status = make_laws(context, &fortran, &own);
-  if (status == MPS_OK) status = shear(context, fortran, &error);
-  if (status == MPS_OK) status = pull(context, fortran, &length[0], &plastic[0]);
-  if (status == MPS_OK) status = pull(context, own, &length[1], &plastic[1]);
-  if (status != MPS_OK) fprintf(stderr, "%s\n", mps_context_error(context)->message);
+  ok(mps_context_create(NULL, &context, NULL, 0));
+  make_laws(context, &fortran, &own);
+  shear(context, fortran, &error);
+  pull(context, fortran, &length[0], &plastic[0]);
+  pull(context, own, &length[1], &plastic[1]);
   mps_material_destroy(&fortran);
   mps_material_destroy(&own);
   mps_context_destroy(&context);
-  return status == MPS_OK && error < 1e-12 && plastic[1] > 1e-3 &&
-                 fabs(length[0] - length[1]) < 1e-9 && fabs(plastic[0] - plastic[1]) < 1e-9
+  return error < 1e-12 && plastic[1] > 1e-3 && fabs(length[0] - length[1]) < 1e-9 &&
+                 fabs(plastic[0] - plastic[1]) < 1e-9
              ? 0
              : 1;
 }

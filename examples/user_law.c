@@ -10,11 +10,19 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 typedef struct creep {
   double shear, bulk; /* Pa */
   double rate, power; /* B, 1/(s Pa^n); n > 1 */
 } creep;
+
+/* Stops where a call fails, with the library's message. */
+static void ok(mps_status status) {
+  if (status == MPS_OK) return;
+  fprintf(stderr, "%s\n", mps_last_error()->message);
+  exit(1);
+}
 
 /* The radius q = sqrt(J2) at the end of the step: q + dt G B q^n = trial, by Newton. */
 static mps_status relax(const creep *c, double dt, double trial, double *q) {
@@ -62,36 +70,28 @@ static mps_status update(void *user, const mps_material_block *b) {
   return MPS_OK;
 }
 
-static int failed(mps_context *context) {
-  fprintf(stderr, "%s\n", mps_context_error(context)->message);
-  return 1;
-}
-
 int main(void) {
   static const char *const history[] = {"creep_strain"};
   creep c = {.shear = 4e6, .bulk = 1e7, .rate = 1e-14, .power = 3.0};
   mps_context *context = NULL;
   mps_material *salt = NULL;
   mps_material_point point;
-  if (mps_context_create(NULL, &context, NULL, 0) != MPS_OK) return 1;
+  ok(mps_context_create(NULL, &context, NULL, 0));
   mps_material_user_def def = mps_material_user_defaults();
   def.update = update, def.user = &c;
   def.name = "salt"; /* in a set, the history is the field "salt.creep_strain" */
   def.history = history, def.history_count = 1;
   def.wave_modulus = c.bulk + 4.0 / 3.0 * c.shear;
-  if (mps_material_create_user(context, &def, &salt) != MPS_OK ||
-      mps_material_point_init(context, salt, &point) != MPS_OK)
-    return failed(context);
+  ok(mps_material_create_user(context, &def, &salt));
+  ok(mps_material_point_init(context, salt, &point));
   /* a quick shear to tau0, then rest */
   const double tau0 = 2e4, quick = 1e-9, rate = tau0 / (2.0 * c.shear * quick);
   const double shear[9] = {0.0, rate, 0.0, rate}, still[9] = {0.0};
-  if (mps_material_point_drive(context, salt, &point, shear, quick, 1) != MPS_OK)
-    return failed(context);
+  ok(mps_material_point_drive(context, salt, &point, shear, quick, 1));
   double worst = 0.0;
   printf("  t, s   tau, Pa  closed form  creep strain\n");
   for (int k = 1; k <= 10; k++) {
-    if (mps_material_point_drive(context, salt, &point, still, 0.01, 500) != MPS_OK)
-      return failed(context);
+    ok(mps_material_point_drive(context, salt, &point, still, 0.01, 500));
     const double t = 0.01 * k, n = c.power;
     const double exact =
         pow(pow(tau0, 1.0 - n) + (n - 1.0) * c.shear * c.rate * t, -1.0 / (n - 1.0));

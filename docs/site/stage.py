@@ -15,7 +15,7 @@ import headers
 import options
 import python_reference
 
-ROOT_PAGES = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md", "LICENSE": "license.md",
+ROOT_PAGES = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md", "LICENSE": "license.md", "examples/README.md": "examples.md",
               "docs/site/index.md": "index.md"}
 LINK = re.compile(r"(?<!\!)\[((?:[^\[\]`]|`[^`]*`|\[[^\]]*\])*)\]\(([^():\s#]*)(#[^)\s]*)?\)")
 
@@ -45,6 +45,8 @@ def relink(text, path, here):
             return f"[{said}]({os.path.relpath(page, os.path.dirname(here) or '.')}{anchor})"
         if target.endswith((".png", ".gif")):
             return match[0]
+        if file.startswith("examples/"):
+            return f"`{file}`"  # which links.py leads to its listing
         return f"{said} (`{file}`)" if "`" not in said else said
     parts = re.split(r"(^```.*?^```\s*$)", text, flags=re.S | re.M)
     return "".join(part if k % 2 else LINK.sub(new, part) for k, part in enumerate(parts))
@@ -69,7 +71,7 @@ def write(path, text):
 def stage_pages(root, out):
     """Pages and pictures."""
     pages = [p.relative_to(root).as_posix() for p in sorted((root / "docs").rglob("*.md"))]
-    for path in [*pages, "CHANGELOG.md", "CONTRIBUTING.md", "docs/site/index.md"]:
+    for path in [*pages, "CHANGELOG.md", "CONTRIBUTING.md", "docs/site/index.md", "examples/README.md"]:
         here = place_of(path)
         if here:
             write(out / here, relink((root / path).read_text(), path, here) + tree(here))
