@@ -7,13 +7,14 @@
 
 #define CLEAR 0.45 /* spacings between the water's particles and a face */
 #define APART 0.55 /* spacings between the two lattices, at least */
+#define PARTS 7    /* of a cell that a face cuts, along each side */
 
 typedef struct filling {
   const flume *m;
   double *x;
   int64_t count, room;
   uint64_t state;
-  bool full;
+  bool full, cut; /* no memory; faces cut cells */
 } filling;
 
 static void add(filling *f, const double *x) {
@@ -29,23 +30,61 @@ static double clearance(const flume *m) {
   return fmin(CLEAR, 0.5 - m->s.disturb) * m->s.spacing * (1.0 - 1e-9);
 }
 
+/* Moves a particle that is too near a face off it. False: there is a face on both sides. */
+static bool keep_clear(const flume *m, double *x) {
+  double on[2];
+  int32_t wall;
+  const double least = clearance(m), distance = flume_nearest_face(m, x, on, &wall);
+  if (distance >= least) return true;
+  if (!(distance > 0.0)) return false;
+  for (int c = 0; c < 2; c++) x[c] = on[c] + (x[c] - on[c]) * (1.0 + 1e-9) * least / distance;
+  return flume_nearest_face(m, x, on, &wall) >= least && !flume_is_solid(m, x[0], x[1]);
+}
+
 /* Columns and rows from the origin. */
 static bool site(const flume *m, double x, double y) {
   return !flume_is_solid(m, x, y) && flume_is_wet(m, x, y) && flume_rock_at(m, x, y) < 0;
 }
 
+/* Part of the cell of the lattice about x that water fills, with its centre in place of x. */
+static double water_in(const flume *m, double *x) {
+  const double l0 = m->s.spacing;
+  double on[2], sum[2] = {0.0, 0.0};
+  int32_t wall, count = 0;
+  bool wet = false;
+  if (flume_nearest_face(m, x, on, &wall) >= 0.71 * l0) return site(m, x[0], x[1]) ? 1.0 : 0.0;
+  if (flume_rock_at(m, x[0], x[1]) >= 0) return 0.0;
+  for (int k = 0; k < PARTS * PARTS; k++) {
+    const double at[2] = {x[0] + l0 * ((k % PARTS + 0.5) / PARTS - 0.5),
+                          x[1] + l0 * ((k / PARTS + 0.5) / PARTS - 0.5)};
+    if (flume_is_solid(m, at[0], at[1])) continue;
+    wet = wet || flume_is_wet(m, at[0], at[1]);
+    for (int c = 0; c < 2; c++) sum[c] += at[c];
+    count++;
+  }
+  for (int c = 0; c < 2 && count > 0; c++) x[c] = sum[c] / count;
+  return wet ? (double)count / (PARTS * PARTS) : 0.0;
+}
+
+/* Of the cells that faces cut as many have a particle as their water needs: the error is carried
+ * on to the next one. */
 static void fill_water(filling *f) {
   const flume *m = f->m;
   const flume_settings *s = &m->s;
   const double reach = flume_is_open(m) ? m->heel[0] : m->outlet;
   const int64_t columns = llround(reach / s->spacing), rows = llround(s->depth / s->spacing);
   const int64_t lowest = (int64_t)floor(m->cells.lower / s->spacing);
+  double carried = 0.0;
   for (int64_t j = lowest; j < rows; j++)
     for (int64_t i = 0; i < columns; i++) {
       double at[2] = {((double)i + 0.5) * s->spacing, ((double)j + 0.5) * s->spacing};
-      const bool here = site(m, at[0], at[1]);
+      const double part = water_in(m, at);
+      f->cut = f->cut || (part > 0.0 && part < 1.0);
+      carried += part;
       for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * waves_noise(&f->state);
-      if (here && flume_face_distance(m, at) >= clearance(m)) add(f, at);
+      if (carried < 0.5 || flume_is_solid(m, at[0], at[1]) || !keep_clear(m, at)) continue;
+      add(f, at);
+      carried -= 1.0;
     }
 }
 
@@ -86,7 +125,19 @@ static void fill_rock(filling *f, int number) {
     }
 }
 
-mps_status flume_fill(const flume *m, mps_particles *water) {
+/* Particles that steps have brought nearer to a face than a new fluid accepts. */
+mps_status flume_clear_faces(const flume *m) {
+  mps_edit x;
+  mps_status status = mps_particles_edit(m->water, "position", &x);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i < x.view.shape[0]; i++) {
+    double *to[2] = {mps_edit_f64(&x, i, 0), mps_edit_f64(&x, i, 1)}, at[2] = {*to[0], *to[1]};
+    if (keep_clear(m, at)) *to[0] = at[0], *to[1] = at[1];
+  }
+  return mps_particles_commit(m->water, &x);
+}
+
+mps_status flume_fill(const flume *m, mps_particles *water, bool *cut) {
   const double l0 = m->s.spacing;
   const double area = m->outlet * (m->s.depth - m->cells.lower + 2.0 * l0) / (l0 * l0);
   filling f = {.m = m, .room = 2 * (int64_t)area + 1000, .state = (uint64_t)m->s.seed};
@@ -96,5 +147,6 @@ mps_status flume_fill(const flume *m, mps_particles *water) {
   for (int k = 0; k < m->shape.rocks; k++) fill_rock(&f, k);
   const mps_status status = f.full ? MPS_ERROR_MEMORY : mps_particles_append(water, f.count, f.x);
   free(f.x);
+  *cut = f.cut;
   return status;
 }

@@ -199,7 +199,9 @@ bool flume_is_wet(const flume *m, double x, double y);
 /* gauges.c: the default ones, and which lie before and behind structure, rock and zone. */
 void flume_place_gauges(flume *m);
 /* fill.c: particles of the water at rest, appended. */
-mps_status flume_fill(const flume *m, mps_particles *water);
+/* *cut: whether faces cut the lattice. */
+mps_status flume_fill(const flume *m, mps_particles *water, bool *cut);
+mps_status flume_clear_faces(const flume *m);
 
 /* waves.c: the sea, and the pistons that absorb. */
 mps_status flume_make_waves(app *a, flume *m);

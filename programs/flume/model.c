@@ -12,6 +12,9 @@
 
 #define FOLLOWED 30 /* rows: half a period by default */
 
+#define REST_STEPS 300
+#define REST_SPEED 0.05 /* of g dt: the fastest particle of water at rest */
+
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
 static mps_status add_line(const flume *m, int count, const double (*point)[2], bool closed) {
@@ -74,20 +77,47 @@ static mps_status add_boundaries(const flume *m) {
 /* ---- the flume ------------------------------------------------------------------------------- */
 
 static mps_status make_fluid(app *a, flume *m) {
-  const flume_settings *s = &m->s;
-  mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  set.spacing = s->spacing;
   def.domain = a->domain;
-  def.density = WAVES_DENSITY, def.level = s->depth;
-  def.tolerance = s->tolerance;
-  mps_status status = mps_particles_create(a->context, &set, &m->water);
-  if (status == MPS_OK) status = flume_fill(m, m->water);
-  status = app_settle(a, status);
-  if (status == MPS_OK) status = mps_fluid_create(a->context, m->water, &def, &m->fluid);
-  if (status == MPS_OK && !waves_choose_solver(a, s->solver, m->fluid, m->why, sizeof m->why))
+  def.density = WAVES_DENSITY, def.level = m->s.depth;
+  def.tolerance = m->s.tolerance;
+  mps_status status = mps_fluid_create(a->context, m->water, &def, &m->fluid);
+  if (status == MPS_OK && !waves_choose_solver(a, m->s.solver, m->fluid, m->why, sizeof m->why))
     return MPS_ERROR_UNSUPPORTED;
   return status == MPS_OK ? add_boundaries(m) : status;
+}
+
+/* Water that a lattice fills is at rest between walls along its rows and columns. Beside a slope it
+ * falls by a part of a spacing, stops at once, and strikes it with three times the force at rest.
+ * So it comes to rest first, without speed from one step to the next: each step then moves it by at
+ * most g dt^2, a hundredth of a spacing. */
+static mps_status bring_to_rest(app *a, flume *m) {
+  mps_status status = make_fluid(a, m);
+  double fastest = INFINITY;
+  for (int k = 0; status == MPS_OK && k < REST_STEPS && fastest > REST_SPEED; k++) {
+    mps_view v;
+    const double fall = WAVES_G * mps_fluid_dt(m->fluid);
+    status = mps_fluid_step(m->fluid, 1);
+    if (status == MPS_OK) status = mps_particles_view(m->water, "velocity", &v);
+    fastest = 0.0;
+    for (int64_t i = 0; status == MPS_OK && i < v.shape[0]; i++)
+      fastest = fmax(fastest, hypot(*mps_view_f64(&v, i, 0), *mps_view_f64(&v, i, 1)) / fall);
+    for (int c = 0; c < 2 && status == MPS_OK; c++)
+      status = mps_particles_set(m->water, "velocity", c, 0.0);
+  }
+  mps_fluid_destroy(&m->fluid);
+  return status == MPS_OK ? flume_clear_faces(m) : status;
+}
+
+static mps_status make_water(app *a, flume *m) {
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = m->s.spacing;
+  mps_status status = mps_particles_create(a->context, &set, &m->water);
+  bool cut = false;
+  if (status == MPS_OK) status = flume_fill(m, m->water, &cut);
+  status = app_settle(a, status);
+  if (status == MPS_OK && cut && !m->s.restart) status = bring_to_rest(a, m);
+  return status == MPS_OK ? make_fluid(a, m) : status;
 }
 
 /* Room for the water at the largest force and for the frames of the animation. */
@@ -130,7 +160,7 @@ mps_status flume_build(app *a, flume *m) {
                                         {"probe", "Pa", FLUME_PROBES},
                                         {0}};
   mps_status status = flume_make_pistons(a, m);
-  if (status == MPS_OK) status = make_fluid(a, m);
+  if (status == MPS_OK) status = make_water(a, m);
   m->restarted = NAN;
   m->capacity = (int64_t)ceil(m->s.duration / m->s.sample - 1e-9);
   flume_find_rest(m);
