@@ -130,7 +130,7 @@ typedef struct flume {
   const flume_sample *sample; /* of `rows` */
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
-  double offset;            /* m: of the level at the maker's face, which takes it back */
+  double offset;            /* m: mean level at the face of the maker in its middle place */
   double due;               /* part of the next particle that returns, 0 to 1 */
   flume_look look;          /* of the largest force */
   flume_look *frame;        /* of the animation */

@@ -9,18 +9,18 @@
 #include <math.h>
 #include <stdio.h>
 
-#define SLOW 0.2        /* rate at which the mean position of the maker returns, of a period */
+#define MEAN 1.0        /* periods over which the mean level at the maker is taken */
 #define LAST_STEPS 32.0 /* that are equal, and shorter, to end the run at its duration */
 
 /* ---- pistons --------------------------------------------------------------------------------- */
 
 static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double face, double dt,
-                              double *moved) {
-  const double t = mps_fluid_time(m->fluid);
-  double level, u;
-  mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, &level);
-  level -= m->s.depth + m->offset;
-  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level, moved, &u);
+                              double *moved, double *level) {
+  const double t = mps_fluid_time(m->fluid), mean = piston == m->maker ? m->offset : 0.0;
+  double u;
+  mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, level);
+  *level -= m->s.depth;
+  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, *level - mean, moved, &u);
   return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
 }
 
@@ -29,21 +29,22 @@ static double place_of(const mps_absorber *piston) {
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
 }
 
-/* Before a wall the maker would not stay: the mean level of standing waves at its face, which it
- * holds, is some mm above that of the flume, and the slow part of the second order that it is asked
- * for is that of an infinitely long flume. Both change the mean level of a closed one. An offset of
- * the level that it is given, the integral of its displacement, takes it back:
+/* Before a wall the maker would not stay: the mean level of standing waves at its face is some mm
+ * above that of the flume, and the slow part of the second order that it is asked for is that of an
+ * infinitely long flume. Both change the mean level of a closed one. So it is given the level
+ * without its mean b at the face in a flume whose maker stands at X = 0,
  *
- *   X' = s (b - X d/L - ...), b' = -K X,
+ *   b' = (eta - X d/L - b)/T_b,
  *
- * with K = (s d/L)^2/(4 s), and its rate (s K)^1/2 at most SLOW of a period: without oscillations,
- * and slow against the waves. Between two pistons the mean level is theirs. */
-static void return_maker(flume *m, double dt) {
+ * by which slow motions are X' = -(g d)^1/2 X/L. T_b is a period, or the time that long waves
+ * take through the flume, which are still absorbed. Between two pistons the mean level is theirs.
+ */
+static void follow_mean(flume *m, double level, double dt) {
   mps_absorber_report r;
   if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
-  const double s = sqrt(WAVES_G / m->s.depth);
-  const double rate = fmin(0.5 * s * m->s.depth / m->toe, SLOW / m->s.period);
-  m->offset -= rate * rate / s * r.displacement * dt;
+  const double through = m->toe / sqrt(WAVES_G * m->s.depth);
+  const double part = -expm1(-dt / fmax(MEAN * m->s.period, through));
+  m->offset += part * (level - r.displacement * m->s.depth / m->toe - m->offset);
 }
 
 double flume_maker_place(const flume *m) {
@@ -54,11 +55,12 @@ double flume_maker_place(const flume *m) {
 }
 
 /* The maker without absorption moves as it is asked to. */
-static mps_status move_maker(flume *m, double dt) {
+static mps_status move_maker(flume *m, double dt, double *level) {
   const double t = mps_fluid_time(m->fluid) + dt;
   double s, u;
   if (m->maker)
-    return move_piston(m, m->maker, FLUME_MAKER, place_of(m->maker) + 0.5 * m->s.spacing, dt, &s);
+    return move_piston(m, m->maker, FLUME_MAKER, place_of(m->maker) + 0.5 * m->s.spacing, dt, &s,
+                       level);
   const mps_status status = mps_waves_get_piston(m->waves, 1, &t, &s, &u, NULL, NULL);
   return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, FLUME_MAKER, &s, &u) : status;
 }
@@ -76,15 +78,15 @@ static double step_size(const flume *m) {
 
 static mps_status make_step(flume *m) {
   const double dt = step_size(m);
-  double s;
-  mps_status status = move_maker(m, dt);
+  double s, level = 0.0, far;
+  mps_status status = move_maker(m, dt, &level);
   if (status == MPS_OK && m->end)
     status = move_piston(m, m->end, FLUME_END, m->outlet - place_of(m->end) - 0.5 * m->s.spacing,
-                         dt, &s);
+                         dt, &s, &far);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
   if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);
-  if (status == MPS_OK) return_maker(m, dt);
+  if (status == MPS_OK) follow_mean(m, level, dt);
   return status == MPS_OK ? flume_refill(m, dt) : status;
 }
 
