@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MEAN_OF_MAKER 0.02   /* of the height, m */
 #define LEAST_OF_STORM 100.0 /* periods, of a mean discharge */
 
 static bool in_window(const flume_figures *f, double t) {
@@ -170,20 +171,26 @@ static double passed_at(const flume *m, double t) {
   return volume;
 }
 
-/* Means over the window of the level at the gauges before structure, rock or zone, and of the water
- * before the crest. */
-static void find_means(const flume *m, flume_figures *f) {
-  double level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
+/* Means over the window of the level at the gauges before structure, rock or zone, of the water
+ * before the crest, and of the maker, whose way from its place is water that the level lacks. */
+static void find_means(app *a, const flume *m, flume_figures *f) {
+  double maker = 0.0, level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
   const double filled = (double)m->filled * m->s.spacing * m->s.spacing;
   for (int64_t k = 0; k < m->samples; k++) {
     if (!in_window(f, m->sample[k].t)) continue;
     water += m->sample[k].water / filled, samples += 1.0;
+    maker += m->sample[k].maker;
     for (int j = 0; j < m->fronts; j++) {
       const double here = m->sample[k].level[m->front[j]];
       if (!isnan(here)) level += here, levels += 1.0;
     }
   }
   f->mean_level = level / levels;
+  f->mean_maker = maker / samples;
+  if (m->maker && fabs(f->mean_maker) > MEAN_OF_MAKER * m->s.height)
+    app_warn(a,
+             "the maker stood %.3g m from its place in the mean, more than %g of the waves' height",
+             f->mean_maker, MEAN_OF_MAKER);
   if (m->filled > 0) f->water = water / samples;
 }
 
@@ -210,7 +217,7 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
 bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
-  f->mean_level = f->water = NAN;
+  f->mean_level = f->mean_maker = f->water = NAN;
   f->run_up = f->run_up_layer = f->run_up_mean = f->run_up_highest = NAN;
   f->force_mean = f->force_harmonic = f->force_linear = f->force_sainflou = NAN;
   f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
@@ -228,7 +235,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
     return true;
   }
   if (m->gauges >= 2 && !flume_separate(a, m, f)) return false;
-  find_means(m, f);
+  find_means(a, m, f);
   if (flume_is_loaded(m)) find_forces(m, f);
   if (!flume_is_loaded(m) && m->shape.rocks == 0 && m->fronts >= 3) find_loss(m, f);
   flume_find_regular_forces(m, f);

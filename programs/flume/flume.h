@@ -263,6 +263,7 @@ typedef struct flume_figures {
   mps_eurotop_run_up formula;
   bool has_formula;
   double mean_level; /* m above that at rest, of the gauges before */
+  double mean_maker; /* m from its place */
   double water;      /* mean of the water before the crest, over that at the start */
   double loss;       /* of the height, a wave length */
   double bound, bound_stokes, unbound, back, length; /* of regular waves, m the last: harmonics.c */

@@ -199,6 +199,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
                  g->behind.incident_height / g->split.incident_height);
   json_number_if(f, g->passed, "reflection_behind", g->behind.reflection);
   json_number_if(f, there, "mean_level", g->mean_level);
+  json_number_if(f, there, "mean_maker", g->mean_maker);
   json_number(f, "loss_per_wavelength", g->loss);
   json_number_if(f, !isnan(g->bound), "harmonic_bound", g->bound);
   json_number_if(f, !isnan(g->bound), "harmonic_stokes", g->bound_stokes);
