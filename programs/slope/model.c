@@ -73,7 +73,7 @@ static mps_status make_law(simulation *sim) {
     law.residual_friction = atan(tan(s->residual_phi * DEGREE) / factor);
     law.residual_cohesion = s->residual_cohesion / factor;
     law.slip = s->slip;
-    law.band = (s->spline ? 2.4 : 2.0) * s->h;
+    law.band = (s->spline ? 1.5 : 1.4) * s->h;
   }
   mps_status status = mps_material_create_mohr_coulomb(sim->context, &law, &sim->m.material);
   if (status == MPS_OK && s->gradient > 0.0)

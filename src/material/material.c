@@ -131,7 +131,7 @@ bool mpsi_material_keeps_volume(const mps_material *material) {
 }
 
 bool mpsi_material_flows(const mps_material *material) {
-  return (material->type->traits & MPSI_LAW_FLOWS) != 0;
+  return (material->type->traits & MPSI_LAW_FLOWS) != 0 || material->law.frictional;
 }
 
 const double *mpsi_material_stiffness(const mps_material *material, double *const *history) {

@@ -187,6 +187,5 @@ void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
     raise_to_viscous(grid, p, law, k, next, moduli + (k - begin));
   }
   *pores = (mpsi_pore_speeds){0.0, 0.0};
-  if (mpsi_pore_responds(water))
-    *pores = stiffen_by_water(grid, p, water, def, begin, end, moduli);
+  if (mpsi_pore_responds(water)) *pores = stiffen_by_water(grid, p, water, def, begin, end, moduli);
 }

@@ -95,8 +95,7 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     partition->cancel = found[CANCEL] > 0.0;
     mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
   }
-  if (!run->broken)
-    run->speed = found[SPEED], run->flow = found[FLOW], run->wave = found[WAVE];
+  if (!run->broken) run->speed = found[SPEED], run->flow = found[FLOW], run->wave = found[WAVE];
   mpm->bound.fastest = found[FASTEST];
   run->lost = run->lost || (!run->broken && found[LOST] > 0.0);
   if (run->lost) run->stale = true;
