@@ -115,6 +115,7 @@ mps_status slope_build_trial(simulation *sim) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.spline = s->spline + 2;
+  if (!s->runout) def.flip_time = 0.0; /* a trial asks whether the slope rests, not how it flows */
   def.gravity[1] = -s->gravity;
   def.lower[0] = def.lower[1] = 0.0;
   if (s->base > 0.0) def.upper[0] = s->crest + s->slope * s->height + s->toe;
