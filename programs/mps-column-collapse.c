@@ -597,6 +597,7 @@ int main(int argc, char **argv) {
                                  .falls = 8.0,
                                  .ppc = 9,
                                  .spline = 1,
+                                 .flip_time = NAN,
                                  .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/column-collapse"}};
   settings *s = &sim.s;
@@ -627,7 +628,7 @@ int main(int argc, char **argv) {
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
       COMMON_NUMBER("flip-time", &s->flip_time,
-                    "which takes energy out of the flow; try (H0/g)^1/2/10"),
+                    "which takes energy out of the flow; default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->falls,
                     "where the run ends, if the column does not come to rest before"),

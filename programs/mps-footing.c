@@ -25,6 +25,7 @@ int main(int argc, char **argv) {
                                  .density = 1000.0,
                                  .gravity = NAN,
                                  .k = 2e9,
+                                 .flip_time = NAN,
                                  .settlement = NAN,
                                  .section = NAN,
                                  .tolerance = 2e-3,
@@ -78,7 +79,8 @@ int main(int argc, char **argv) {
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
       COMMON_CHOICE("volumetric", &s->volumetric, "for ground that hardly changes its volume"),
-      COMMON_NUMBER("flip-time", &s->flip_time, "and while the ground comes to rest"),
+      COMMON_NUMBER("flip-time", &s->flip_time,
+                    "and while the ground comes to rest; default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
       OPTION_FLAG("quasi-static", &s->settled,
                   "the ground comes to rest after each of 30 parts of the path: less inertia in "

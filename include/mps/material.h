@@ -56,8 +56,8 @@ typedef struct mps_material_von_mises_def {
    *  gamma/slip), gamma the plastic engineering shear strain sqrt(3) plastic_strain. */
   double residual;       /* 0 to 1; default 1: no softening. Below 1 slip and band are needed */
   double slip;           /* m, > 0: relative displacement across a band at exp(-1); no default */
-  double band;           /* m, > 0: width over which the solver spreads a band; WLS-MPM 2.4 cells
-                            with cubic weights, 2.0 with quadratic ones; no default */
+  double band;           /* m, > 0: width over which the solver spreads a band; WLS-MPM 1.5 cells
+                            with cubic weights, 1.4 with quadratic ones; no default */
   double rate_factor;    /* mu >= 0: the strength grows by 1 + mu log10(rate/rate_reference), rate
                             the largest less the smallest principal strain rate; default 0 */
   double rate_reference; /* 1/s, > 0; no increase at smaller rates; default 3e-6 */

@@ -123,10 +123,14 @@ typedef struct mps_mpm_def {
   mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
   double flip_time; /* s, >= 0: in each step a particle keeps exp(-dt/flip_time) of the part of its
                        velocity that the nodes do not represent (its velocity less that of the nodes
-                       before the forces), beside the slopes of the fit. 0 (default): nothing, and
-                       each transfer damps waves of a few cells. Not while mps_mpm_settle runs. A
-                       step takes longer, and angular momentum is conserved to the error of the
-                       transfers, not to round-off */
+                       before the forces), beside the slopes of the fit. 0: nothing, and each
+                       transfer damps waves of a few cells. NaN (default): where some law is von
+                       Mises, Drucker-Prager, Mohr-Coulomb, Cam-Clay or a user's frictional one, 20
+                       times the time h/(c + v) of the fastest particle (explicit pressures of
+                       water that flows do not count in c), so that ground flows alike by any step;
+                       else, and with a variant of mps/experimental/papers.h, 0. Not while
+                       mps_mpm_settle runs. A step takes longer, and angular momentum is conserved
+                       to the error of the transfers, not to round-off */
 } mps_mpm_def;
 
 static inline mps_mpm_def mps_mpm_defaults(void) {

@@ -73,7 +73,7 @@ static mps_status make_law(simulation *sim) {
     law.residual_friction = atan(tan(s->residual_phi * DEGREE) / factor);
     law.residual_cohesion = s->residual_cohesion / factor;
     law.slip = s->slip;
-    law.band = (s->spline ? 2.4 : 2.0) * s->h;
+    law.band = (s->spline ? 1.5 : 1.4) * s->h;
   }
   mps_status status = mps_material_create_mohr_coulomb(sim->context, &law, &sim->m.material);
   if (status == MPS_OK && s->gradient > 0.0)
@@ -115,6 +115,7 @@ mps_status slope_build_trial(simulation *sim) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.spline = s->spline + 2;
+  if (!s->runout) def.flip_time = 0.0; /* a trial asks whether the slope rests, not how it flows */
   def.gravity[1] = -s->gravity;
   def.lower[0] = def.lower[1] = 0.0;
   if (s->base > 0.0) def.upper[0] = s->crest + s->slope * s->height + s->toe;

@@ -28,7 +28,7 @@ static inline bool mpsi_domain_many(const mps_domain *domain) {
 mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_status status);
 /* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. On an
  * error the values are not to be used. */
-#define MPSI_DOMAIN_ALONG 10
+#define MPSI_DOMAIN_ALONG 11
 mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_status status,
                                  int32_t count, double *values);
 /* mpsi_domain_agree_max in two parts, between which ranks may compute and exchange halos, but

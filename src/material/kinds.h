@@ -23,11 +23,11 @@
   X(LINEAR_ELASTIC, linear_elastic_loop, "linear_elastic", mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_IS_LINEAR | MPSI_LAW_BY_FIELD,       mpsi_define_elastic,        NULL)                \
   X(VON_MISES,      von_mises_loop,      "von_mises",      mpsi_metal_columns, MPSI_KEPT_ELASTIC,  \
-    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_von_mises,      NULL)                \
+    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD | MPSI_LAW_FLOWS, mpsi_define_von_mises, NULL)          \
   X(DRUCKER_PRAGER, drucker_prager_loop, "drucker_prager", mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
-    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD,           mpsi_define_drucker_prager, NULL)                \
+    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD | MPSI_LAW_FLOWS, mpsi_define_drucker_prager, NULL)         \
   X(MOHR_COULOMB,   mohr_coulomb_loop,   "mohr_coulomb",   mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
-    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD,           mpsi_define_mohr_coulomb,   NULL)                \
+    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD | MPSI_LAW_FLOWS, mpsi_define_mohr_coulomb, NULL)           \
   X(NEO_HOOKEAN,    neo_hookean_loop,    "neo_hookean",    mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_READS_VOLUME,                        mpsi_define_neo_hookean,    mpsi_neo_hookean_moduli) \
   X(NEWTONIAN,      newtonian_loop,      "newtonian",      mpsi_no_columns, MPSI_KEPT_PRESSURE,    \
@@ -35,7 +35,7 @@
   X(USER,           user_loop,           NULL,             mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_READS_VOLUME | MPSI_LAW_MAY_REFUSE,  mpsi_define_user,           mpsi_user_moduli)    \
   X(CAM_CLAY,       cam_clay_loop,       "cam_clay",       mpsi_clay_columns, MPSI_KEPT_ALL,        \
-    MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)  \
+    MPSI_LAW_HAS_START | MPSI_LAW_FLOWS,          mpsi_define_cam_clay,       mpsi_cam_clay_moduli)  \
   X(SMALL_STRAIN,   small_strain_loop,   "small_strain",   mpsi_small_columns, MPSI_KEPT_UNDISSIPATED, \
     MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_small_strain,   NULL)                \
   X(CYCLIC_SAND,    cyclic_sand_loop,    "cyclic_sand",    mpsi_cyclic_columns, MPSI_KEPT_ELASTIC, \
@@ -56,7 +56,8 @@ typedef enum mpsi_law_trait {
   MPSI_LAW_OPENS = 8,        /* a gap opens between grains */
   MPSI_LAW_HAS_START = 16,   /* history that is not 0 at the start stays, and must fit the stress */
   MPSI_LAW_ISOCHORIC = 32, /* yields without change of volume: locks, and takes a mean (volume.c) */
-  MPSI_LAW_BY_FIELD = 64   /* mps_material_create_by_field scales its constants (by_field.c) */
+  MPSI_LAW_BY_FIELD = 64,  /* mps_material_create_by_field scales its constants (by_field.c) */
+  MPSI_LAW_FLOWS = 128     /* ground or metal that yields without bound, and may be pressed slowly */
 } mpsi_law_trait;
 
 struct mpsi_law;

@@ -130,6 +130,10 @@ bool mpsi_material_keeps_volume(const mps_material *material) {
   return (material->type->traits & yields) != 0 && !(material->law.loosest > 0.0);
 }
 
+bool mpsi_material_flows(const mps_material *material) {
+  return (material->type->traits & MPSI_LAW_FLOWS) != 0 || material->law.frictional;
+}
+
 const double *mpsi_material_stiffness(const mps_material *material, double *const *history) {
   return material->by_field ? history[material->history_count - 2] : NULL;
 }

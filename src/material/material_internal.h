@@ -71,6 +71,9 @@ bool mpsi_material_dilates_without_end(const mps_material *material);
 /* True: a law of the library that yields, of ground or metal, so that V/V0 is near 1 if all is
  * well; not rubber, linear elasticity, fluids, users' laws and sand whose dilation has an end. */
 bool mpsi_material_keeps_volume(const mps_material *material);
+/* True: a law of the library under which a body may flow slowly and for long; not rubber, fluids,
+ * laws of small strains and of cycles, and users' laws. */
+bool mpsi_material_flows(const mps_material *material);
 /* The volumetric strain that suits a law (MPS_MPM_VOLUMETRIC_BY_LAW of mps/mpm.h). */
 typedef enum mpsi_volume {
   MPSI_VOLUME_OWN,     /* each particle's own */

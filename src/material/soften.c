@@ -19,7 +19,7 @@ static mps_status check_length(mps_context *context, const char *function, doubl
   if (isnan(slip) || isnan(band))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "%s is NaN: softening needs slip and band (m), else its work follows the "
-                     "grid. band: 2.4 cells with cubic weights, 2.0 with quadratic ones",
+                     "grid. band: 1.5 cells with cubic weights, 1.4 with quadratic ones",
                      isnan(slip) ? "slip" : "band");
   if (fall * band < shear * slip) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,

@@ -27,7 +27,7 @@
   X(S, INT,     edge,            1, "",     ONE_OF(MPS_MPM_EDGE_, "MIRROR|FIT"),                         0,         SAME) \
   X(S, INT,     reserved,        1, "",     RESERVED,                                                     0,         OWN) \
   X(S, ADDRESS, domain,          1, "",     ANY,                                                          NULL,      OWN) \
-  X(S, REAL,    flip_time,       1, "s",    IN(0, 1e9),                                                   0,         SAME)
+  X(S, REAL,    flip_time,       1, "s",    OR_NAN IN(0, 1e9),                                            UNSET,     SAME)
 
 #define WHOLE_TURN (2.0 * 3.14159265358979323846 * (1.0 + 1e-12))
 #define MPM_RULES(X, S) \

@@ -55,9 +55,21 @@ static inline bool mpsi_stencil_on_border(int32_t stencil, int dim) {
   return stencil >> MPSI_STENCIL_BITS != none;
 }
 
-/* Fraction of the velocity that the nodes do not represent that particles keep in a step of dt. */
-static inline double mpsi_kept_fraction(const mps_mpm_def *def, double dt) {
-  return def->flip_time > 0.0 ? exp(-dt / def->flip_time) : 0.0;
+/* flip_time where it is left open, in times in which a wave crosses a cell (mpsi_wave_time), which
+ * do not depend on the step. Less damps slow flow (a stress of 0.05 rho c v over this
+ * number), more keeps noise of the particles (docs/theory/transfers.md). */
+#define MPSI_FLIP_CELLS 20.0
+
+/* Whether particles keep a part of the velocity that the nodes do not represent. */
+static inline bool mpsi_keeps_velocity(const mps_mpm_def *def, const mpsi_columns *p) {
+  return isnan(def->flip_time) ? p->laws.some_flow : def->flip_time > 0.0;
+}
+
+/* The fraction of it that they keep in a step of dt; `cross`: mpsi_wave_time. */
+static inline double mpsi_kept_fraction(const mps_mpm_def *def, const mpsi_columns *p, double dt,
+                                        double cross) {
+  if (!mpsi_keeps_velocity(def, p)) return 0.0;
+  return exp(-dt / (isnan(def->flip_time) ? MPSI_FLIP_CELLS * cross : def->flip_time));
 }
 
 static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {

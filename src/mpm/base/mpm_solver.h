@@ -52,7 +52,8 @@ double mpsi_mpm_dt(const mps_mpm *mpm);
 
 /* While the ground settles nothing is kept: how it moves until it rests has no meaning. */
 static inline double mpsi_kept_velocity(const mps_mpm *mpm) {
-  return mpm->settling.on ? 0.0 : mpsi_kept_fraction(&mpm->def, mpm->run.dt);
+  return mpm->settling.on ? 0.0 : mpsi_kept_fraction(&mpm->def, &mpm->p, mpm->run.dt,
+                                                      mpsi_wave_time(&mpm->run, mpm->grid.cell));
 }
 
 /* The transfer of a solver, of no block of cells yet. */

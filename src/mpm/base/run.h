@@ -11,7 +11,7 @@
 
 /* What reading the caller's edits changes, and an error restores. */
 typedef struct mpsi_edit_state {
-  double speed, flow;
+  double speed, flow, wave;
   bool edited;
 } mpsi_edit_state;
 
@@ -20,6 +20,7 @@ typedef struct mpsi_run {
   double dt;    /* s, of the step being made, or of the last one */
   double speed; /* largest c + |v| of the particles, m/s */
   double flow;  /* m/s, whose Courant limit is that of the flow of pore water; 0: none */
+  double wave;  /* m/s, largest c without water that flows; 0: there is none, or it is implicit */
   int64_t steps;
   mpsi_guard *guard; /* the solver's */
   bool stale;        /* particles must be sorted before the next step */
@@ -38,6 +39,12 @@ typedef struct mpsi_run {
   bool warned_about_dt;     /* the log has a warning that dt is above the Courant limit */
   bool warned_about_volume; /* and one of a particle that has grown too far */
 } mpsi_run;
+
+/* s: time in which a wave, and the particles that carry it, cross a cell. Of ground whose water
+ * flows it is that of its skeleton: the limit of the flow would depend on `courant`. */
+static inline double mpsi_wave_time(const mpsi_run *run, double cell) {
+  return cell / (run->wave > 0.0 ? run->wave : run->speed);
+}
 
 /* signals.c: whether a signal of a load, boundary or contact can refuse, on all ranks alike; not of
  * bodies. */

@@ -377,7 +377,8 @@ static void damp(const mpsi_boundary_setup *setup, mpsi_free_field *f, const int
 
 static void gather(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
   const mpsi_grid *grid = setup->grid;
-  const double keep = mpsi_kept_fraction(setup->def, setup->run->dt);
+  const double keep = mpsi_kept_fraction(setup->def, setup->p, setup->run->dt,
+                                         mpsi_wave_time(setup->run, grid->cell));
   for (int64_t k = 0; k < f->count; k++) {
     places w;
     if (!place(grid, f, f->y[k], &w)) continue; /* refused in scatter */

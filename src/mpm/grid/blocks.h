@@ -66,6 +66,7 @@ typedef struct mpsi_cell_block {
   double speed;               /* largest c + |v|, m/s */
   double vis_viva;            /* twice the kinetic energy of its particles, J */
   double flow;                /* the same of the flow of pore water (laws.h) */
+  double wave;                /* largest c without that water, m/s; 0: no water flows (laws.h) */
   /* On several ranks (partition.h): */
   bool ghost;      /* block of another rank, without particles here */
   bool late;       /* it is a ghost, or a ghost adds before it */

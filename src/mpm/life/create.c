@@ -211,11 +211,12 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
 /* Largest speed of the initial state; in the set's own order. */
 static mps_status find_speed(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
-  double moduli[MPSI_CHUNK], flow; /* no water yet */
+  double moduli[MPSI_CHUNK];
+  mpsi_pore_speeds none; /* no water yet */
   for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
     const int64_t end = begin + MPSI_CHUNK < p->count ? begin + MPSI_CHUNK : p->count;
     mpsi_mpm_find_moduli(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, begin, end, moduli,
-                         &flow);
+                         &none);
     for (int64_t k = begin; k < end; k++) {
       double square = 0.0;
       for (int c = 0; c < mpm->grid.dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
@@ -600,6 +601,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is MPS_EXPERIMENTAL_TRANSFER_WEIGHT, which a side of kind "
                      "MPS_BOUNDARY_FREE_FIELD does not allow");
+  if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT) mpm->def.flip_time = 0.0; /* not left open */
   mpm->grid.by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
   return MPS_OK;
 }
@@ -630,6 +632,9 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   const mps_status widened =
       mpsi_domain_agree(mpm->def.domain, __func__,
                         mpsi_mpm_widen_sides(mpm->context, &mpm->grid, &mpm->boundaries, __func__));
-  if (widened != MPS_OK) mpm->grid.standard = false, mpm->grid.flip = 0.0;
+  if (widened != MPS_OK)
+    mpm->grid.standard = false, mpm->grid.flip = 0.0;
+  else
+    mpm->def.flip_time = 0.0; /* not left open */
   return widened;
 }

@@ -136,7 +136,7 @@ static mps_status keep(mps_context *context, const mpsi_columns *p, const mpsi_r
 static void restore(mps_mpm *mpm, const kept *before) {
   mpsi_pore_free(mpm);
   mpsi_particles_drop_fields(mpm->p.set, before->fields);
-  mpm->run.speed = before->speed;
+  mpm->run.speed = before->speed, mpm->run.wave = 0.0;
   mpm->p.laws.one_modulus = before->one_modulus;
   for (int f = 0; f < 2; f++)
     if (written(&mpm->p, f))

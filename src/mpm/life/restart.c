@@ -74,6 +74,26 @@ enum { SIZES = 4 };
 
 static int64_t one_row(const void *solver) { return 1; }
 
+/* The speed of waves beside water that flows: one, or none. Files of 1.0 lack it: until the end of
+ * the first step the limit of the flow stands in for it. */
+static int64_t count_wave(const void *run) { return ((const mpsi_run *)run)->wave > 0.0 ? 1 : 0; }
+
+static void get_wave(const void *run, void *values) {
+  if (count_wave(run)) *(double *)values = ((const mpsi_run *)run)->wave;
+}
+
+static void set_wave(void *run, int64_t rows, const void *values) {
+  ((mpsi_run *)run)->wave = rows > 0 ? *(const double *)values : 0.0;
+}
+
+static bool is_wave(const void *run, int64_t rows, const void *values) {
+  const double wave = *(const double *)values;
+  return rows == 1 && wave > 0.0 && isfinite(wave);
+}
+
+static const mpsi_state_table wave_table = {
+    .type = MPSI_STATE_F64, .columns = 1, .rows = count_wave, .get = get_wave, .set = set_wave};
+
 static void get_sizes(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
   int64_t *size = values;
@@ -336,6 +356,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_add_table(s, "sizes", &sizes_table);
   mpsi_state_add_table(s, "blocks", &blocks_table);
   mpsi_state_add_table(s, "dashpots", &dashes_table);
+  mpsi_state_add_optional(s, "wave", &wave_table, is_wave, &mpm->run);
 }
 
 /* ---- checks of a file ------------------------------------------------------------------------ */

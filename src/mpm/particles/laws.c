@@ -142,29 +142,32 @@ static void raise_to_viscous(const mpsi_grid *grid, const mpsi_columns *p, const
 /* Waves go through the water too, unless its pressures are implicit. Where it flows, its pressures
  * have the limit 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that
  * a step takes: cells at a surface, half full, need that. */
-static double stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *pores,
-                               const mps_mpm_def *def, int64_t begin, int64_t end, double *moduli) {
+static mpsi_pore_speeds stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p,
+                                         mpsi_water *pores, const mps_mpm_def *def, int64_t begin,
+                                         int64_t end, double *moduli) {
   const mps_pore_water_def *water = &pores->def;
   const double v = 2.0 * grid->dim * def->courant / 0.3 * grid->inverse *
                    (water->bulk / (water->density * MPS_PORE_GRAVITY));
   const double *n = p->n + begin, *V = p->V + begin, *m = p->m + begin;
-  double most = 0.0;
+  double most = 0.0, square = 0.0;
   if (!p->k) {
     for (int64_t k = 0; k < end - begin; k++) moduli[k] += water->bulk / n[k];
-    return 0.0;
+    return (mpsi_pore_speeds){0.0, 0.0};
   }
   for (int64_t k = 0; k < end - begin; k++) {
     const double inverse = 1.0 / n[k], c = v * inverse * p->k[begin + k];
     const double waves = moduli[k] + water->bulk * inverse, flow = c * c * (m[k] / V[k]);
+    const double dry = moduli[k] * (V[k] / m[k]);
+    square = dry > square ? dry : square;
     moduli[k] = waves > flow ? waves : flow;
     most = c > most ? c : most;
   }
-  return most;
+  return (mpsi_pore_speeds){most, sqrt(square)};
 }
 
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
-                          double *moduli, double *flow) {
+                          double *moduli, mpsi_pore_speeds *pores) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(p->law, k, end);
     const mpsi_law_use *law = mpsi_law_of(p, k);
@@ -183,6 +186,6 @@ void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
     }
     raise_to_viscous(grid, p, law, k, next, moduli + (k - begin));
   }
-  *flow =
-      mpsi_pore_responds(water) ? stiffen_by_water(grid, p, water, def, begin, end, moduli) : 0.0;
+  *pores = (mpsi_pore_speeds){0.0, 0.0};
+  if (mpsi_pore_responds(water)) *pores = stiffen_by_water(grid, p, water, def, begin, end, moduli);
 }

@@ -40,6 +40,7 @@ typedef struct mpsi_laws {
   bool at_once;       /* all laws act within G2P, by each particle's own change of volume */
   bool some_own;      /* some law takes each particle's own change of volume, */
   bool some_filtered; /* its mean stress is filtered */
+  bool some_flow;     /* some law is one of a body that may flow slowly */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
   mpsi_refusal refusal;
@@ -67,10 +68,14 @@ void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, 
 void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
                             const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt; the
- * largest speed (m/s) whose Courant limit is that of the flow of pore water. */
+ * largest speed (m/s) whose Courant limit is that of the flow of pore water, and that of waves
+ * without water that flows; both 0 where none does. */
+typedef struct mpsi_pore_speeds {
+  double flow, wave;
+} mpsi_pore_speeds;
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
-                          double *moduli, double *flow);
+                          double *moduli, mpsi_pore_speeds *pores);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,

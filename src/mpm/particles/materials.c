@@ -91,6 +91,7 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
   p->laws.at_once = at_once;
   p->laws.some_own = p->laws.some_own || law.own_volume;
   p->laws.some_filtered = some_filtered;
+  p->laws.some_flow = p->laws.some_flow || mpsi_material_flows(material);
   p->laws.law[p->laws.count++] = law;
   return MPS_OK;
 }

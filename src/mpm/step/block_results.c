@@ -40,9 +40,10 @@ mps_status mpsi_mpm_report_undone(mps_mpm *mpm, const char *function) {
 }
 
 /* The first bad and the first lost particle of this rank, or -1; its largest speeds (m/s). */
-static void read_blocks(mps_mpm *mpm, int64_t *bad, int64_t *lost, double *speed, double *flow) {
+static void read_blocks(mps_mpm *mpm, int64_t *bad, int64_t *lost, double *speed, double *flow,
+                        double *wave) {
   *bad = *lost = -1;
-  *speed = *flow = 0.0;
+  *speed = *flow = *wave = 0.0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     int64_t *which = cells->lost ? lost : bad;
@@ -50,6 +51,7 @@ static void read_blocks(mps_mpm *mpm, int64_t *bad, int64_t *lost, double *speed
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > *speed) *speed = cells->speed;
     if (cells->flow > *flow) *flow = cells->flow;
+    if (cells->wave > *wave) *wave = cells->wave;
   }
 }
 
@@ -57,12 +59,12 @@ static void read_blocks(mps_mpm *mpm, int64_t *bad, int64_t *lost, double *speed
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   mpsi_partition *partition = mpm->partition;
   mpsi_run *run = &mpm->run;
-  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, FASTEST, FOUND };
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, WAVE, FASTEST, FOUND };
   _Static_assert(FOUND <= MPSI_DOMAIN_ALONG, "values of one message");
   int64_t bad, lost;
-  double speed, flow, most[MPSI_SWEEP_SUMS];
+  double speed, flow, wave, most[MPSI_SWEEP_SUMS];
   mps_status own = MPS_OK, status = MPS_OK;
-  read_blocks(mpm, &bad, &lost, &speed, &flow);
+  read_blocks(mpm, &bad, &lost, &speed, &flow, &wave);
   char what[256];
   if (bad >= 0 || lost >= 0)
     own = report_bad(mpm->context, &mpm->grid, &mpm->p, run, function, bad >= 0 ? bad : lost,
@@ -81,6 +83,7 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
                          most[MPSI_SWEEP_CHANGED],
                          most[MPSI_SWEEP_IMPULSES],
                          flow,
+                         wave,
                          mpsi_bound_fastest(mpm)};
   if (partition)
     status = mpsi_domain_agree_max(partition->domain, function, partition->lost, FOUND, found);
@@ -92,7 +95,7 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     partition->cancel = found[CANCEL] > 0.0;
     mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
   }
-  if (!run->broken) run->speed = found[SPEED], run->flow = found[FLOW];
+  if (!run->broken) run->speed = found[SPEED], run->flow = found[FLOW], run->wave = found[WAVE];
   mpm->bound.fastest = found[FASTEST];
   run->lost = run->lost || (!run->broken && found[LOST] > 0.0);
   if (run->lost) run->stale = true;

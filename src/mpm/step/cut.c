@@ -100,7 +100,8 @@ static bool list_fits(mps_context *context, mpsi_grid *grid) {
  * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
  * masses, as nodes of small mass between two bodies do (node_update.c). */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
-  const bool apart = mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) || mpm->grid.apart;
+  const bool apart =
+      mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->p, &mpm->def) || mpm->grid.apart;
   bool finds = false; /* an absorbing side needs the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     const mpsi_boundary *boundary = &mpm->boundaries.boundary[k];

@@ -40,6 +40,6 @@ void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double d
 
 /* Whether each node needs its velocity before the forces, so that all blocks are split. */
 static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
-                                     const mps_mpm_def *def) {
-  return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
+                                     const mpsi_columns *p, const mps_mpm_def *def) {
+  return energy->counts || settling->on || def->local_damping > 0.0 || mpsi_keeps_velocity(def, p);
 }

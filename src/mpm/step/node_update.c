@@ -112,7 +112,7 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g, copies *scratch) {
 }
 
 static bool damps(const mps_mpm *mpm) {
-  return mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) ||
+  return mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->p, &mpm->def) ||
          mpm->def.viscous_damping > 0.0;
 }
 

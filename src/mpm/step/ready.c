@@ -89,13 +89,14 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
 }
 
 mpsi_edit_state mpsi_mpm_edit_state(const mpsi_run *run) {
-  return (mpsi_edit_state){run->speed, run->flow, run->edited};
+  return (mpsi_edit_state){run->speed, run->flow, run->wave, run->edited};
 }
 
 void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before) {
   if (!before->edited) return;
   run->speed = before->speed;
   run->flow = before->flow;
+  run->wave = before->wave;
   run->edited = true;
 }
 

@@ -166,8 +166,8 @@ static mps_status agree_before_step(step *s) {
 static mps_status find_lists(step *s) {
   mps_mpm *mpm = s->mpm;
   const mpsi_contact_stage stage = mpsi_prescribed_stage_of(mpm);
-  const bool before =
-      mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) || mpm->def.viscous_damping > 0.0;
+  const bool before = mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->p, &mpm->def) ||
+                      mpm->def.viscous_damping > 0.0;
   for (int32_t b = MPSI_SIDES; b < mpm->boundaries.count && predicts(s); b++)
     if (s->status == MPS_OK && mpm->boundaries.boundary[b].ids)
       s->status = mpsi_fail(mpm->context, s->function, MPS_ERROR_UNSUPPORTED,

@@ -412,10 +412,12 @@ MPSI_INLINE void speed_chunk(const mpsi_transfer *work, int dim, int64_t begin, 
     find_speed(work->p, work->def, work->cells, dim, begin, n, NULL);
     return;
   }
-  double moduli[MPSI_CHUNK], flow;
+  double moduli[MPSI_CHUNK];
+  mpsi_pore_speeds pores;
   mpsi_mpm_find_moduli(work->grid, work->p, work->water, work->run, work->def, begin, begin + n,
-                       moduli, &flow);
-  work->cells->flow = fmax(work->cells->flow, flow);
+                       moduli, &pores);
+  work->cells->flow = fmax(work->cells->flow, pores.flow);
+  work->cells->wave = fmax(work->cells->wave, pores.wave);
   find_speed(work->p, work->def, work->cells, dim, begin, n, moduli);
 }
 
@@ -585,7 +587,7 @@ MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
   cells->left = cells->gone = cells->lost = false;
   cells->light = is_light(work->grid, cells);
   cells->bad = -1;
-  cells->speed = cells->flow = cells->vis_viva = 0.0;
+  cells->speed = cells->flow = cells->wave = cells->vis_viva = 0.0;
   gather_tile(work->grid, cells, false, false, worker->tile);
   if (cells->thin) gather_tile(work->grid, cells, true, false, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(work);
@@ -612,7 +614,7 @@ const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)
 void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work) {
   mpsi_cell_block *cells = work->cells;
   if (!cells->lost) cells->bad = -1;
-  cells->speed = cells->flow = cells->vis_viva = 0.0;
+  cells->speed = cells->flow = cells->wave = cells->vis_viva = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     speed_chunk(work, work->grid->dim, k, n);
