@@ -43,7 +43,9 @@ typedef struct settings {
   const char *layers, *record, *out;
   const char *column;                           /* of a record; NULL: the only one */
   int unit, baseline, base, volumetric, spline; /* spline: degree - 2 */
-  double scale, step, frequency, amplitude, cycles;
+  double scale, step, frequency, amplitude;
+  int64_t cycles;
+  double courant;
   double h, highest, flip_time; /* m, Hz, s */
   double sample, duration;      /* s */
   double damping;               /* 1/s, viscous */

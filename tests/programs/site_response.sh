@@ -26,7 +26,7 @@ printf 'thickness=12m density=1800 vs=120\n' >"$work/bare"
 in_range "$work/rigid/summary.json" peak_acceleration 1.045 1.065 # 1/cos(0.1 pi) = 1.0515
 
 # Spectra of 25 cycles of 2 Hz near resonance: 1/sqrt((1 - r^2)^2 + (2 h r)^2), r = T/0.5 s, h = 0.05.
-"$program" --layers "$work/bare" --base rigid --record sine --frequency 2 --cycles 25 --amplitude 0.5 --max-frequency 2 \
+"$program" --layers "$work/bare" --base rigid --record sine --frequency 2 --cycles 25 --acceleration 0.5 --max-frequency 2 \
   --threads 1 --out "$work/sine" >"$work/log" || exit 1
 awk -F, 'NR > 1 && $1 > 0.48 && $1 < 0.51 { r = 2 * $1; exact = 0.5 / sqrt((1 - r * r) ^ 2 + (0.1 * r) ^ 2)
   print "period " $1 ": " $3 " of " exact; count++; if (($3 / exact - 1) ^ 2 > 0.02 ^ 2) wrong = 1 }
@@ -57,17 +57,17 @@ picture "$work/soil.d/loop.png" 700x600
 printf 'thickness=5m density=1.9t/m3 vs=120m/s law=cyclicsand phi=33deg relative-density=40%% k0=0.5\n' |
   sed 's/40%/0.4/' >"$work/sand"
 sand="--layers $work/sand --base rigid --record sine --frequency 2 --cycles 6 --max-frequency 4 --threads 1"
-"$program" $sand --permeability 0.1mm/s --amplitude 1 --loop 2.5 --duration 5 --out "$work/wet" >"$work/log" || exit 1
+"$program" $sand --permeability 0.1mm/s --acceleration 1 --loop 2.5 --duration 5 --out "$work/wet" >"$work/log" || exit 1
 in_range "$work/wet/summary.json" ru 0.95 1.3
 in_range "$work/wet/summary.json" settlement -1e-2 1e-2 # less than k t = 0.5 mm of water can leave: uncertain, and said
 grep -q '"settlement_reason": "liquefied sand' "$work/wet/summary.json" || fail "no word of the settlement of liquefied sand"
-"$program" $sand --undrained --amplitude 0.02 --out "$work/weak" >"$work/log" || exit 1
+"$program" $sand --undrained --acceleration 0.02 --out "$work/weak" >"$work/log" || exit 1
 in_range "$work/weak/summary.json" ru -0.02 0.02
 
 # Undrained ground on two grids.
 printf 'thickness=10m density=2t/m3 vs=200 poisson=0.3\nhalfspace density=2.2t/m3 vs=600\n' >"$work/full"
 for h in 1 0.5; do
-  "$program" --layers "$work/full" --undrained --record sine --amplitude 0.1 --cycles 1 --h $h --duration 1.2 --threads 1 \
+  "$program" --layers "$work/full" --undrained --record sine --acceleration 0.1 --cycles 1 --cell $h --duration 1.2 --threads 1 \
     --out "$work/full.$h" >"$work/log" || exit 1
 done
 peak=$(sed -n 's/.*"peak_acceleration": *\([0-9.e-]*\).*/\1/p' "$work/full.1/summary.json" | head -n 1)
