@@ -12,6 +12,7 @@
  * So loads add up in x, and a load that grows is a sum of short pieces within each of which x grows
  * evenly (of terzaghi one piece is exact). u = q - s'; the settlement is the mean of x over H times
  * 1/M', 1 and lambda/(1 + e0). SPDX-License-Identifier: BSD-3-Clause */
+#include "common/layers.h"
 #include "common/table.h"
 #include "common/units.h"
 #include "consolidation.h"
@@ -94,6 +95,7 @@ static const char *read_layers(simulation *sim) {
                                            {"permeability", "m/s", "m/s", 0.0, 1.0, true},
                                            {"modulus", "Pa", "Pa", 1e3, 1e13, false}},
                                 .count = 3,
+                                .others = LAYERS_OTHERS,
                                 .most = STRATA_MOST};
   static char why[600];
   double rows[3 * STRATA_MOST];

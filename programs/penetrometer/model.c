@@ -61,9 +61,9 @@ const char *pen_check(penetrometer *p, const option *table) {
   double *const sides[] = {&s->width, &s->breadth, &s->height};
   if (s->soil && !options_lengths(s->soil, "m", 3, sides))
     return "--soil must be three lengths in m, WxWxH, such as 0.6x0.6x0.4";
-  if (fmin(s->width, s->breadth) < 2.0 * radius_below(s) + 8.0 * s->h)
+  if (fmin(s->width, s->breadth) < 2.0 * radius_below(s) + (8.0 - 1e-9) * s->h)
     return "--soil must be at least 8 cells of --cell wider than what is pushed in";
-  if (s->depth > s->height - 4.0 * s->h)
+  if (s->depth > s->height - (4.0 - 1e-9) * s->h)
     return "--depth must end 4 cells of --cell above the bottom of the soil";
   const double cells = s->width * s->breadth * s->height / (s->h * s->h * s->h);
   const char *large = mpm_model_too_large(cells * (double)s->ppc);

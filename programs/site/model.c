@@ -84,8 +84,8 @@ static mps_status make_laws(mps_context *context, simulation *sim) {
     status = site_make_law(context, &sim->ground.layer[i], &sim->law[i]);
     if (status == MPS_OK) status = site_make_law(context, &elastic, &sim->elastic[i]);
     if (status != MPS_OK)
-      site_refuse(&sim->m, "%.150s:%lld: %.200s", sim->s.layers,
-                  (long long)sim->ground.layer[i].line, mps_context_error(context)->message);
+      site_refuse(&sim->m, "%.150s:%lld: %.200s", sim->s.layers, (long long)i + 1,
+                  mps_context_error(context)->message);
   }
   if (status == MPS_OK) { /* of the model, which destroys it */
     sim->m.material = sim->elastic[0];
@@ -208,9 +208,9 @@ static bool choose_cells(simulation *sim) {
   for (int64_t i = 0; i < g->count - g->has_half_space; i++)
     if (g->layer[i].thickness < h * (1.0 - 1e-9))
       return site_refuse(&sim->m,
-                         "%s:%lld: thickness is %g m, must be at least a cell, %g m: give a "
+                         "%s: layer %lld: thickness is %g m, must be at least a cell, %g m: give a "
                          "smaller --cell",
-                         s->layers, (long long)g->layer[i].line, g->layer[i].thickness, h);
+                         s->layers, (long long)i + 1, g->layer[i].thickness, h);
   sim->cell = h;
   sim->spacing = 0.5 * h;
   sim->below = s->base == SITE_COMPLIANT ? SITE_CELLS * h : 0.0;

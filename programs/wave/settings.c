@@ -113,7 +113,8 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("f1", &s->f1, NULL),
       OPTION_NUMBER("f2", &s->f2, NULL),
       OPTION_TEXT("layers", &s->layers_file,
-                  "thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio"),
+                  "thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3 or density_kg_m3, damping_ratio; "
+                  "a last one of thickness inf is the half space"),
       OPTION_NUMBERS("incline", 3, s->slope, NULL),
       OPTION_HEADING("Input motion"),
       OPTION_CHOICE("wave", &s->wave, NULL),
@@ -198,7 +199,11 @@ bool settings_ground(app *a, settings *s) {
                        "must agree within %g m",
                        s->layers_file, sum, s->height, 0.5 * s->spacing);
   }
-  const layer *lowest = &g->layer[g->count - 1];
+  const bool half_space = g->below.thickness > 0.0;
+  if (half_space && s->base == BASE_RIGID)
+    return app_error(a, "%s: a half space, of thickness inf, which --base rigid does not have",
+                     s->layers_file);
+  const layer *lowest = half_space ? &g->below : &g->layer[g->count - 1];
   if (isnan(s->half_space.vs)) s->half_space.vs = lowest->vs;
   if (isnan(s->half_space.vp)) s->half_space.vp = lowest->vp;
   if (isnan(s->half_space.unit_weight)) s->half_space.unit_weight = lowest->unit_weight;

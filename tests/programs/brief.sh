@@ -23,7 +23,7 @@ run mps-consolidation --cell 0.3333333333 --water-stiffness 10 --times 0.01
 run mps-consolidation --case mandel --cell 0.3333333333 --water-stiffness 10 --times 0.001
 run mps-slope --cell 2 --factor 1.5 --falls 0.5
 run mps-slope --runout --cell 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
-printf 'thickness=4m density=1.9t/m3 vs=100 law=cyclicsand phi=33deg relative-density=0.5\nhalfspace density=2t/m3 vs=300\n' \
+printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density\n4, 1900, 100, cyclicsand, 33, 0.5\ninf, 2000, 300\n' \
   >"$work/layers"
 run mps-site-response --layers "$work/layers" --undrained --max-frequency 5 --duration 0.1
 run mps-site-response --layers "$work/layers" --max-frequency 5 --duration 0.2 --loop 2

@@ -56,9 +56,9 @@ with dt_linear mps-stability --spacing 3.2 --integrator verlet
 without dt_table2 "Vp = 2 Vs" mps-stability --spacing 3.2 --vs 100 --vp 300 --damping 0.05
 
 # Layers: undamped on a rigid base, a record cut short, large strains, a law that is not elastic.
-printf 'thickness=12m density=1800 vs=120\n' >"$work/bare"
-printf 'thickness=12m density=1800 vs=120\nhalfspace density=1800 vs=480\n' >"$work/half"
-printf 'thickness=12m density=1800 vs=120 law=smallstrain reference-strain=1e-3\nhalfspace density=1800 vs=480\n' >"$work/soil"
+printf 'thickness_m, density_kg_m3, vs_m_s\n12, 1800, 120\n' >"$work/bare"
+printf 'thickness_m, density_kg_m3, vs_m_s\n12, 1800, 120\ninf, 1800, 480\n' >"$work/half"
+printf 'thickness_m, density_kg_m3, vs_m_s, law, reference_strain\n12, 1800, 120, smallstrain, 0.001\ninf, 1800, 480\n' >"$work/soil"
 site="mps-site-response --frequency 3 --max-frequency 5"
 without "amplification_exact amplification_error" "rigid base" $site --layers "$work/bare" --base rigid --duration 2
 without "amplification_exact amplification_error" "still moves" $site --layers "$work/half" --duration 1

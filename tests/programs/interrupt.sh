@@ -67,7 +67,7 @@ interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
 interrupt slope 1 mps-slope --cell 0.5
 wrote slope motion.csv particles.csv summary.json
-printf 'thickness=20m density=1900 vs=150\n' >"$work/layers"
+printf 'thickness_m, density_kg_m3, vs_m_s\n20, 1900, 150\n' >"$work/layers"
 interrupt site 1 mps-site-response --layers "$work/layers" --base rigid --duration 1000
 wrote site surface.csv spectrum.csv amplification.csv profile.csv summary.json
 interrupt wall 1 mps-wall --pressure passive

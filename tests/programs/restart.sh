@@ -29,7 +29,7 @@ again mps-consolidation 0.7 --cell 0.2 --water-stiffness 10 --case mcc --scheme 
   --times 0.03,0.1
 again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5
 again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5 --water-level 0 --drawdown 8
-printf 'thickness=4m density=1.9t/m3 vs=100 law=cyclicsand phi=33deg relative-density=0.4\nhalfspace density=2t/m3 vs=300\n' \
+printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density\n4, 1900, 100, cyclicsand, 33, 0.4\ninf, 2000, 300\n' \
   >"$work/layers"
 again mps-site-response 0.7 --layers "$work/layers" --permeability 1e-4 --frequency 4 --max-frequency 5 --loop 2 --duration 1
 again mps-wall 0.05 --cell 0.2 --below-toe 0.4 --travel 2mm --friction 0.3

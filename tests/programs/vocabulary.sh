@@ -10,7 +10,7 @@ sort -uf "$work/table" | cmp -s - "$work/table" || fail "the table is not in the
 printf '%s\n' help version json | LC_ALL=C sort - "$work/table" >"$work/known"
 
 # In texts, "--name", and in lists that are looked up, options_given(table, "name").
-find "$1" -name '*.[ch]' ! -name 'vocabulary.*' ! -name 'options.[ch]' -exec cat {} + >"$work/sources"
+find "$1" -name '*.[ch]' ! -name 'vocabulary.*' ! -path '*/common/options.[ch]' -exec cat {} + >"$work/sources"
 sed 's/\\n/ /g' "$work/sources" | grep -oE '"([^"\\]|\\.)*"' | grep -oE '(^|[^a-zA-Z0-9-])--[a-zA-Z][a-zA-Z0-9-]*' |
   sed 's/.*--//' | LC_ALL=C sort -u | LC_ALL=C comm -23 - "$work/known" >"$work/unknown"
 grep -oE 'options_given\([a-z>()-]+, "[^"]*"' "$work/sources" | sed 's/.*"\(.*\)"/\1/' | LC_ALL=C sort -u |
