@@ -63,8 +63,7 @@ static int parse(settings *s, int argc, char **argv) {
       ELASTIC_METHOD(&s->method),
       OPTION_HEADING("Running"),
       OPTION_FLAG("convergence", &s->convergence, NULL),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-cantilever", purpose, table};
   const int code = options_parse(&program, argc, argv);

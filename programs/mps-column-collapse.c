@@ -561,8 +561,9 @@ static int complete(const options_program *program, simulation *sim) {
     return options_refuse(program, "--sweep and --aspect exclude each other");
   if (s->phi == 0.0 && s->cohesion == 0.0)
     return options_refuse(program, "--phi and --cohesion must not both be 0");
-  if (fabs(s->width / s->h - nearbyint(s->width / s->h)) > 1e-6 || s->width < 3.5 * s->h)
-    return options_refuse(program, "--width must be a whole number of cells --cell, at least 4");
+  options_whole("width", &s->width, "--cell", s->h);
+  if (s->width < 3.5 * s->h)
+    return options_refuse(program, "--cell must be at most a quarter of --width");
   const double weight = s->density * G * s->aspect * s->width;
   const char *large = mpm_model_too_large(s->aspect * pow(s->width / s->h, 2.0) * (double)s->ppc);
   if (large) return options_refuse(program, large);
@@ -613,8 +614,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Soil (Drucker-Prager)"),
       OPTION_NUMBER("phi", &s->phi, NULL),
       OPTION_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
-      SAND_E0_OPTION(&s->voids),
-      SAND_E_MAX_OPTION(&s->voids),
+      SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE("cone", &s->cone, NULL),
       OPTION_NUMBER("young", &s->young, NULL),
@@ -623,17 +623,13 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Bed"),
       OPTION_NUMBER("friction", &s->bed_friction, "of the bed (default: soil sticks to it)"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("cell", &s->h, "default width/20"),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_NUMBER("courant", &s->courant, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
+      MPM_MODEL_GRID(s, "default width/20"),
       OPTION_NUMBER("flip-time", &s->flip_time,
                     "which takes energy out of the flow; try (H0/g)^1/2/10"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("falls", &s->falls, "if the column does not come to rest before"),
       MPM_COURSE_OPTIONS(&s->course, SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-column-collapse",

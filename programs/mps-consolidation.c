@@ -64,8 +64,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("mass-damping", &s->damping, "default half a wave velocity over H; strip none"),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, MOST_TIMES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-consolidation",
                                    "Saturated elastic ground by WLS-MPM with the pressures of "

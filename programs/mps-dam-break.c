@@ -511,8 +511,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a fifth of the run",
                      &s->restart),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-dam-break",
                                    "A column of water collapses on a dry bed, by WLS-MPM (weakly "

@@ -93,8 +93,7 @@ int main(int argc, char **argv) {
                   "in a cylinder with the section of --soil, in place of space"),
       OPTION_FLAG("also-axisymmetric", &s->both, NULL),
       MPM_COURSE_OPTIONS(&s->course, 200),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-penetrometer",

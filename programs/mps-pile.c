@@ -50,8 +50,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("poisson", &s->poisson, NULL),
       OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 60.0), &s->phi, NULL),
       OPTION_NUMBER("psi", &s->psi, NULL),
-      SAND_E0_OPTION(&s->voids),
-      SAND_E_MAX_OPTION(&s->voids),
+      SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE_OF("cone", "inscribed|circumscribed|planestrain", &s->cone,
                        "inscribed: Nakamura (56)"),
@@ -68,8 +67,7 @@ int main(int argc, char **argv) {
                         "at equal steps of depth; as many tables, and up to 4 in pictures"),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a tenth of the run",
                      &s->restart),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-pile",

@@ -64,8 +64,7 @@ static int parse(settings *s, int argc, char **argv) {
                     ELASTIC_MATERIAL(&s->method),
                     ELASTIC_METHOD(&s->method),
                     OPTION_HEADING("Running"),
-                    OPTION_THREADS(&s->threads),
-                    OPTION_OUT(&s->out),
+                    OPTIONS_OF_ALL(s),
                     {0}};
   const options_program program = {"mps-plate", purpose, table};
   const int code = options_parse(&program, argc, argv);

@@ -70,8 +70,7 @@ static int parse(settings *s, int argc, char **argv) {
                     OPTION_NUMBER("dt", &s->flap.dt, "at most; preCICE may ask for shorter ones"),
                     OPTION_HEADING("Running"),
                     OPTION_INTEGER("frames", &s->frames, NULL),
-                    OPTION_THREADS(&s->threads),
-                    OPTION_OUT(&s->out),
+                    OPTIONS_OF_ALL(s),
                     {0}};
   const options_program program = {"mps-precice", purpose, table};
   const int code = options_parse(&program, argc, argv);
@@ -80,8 +79,8 @@ static int parse(settings *s, int argc, char **argv) {
   s->coupling.velocity = velocity;
   s->coupling.force = s->reads == 0 ? data : NULL;
   s->coupling.stress = s->reads == 1 ? data : NULL;
-  s->flap.width = fmax(1.0, round(s->flap.width / s->flap.spacing)) * s->flap.spacing;
-  s->flap.height = fmax(1.0, round(s->flap.height / s->flap.spacing)) * s->flap.spacing;
+  options_whole("width", &s->flap.width, "--spacing", s->flap.spacing);
+  options_whole("height", &s->flap.height, "--spacing", s->flap.spacing);
   if (!(s->flap.width / s->flap.spacing * (s->flap.height / s->flap.spacing) <= 4e6))
     return options_refuse(&program,
                           "--width and --height hold more than 4 million particles of --spacing");

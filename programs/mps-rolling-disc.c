@@ -373,8 +373,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
                        "x_error_05 is that at its end"),
       MPM_COURSE_OPTIONS(&s->course, SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-rolling-disc",

@@ -7,17 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_whole(double length, double spacing) {
-  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
-}
-
-static const char *check(const seawall_settings *s) {
-  if (!is_whole(s->length, s->spacing)) return "--length must be a whole number of --spacing";
-  if (!is_whole(s->depth, s->spacing)) return "--depth must be a whole number of --spacing";
-  if (!is_whole(s->wall_thickness, s->spacing))
-    return "--wall-thickness must be a whole number of --spacing";
-  if (!is_whole(s->wall_height, s->spacing))
-    return "--wall-height must be a whole number of --spacing";
+static const char *check(seawall_settings *s) {
+  options_whole("length", &s->length, "--spacing", s->spacing);
+  options_whole("depth", &s->depth, "--spacing", s->spacing);
+  options_whole("wall-thickness", &s->wall_thickness, "--spacing", s->spacing);
+  options_whole("wall-height", &s->wall_height, "--spacing", s->spacing);
   if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9))
     return "--depth must be at least 5 times --spacing";
   if (s->length < 10.0 * s->spacing) return "--length must be at least 10 times --spacing";
@@ -123,8 +117,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("sample", &s->sample, "then the wall is solved too"),
       OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 10000.0), &s->frames, "and of the animation"),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-seawall",

@@ -76,8 +76,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("sample", &s->sample, NULL),
       OPTION_NUMBER("loop", &s->loop, NULL),
       MPM_COURSE_OPTIONS(&s->course, SITE_SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-site-response",

@@ -299,8 +299,7 @@ int main(int argc, char **argv) {
                     OPTION_NUMBER("turn", &s->turn, NULL),
                     OPTION_HEADING("Run"),
                     MPM_COURSE_OPTIONS(&s->course, SAMPLES),
-                    OPTION_OUT(&s->out),
-                    OPTION_THREADS(&s->threads),
+                    OPTIONS_OF_ALL(s),
                     {0}};
   const options_program program = {
       "mps-sliding-box",

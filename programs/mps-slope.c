@@ -17,7 +17,10 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->h)) s->h = s->height / 20.0;
   if (s->base > 0.0) {
     const double end = s->crest + s->slope * s->height + s->toe;
-    s->toe += s->h * ceil(end / s->h - 1e-9) - end;
+    const double more = s->h * ceil(end / s->h - 1e-9) - end;
+    if (options_given(table, "toe") && more > 1e-6 * s->h)
+      options_note("--toe is %.6g m, taken as %.6g m: whole cells", s->toe, s->toe + more);
+    s->toe += more;
   }
   if (isnan(s->falls)) s->falls = s->runout ? 30.0 : 10.0;
   if (isnan(s->residual_phi)) s->residual_phi = s->phi;
@@ -93,8 +96,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       OPTION_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
-      SAND_E0_OPTION(&s->voids),
-      SAND_E_MAX_OPTION(&s->voids),
+      SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
       OPTION_NUMBER("strength-gradient", &s->gradient, "below the crest's level"),
       OPTION_NUMBER("young", &s->young, NULL),
@@ -118,14 +120,10 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("residual-cohesion", &s->residual_cohesion, NULL),
       OPTION_NUMBER("slip", &s->slip, "default 0.01 H"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("cell", &s->h, "default height/20"),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_NUMBER("courant", &s->courant, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
+      MPM_MODEL_GRID(s, "default height/20"),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, SLOPE_SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-slope",

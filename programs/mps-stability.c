@@ -75,8 +75,7 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_CHOICE("rotation", &m->rotation, NULL),
       OPTION_CHOICE("torque", &m->torque, NULL),
       OPTION_HEADING("Running and results"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-stability", purpose, table};
   const int code = options_parse(&program, argc, argv);

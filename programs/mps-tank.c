@@ -9,8 +9,21 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_whole(double length, double spacing) {
-  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
+/* The water fills the tank, and is in contact with the box in its middle. */
+static void round_sizes(tank_settings *s) {
+  const double h = s->spacing;
+  const bool plate = s->kind == TANK_PLATE;
+  options_whole(plate ? "plate-length" : "length", &s->length, "--spacing", h);
+  options_whole("depth", &s->depth, "--spacing", h);
+  if (plate) s->plate_length = s->length;
+  if (s->kind != TANK_FLOAT) return;
+  options_whole("draft", &s->draft, "--spacing", h);
+  double gaps = s->length - s->width; /* two equal ones */
+  const double given = s->width, pair = fmax(nearbyint(gaps / (2.0 * h)), 0.0);
+  if (fabs(gaps - 2.0 * h * pair) <= 1e-5 * h) return;
+  s->width = s->length - 2.0 * h * pair;
+  options_note("--width is %.6g m, taken as %.6g m: whole spacings beside the box", given,
+               s->width);
 }
 
 /* Defaults that depend on the case. Returns -1, or an exit code. */
@@ -31,6 +44,7 @@ static int complete(const options_program *program, tank_settings *s) {
                  : kind == TANK_PLATE     ? 0.05
                  : kind == TANK_RESONANCE ? 0.015
                                           : 0.02;
+  if (kind != TANK_DROP) round_sizes(s);
   if (isnan(s->duration)) s->duration = usual[kind].duration;
   if (isnan(s->dt)) s->dt = kind == TANK_DROP ? 0.05 * s->spacing / s->depth : usual[kind].dt;
   if (isnan(s->sample))
@@ -56,12 +70,6 @@ static int complete(const options_program *program, tank_settings *s) {
     return options_refuse(program, "--length must be at least 5 times --spacing");
   if (s->kind != TANK_DROP && s->length / s->spacing * s->depth / s->spacing > 2e6)
     return options_refuse(program, "--spacing gives more than 2 million particles");
-  if (kind != TANK_DROP && !(is_whole(s->length, s->spacing) && is_whole(s->depth, s->spacing)))
-    return options_refuse(program, kind == TANK_PLATE
-                                       ? "--plate-length and --depth must be whole numbers of "
-                                         "--spacing: else the water does not fill the tank"
-                                       : "--length and --depth must be whole numbers of --spacing: "
-                                         "else the water does not fill the tank");
   if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
     return options_refuse(program, "--amplitude must be at most a quarter of the length");
   for (int k = 0; k < TANK_GAUGES && kind != TANK_DROP; k++)
@@ -72,9 +80,6 @@ static int complete(const options_program *program, tank_settings *s) {
     if (!(gap > 4.999 * h && s->draft > 1.999 * h && s->depth - s->draft > 4.999 * h))
       return options_refuse(program, "--width and --draft must leave at least 5 spacings of water "
                                      "beside and below the box, and --draft be at least 2");
-    if (!(is_whole(s->width, h) && is_whole(s->draft, h) && is_whole(gap, h)))
-      return options_refuse(program, "--width, --draft and the gaps beside the box must be whole "
-                                     "numbers of --spacing: else the water does not touch it");
     if (4.0 * fabs(s->amplitude) > s->draft)
       return options_refuse(program, "--amplitude must be at most a quarter of --draft");
     if (s->scheme == 1) return options_refuse(program, "--method classical has no bodies");
@@ -230,8 +235,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("density-at", &s->density_at, NULL),
       OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-tank",
                                    "Water in a tank by moving particles (MPS), against theory: "

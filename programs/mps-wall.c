@@ -18,7 +18,9 @@ static const char *settle(settings *s, const option *table) {
     s->sheet = active && s->motion != TURNS_ABOUT_TOE && s->base >= 4.0 * s->h * (1.0 - 1e-9)
                    ? 2.0 * s->h
                    : 0.0;
-  s->length = s->h * ceil(s->length / s->h - 1e-9);
+  if (!options_given(table, "length")) s->length = s->h * ceil(s->length / s->h - 1e-9);
+  options_whole("length", &s->length, "--cell", s->h);
+  if (s->sheet > 0.0) options_whole("sheet", &s->sheet, "--cell", s->h);
   s->front = s->h * ceil(s->height / s->h - 1e-9);
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -28,8 +30,6 @@ static const char *settle(settings *s, const option *table) {
     return "--below-toe must be 0 or at least 2 cells of --cell";
   if (s->sheet > 0.0 && s->base < s->sheet + 2.0 * s->h * (1.0 - 1e-9))
     return "--below-toe must be at least 2 cells of --cell more than --sheet";
-  if (fabs(s->sheet / s->h - nearbyint(s->sheet / s->h)) > 1e-6)
-    return "--sheet must be whole cells of --cell";
   if (s->length < s->height) return "--length must be at least --height";
   if (s->path > 0.2 * s->height) return "--travel must be at most a fifth of --height";
   const char *why = wall_settle_ground(s, table);
@@ -83,8 +83,7 @@ int main(int argc, char **argv) {
                     "of the ground behind the wall; default 2.5 heights, passive 5"),
       OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       OPTION_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
-      SAND_E0_OPTION(&s->voids),
-      SAND_E_MAX_OPTION(&s->voids),
+      SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_NUMBER("k0", &s->k0, "default 1 - sin(phi)"),
       OPTION_NUMBER("young", &s->young, NULL),
@@ -92,15 +91,11 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("density", &s->density, NULL),
       OPTION_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("cell", &s->h, "default height/16"),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_NUMBER("courant", &s->courant, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
+      MPM_MODEL_GRID(s, "default height/16"),
       OPTION_NUMBER("flip-time", &s->flip_time, NULL),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, WALL_SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-wall",

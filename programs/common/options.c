@@ -104,30 +104,30 @@ static const char *choice_word(const char *choices, int index, int *length) {
   return choices;
 }
 
-static void describe_default(const option *o, char *out, size_t size) {
+/* The value of all but numbers and flags; false where there is none. */
+static bool plain_value(const option *o, char *out, size_t size) {
+  int length = 0;
   out[0] = '\0';
-  if (o->number && o->count < 2 && isfinite(*o->number)) {
-    char value[48];
-    units_show(*o->number, o->unit, value, sizeof value);
-    snprintf(out, size, "; default %s", value);
-  }
-  if (o->integer)
-    snprintf(out, size, "; default %lld", (long long)*o->integer);
-  else if (o->text && *o->text)
-    snprintf(out, size, "default %s", *o->text);
-  else if (o->choice) {
-    int length;
-    const char *word = choice_word(o->unit, *o->choice, &length);
-    snprintf(out, size, "default %.*s", length, word);
-  }
+  if (o->integer) snprintf(out, size, "%lld", (long long)*o->integer);
+  if (o->text && *o->text) snprintf(out, size, "%s", *o->text);
+  const char *word = o->choice ? choice_word(o->unit, *o->choice, &length) : "";
+  if (o->choice) snprintf(out, size, "%.*s", length, word);
+  return out[0] != '\0';
+}
+
+/* The value as a reader likes it; false where there is none. */
+static bool shown_value(const option *o, char *out, size_t size) {
+  const bool number = o->number && o->count < 2 && isfinite(*o->number);
+  if (number) units_show(*o->number, o->unit, out, size);
+  return number || plain_value(o, out, size);
 }
 
 static void print_option(const option *o) {
   int at = printf("  --%s", o->name);
   if (o->unit) at += printf(" %s%s%s", o->number ? "[" : "", o->unit, o->number ? "]" : "");
-  char range[64] = "", standard[64], help[600], text[800];
+  char range[64] = "", standard[160], help[600], text[900];
   if (o->number || o->integer) describe_range(o, range, sizeof range);
-  describe_default(o, standard, sizeof standard);
+  const bool any = shown_value(o, standard, sizeof standard);
   const char *note = o->note, *join = ", ";
   if (!note)
     join = "";
@@ -136,8 +136,9 @@ static void print_option(const option *o) {
   else if (strncmp(note, "default", 7) == 0 || strchr(note, ':'))
     join = "; ";
   snprintf(help, sizeof help, "%s%s%s", o->help, join, o->note ? o->note : "");
-  if (range[0] || standard[0])
-    snprintf(text, sizeof text, "%s (%s%s)", help, range, standard);
+  if (range[0] || any)
+    snprintf(text, sizeof text, "%s (%s%s%s%s)", help, range, range[0] && any ? "; " : "",
+             any ? "default " : "", standard);
   else
     snprintf(text, sizeof text, "%s", help);
   print_wrapped(text, at);
@@ -202,10 +203,9 @@ static int farthest(const char *name) { return (int)strlen(name) / 3; }
 static int refuse_unknown(const options_program *program, const char *name) {
   const char *nearest = NULL;
   int least = MAX_NAME;
-  const vocabulary_other *other = vocabulary_find_other(program->table, name);
-  if (other) {
-    complain("%s: %s%s is %s%s%s", place(program), dashes(), name, dashes(), other->now,
-             other->value ? other->value : "");
+  char other[120];
+  if (vocabulary_find_other(program->table, name, other, sizeof other)) {
+    complain("%s: %s%s is %s%s", place(program), dashes(), name, dashes(), other);
     return USAGE;
   }
   for (const option *o = program->table; o->name || o->help; o++) {
@@ -394,6 +394,14 @@ double options_divide(const char *name, double *part, const char *of, double who
   return count;
 }
 
+void options_whole(const char *name, double *length, const char *of, double part) {
+  const double count = fmax(nearbyint(*length / part), 1.0), given = *length;
+  if (fabs(given / part - count) <= 1e-5 * (1.0 + count)) return;
+  *length = count * part;
+  options_note("--%s is %.6g m, taken as %.6g m: a whole multiple of %s, %.6g m", name, given,
+               *length, of, part);
+}
+
 /* A word that belongs to no option; one that is the unit of the number before it is put there. */
 static int refuse_word(const options_program *program, int i, char **argv) {
   const char *word = argv[i], *equals = i > 1 ? strchr(argv[i - 1], '=') : NULL;
@@ -503,20 +511,12 @@ bool options_given(const option *table, const char *name) {
   return false;
 }
 
-/* " is 0.43 m by default"; false where the option has no value. */
+/* "--cell is 0.43 m by default"; false where the option has no value. */
 static bool show_value(const option *o, char *out, size_t size) {
-  char value[160] = "";
-  int length;
-  if (o->number && o->count < 2 && !isnan(*o->number))
-    units_show(*o->number, o->unit, value, sizeof value);
-  if (o->integer) snprintf(value, sizeof value, "%lld", (long long)*o->integer);
-  if (o->text && *o->text) snprintf(value, sizeof value, "%s", *o->text);
-  if (o->choice) {
-    const char *word = choice_word(o->unit, *o->choice, &length);
-    snprintf(value, sizeof value, "%.*s", length, word);
-  }
+  char value[160];
+  const bool any = shown_value(o, value, sizeof value);
   snprintf(out, size, "--%s is %s%s", o->name, value, o->given ? "" : " by default");
-  return value[0] != '\0';
+  return any;
 }
 
 /* The options that `text` names, each once, with their values; "" where all of them are on the
@@ -568,24 +568,22 @@ bool options_free(const char *name) {
   return false;
 }
 
+/* The shortest text that reads back, of 6 digits at least. */
+static void exact_number(double value, char text[32]) {
+  for (int digits = 6; digits <= 17; digits++) {
+    snprintf(text, 32, "%.*g", digits, value);
+    if (strtod(text, NULL) == value) break;
+  }
+}
+
 /* The value as it would be typed; "not given" where there is none. */
 static void describe_value(const option *o, char *out, size_t size) {
   size_t used = 0;
-  out[0] = '\0';
-  if (o->flag) snprintf(out, size, "%s", *o->flag ? "given" : "not given");
-  if (o->integer) snprintf(out, size, "%lld", (long long)*o->integer);
-  if (o->text) snprintf(out, size, "%s", *o->text ? *o->text : "not given");
-  if (o->choice) {
-    int length;
-    const char *word = choice_word(o->unit, *o->choice, &length);
-    snprintf(out, size, "%.*s", length, word);
-  }
+  const bool none = !plain_value(o, out, size) && !(o->flag && *o->flag);
+  if (!out[0]) snprintf(out, size, none ? "not given" : "given");
   for (int i = 0; o->number && i < (o->count > 1 ? o->count : 1) && used < size; i++) {
     char text[32] = "not given";
-    for (int digits = 6; digits <= 17 && !isnan(o->number[i]); digits++) {
-      snprintf(text, sizeof text, "%.*g", digits, o->number[i]);
-      if (strtod(text, NULL) == o->number[i]) break;
-    }
+    if (!isnan(o->number[i])) exact_number(o->number[i], text);
     used += (size_t)snprintf(out + used, size - used, "%s%s", i ? "," : "", text);
   }
 }
@@ -643,23 +641,15 @@ static void json_string(const char *text, size_t length, char *out, size_t size)
 
 void options_json(const option *o, char *out, size_t size) {
   size_t used = 0;
-  int length = 0;
-  snprintf(out, size, "null");
-  if (o->flag) snprintf(out, size, "%s", *o->flag ? "true" : "false");
-  if (o->integer) snprintf(out, size, "%lld", (long long)*o->integer);
-  if (o->text && *o->text) json_string(*o->text, strlen(*o->text), out, size);
-  if (o->choice) {
-    const char *word = choice_word(o->unit, *o->choice, &length);
-    json_string(word, (size_t)length, out, size);
-  }
+  char value[1024];
+  const bool any = plain_value(o, value, sizeof value);
+  snprintf(out, size, "%s", o->flag ? (*o->flag ? "true" : "false") : any ? value : "null");
+  if (any && !o->integer) json_string(value, strlen(value), out, size);
   if (!o->number) return;
   const bool many = o->count > 1;
   for (int k = 0; k < (many ? o->count : 1) && used < size; k++) {
     char text[32] = "null";
-    for (int digits = 6; digits <= 17 && isfinite(o->number[k]); digits++) {
-      snprintf(text, sizeof text, "%.*g", digits, o->number[k]);
-      if (strtod(text, NULL) == o->number[k]) break;
-    }
+    if (isfinite(o->number[k])) exact_number(o->number[k], text);
     used += (size_t)snprintf(out + used, size - used, "%s%s", k ? ", " : many ? "[" : "", text);
   }
   if (many && used < size) snprintf(out + used, size - used, "]");

@@ -73,8 +73,8 @@ typedef struct option {
 #define OPTION_CHOICE_OF(name_, words_, value, note_)                                              \
   { .name = (name_), .unit = (words_), .choice = (value), .note = (note_) }
 /* Rows that every program has. */
-#define OPTION_THREADS(value) OPTION_INTEGER("threads", value, NULL)
-#define OPTION_OUT(value) OPTION_TEXT("out", value, NULL)
+#define OPTIONS_OF_ALL(s)                                                                          \
+  OPTION_TEXT("out", &(s)->out, NULL), OPTION_INTEGER("threads", &(s)->threads, NULL)
 
 typedef struct options_program {
   const char *name;    /* "mps-wave" */
@@ -113,6 +113,9 @@ const char *options_noted(int k);
 /* Rounds *part to `whole` over the nearest whole number, or with `half` a half more than one, which
  * it returns; where that is another length, notes it: `of` "--side". */
 double options_divide(const char *name, double *part, const char *of, double whole, bool half);
+
+/* Rounds *length to the nearest whole multiple of `part`, `of` "--cell", and notes it. */
+void options_whole(const char *name, double *length, const char *of, double part);
 
 /* One error line about a combination of options, as the parser's own. Where `reason` names options
  * that were not given, the line ends with their defaults and the values of the others. Returns 2.

@@ -184,11 +184,10 @@ static bool assume(reader *r) {
   r->why = all, r->size = size;
   if (header) return true;
   table_names(def, names, sizeof names);
+  if (def->others) return fail(r, "a header is missing: a %s has %s", def->row, names);
   r->columns = def->count;
   for (int k = 0; k < def->count; k++) {
     r->place[k] = k;
-    if (def->column[k].optional)
-      return fail(r, "a header is missing: a %s has %s", def->row, names);
     if (!units_factor(def->column[k].unit, def->column[k].quantity, &r->factor[k]))
       return fail(r, "a unit is not known");
   }

@@ -3,9 +3,8 @@
  * One row a line, numbers separated by commas, semicolons or blanks, '#' begins a comment. A header
  * line gives the columns in any order, each with a unit of its quantity: "thickness_m, vs_m_s",
  * "Vs (ft/s); thickness [ft]". Behind semicolons a comma is a decimal sign. Without a header the
- * columns are those of the definition, in its order and units, and a warning says so; where columns
- * are optional there must be one.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * columns are those of the definition, in its order and units, and a warning says so; a file that
+ * may have columns of other programs must have one. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_TABLE_H
 #define EXAMPLES_TABLE_H
 

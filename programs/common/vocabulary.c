@@ -534,76 +534,41 @@ const char *vocabulary_likelier_unit(const option *o, double value) {
 
 /* ---- other names ----------------------------------------------------------------------------- */
 
-/* Former names of version 0, and words of other programs for nearly the same. */
-static const vocabulary_other others[] = {
-    {"E", "young", NULL},
-    {"nu", "poisson", NULL},
-    {"mu", "friction", NULL},
-    {"speed", "rate", NULL},
-    {"vtk", "frames", " N: how many of them, not the time between them"},
-    {"duration", "falls", " N: fall times (H/g)^1/2"},
-    {"duration", "time-unit", " s: what T = 1 lasts"},
-    {"h", "cell", NULL},
-    {"h", "spacing", NULL},
-    {"cells", "cell", " m: the side of one, not their number"},
-    {"cells", "spacing", " m: the distance of particles, not their number"},
-    {"nx", "spacing", " m: the distance of particles, not their number"},
-    {"ny", "spacing", " m: the distance of particles, not their number"},
-    {"radius", "spacing", " m: D = 2 R"},
-    {"spacing", "cell", " where particles lie in a grid"},
-    {"cell", "spacing", " where there is no grid"},
-    {"alpha", "adhesion", NULL},
-    {"alpha", "rock-alpha", NULL},
-    {"alpha", "stabilisation", NULL},
-    {"amplitude", "acceleration", NULL},
-    {"angle", "apex-angle", NULL},
-    {"angle", "slope-angle", NULL},
-    {"base", "below-toe", NULL},
-    {"base", "width", NULL},
-    {"bed-friction", "friction", NULL},
-    {"beta", "rock-beta", NULL},
-    {"crest", "freeboard", NULL},
-    {"domain", "soil", NULL},
-    {"drained", "drainage", NULL},
-    {"file", "levels", NULL},
-    {"file-column", "levels-column", NULL},
-    {"input", "record", NULL},
-    {"input-column", "record-column", NULL},
-    {"input-scale", "record-scale", NULL},
-    {"input-step", "record-step", NULL},
-    {"input-unit", "record-unit", NULL},
-    {"load", "end-load", NULL},
-    {"mesh", "coupling-mesh", NULL},
-    {"model", "law", NULL},
-    {"model", "symmetry", NULL},
-    {"no-space", "axisymmetric", " alone: it leaves the run in space out"},
-    {"path", "travel", NULL},
-    {"ramp", "load-ramp", NULL},
-    {"ratio", "drain-ratio", NULL},
-    {"ratio", "frequency-ratio", NULL},
-    {"re", "influence", NULL},
-    {"rest", "still", NULL},
-    {"ricker-frequency", "frequency", NULL},
-    {"ricker-time", "peak-time", NULL},
-    {"scheme", "method", NULL},
-    {"slope", "incline", NULL},
-    {"state", "equation-of-state", NULL},
-    {"step", "dt", NULL},
-    {"stiffness", "water-stiffness", NULL},
-    {"tension", "edge-stress", NULL},
-    {"tension", "negative-pressure", NULL},
-    {"tolerance", "factor-tolerance", NULL},
-    {"tolerance", "rest-tolerance", NULL},
-    {"velocity", "wave-velocity", NULL},
-    {"wall", "support", NULL},
-    {"wall", "wall-thickness", NULL},
-    {"water-level", "water-table", " m: a depth below the surface"},
-    {"water-table", "water-level", " m: a level above the toe"},
-};
+/* A former name of version 0, or a word of other programs for nearly the same; the present name,
+ * and what its value means where that differs. */
+static const char others[] =
+    "E young;nu poisson;mu friction;speed rate;"
+    "vtk frames N: how many of them, not the time between them;"
+    "duration falls N: fall times (H/g)^1/2;duration time-unit s: what T = 1 lasts;h cell;"
+    "h spacing;cells cell m: the side of one, not their number;"
+    "cells spacing m: the distance of particles, not their number;"
+    "nx spacing m: the distance of particles, not their number;"
+    "ny spacing m: the distance of particles, not their number;radius spacing m: D = 2 R;"
+    "spacing cell where particles lie in a grid;cell spacing where there is no grid;"
+    "alpha adhesion;alpha rock-alpha;alpha stabilisation;amplitude acceleration;"
+    "angle apex-angle;angle slope-angle;base below-toe;base width;bed-friction friction;"
+    "beta rock-beta;crest freeboard;domain soil;drained drainage;file levels;"
+    "file-column levels-column;input record;input-column record-column;"
+    "input-scale record-scale;input-step record-step;input-unit record-unit;load end-load;"
+    "mesh coupling-mesh;model law;model symmetry;"
+    "no-space axisymmetric alone: it leaves the run in space out;path travel;ramp load-ramp;"
+    "ratio drain-ratio;ratio frequency-ratio;re influence;rest still;"
+    "ricker-frequency frequency;ricker-time peak-time;scheme method;slope incline;"
+    "state equation-of-state;step dt;stiffness water-stiffness;tension edge-stress;"
+    "tension negative-pressure;tolerance factor-tolerance;tolerance rest-tolerance;"
+    "velocity wave-velocity;wall support;wall wall-thickness;"
+    "water-level water-table m: a depth below the surface;"
+    "water-table water-level m: a level above the toe;";
 
-const vocabulary_other *vocabulary_find_other(const option *table, const char *name) {
-  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
-    for (const option *o = table; strcmp(others[k].name, name) == 0 && (o->name || o->help); o++)
-      if (o->name && strcmp(o->name, others[k].now) == 0) return &others[k];
-  return NULL;
+bool vocabulary_find_other(const option *table, const char *name, char *out, size_t size) {
+  const size_t length = strlen(name);
+  for (const char *at = others; *at; at += strcspn(at, ";") + 1) {
+    const char *now = at + length + 1;
+    if (strncmp(at, name, length) != 0 || at[length] != ' ') continue;
+    const size_t letters = strcspn(now, " ;");
+    for (const option *o = table; o->name || o->help; o++)
+      if (o->name && strlen(o->name) == letters && strncmp(now, o->name, letters) == 0)
+        return snprintf(out, size, "%.*s", (int)strcspn(now, ";"), now) > 0;
+  }
+  return false;
 }

@@ -25,13 +25,8 @@ bool vocabulary_has(const char *name);
  * usual values of the quantity in SI units, and the program's default is not; NULL: none. */
 const char *vocabulary_likelier_unit(const option *o, double value);
 
-/* Another name of an option: a former one, or that of another program for nearly the same. */
-typedef struct vocabulary_other {
-  const char *name;  /* "nu" */
-  const char *now;   /* "poisson" */
-  const char *value; /* meaning of the value, where that differs: " N, ..."; NULL: the same */
-} vocabulary_other;
-/* The row of another name of an option of the program; NULL: none. */
-const vocabulary_other *vocabulary_find_other(const option *table, const char *name);
+/* Of another name of an option of the program, a former one or that of another program for nearly
+ * the same: "poisson", or "frames N: how many of them, ..." where the value has another meaning. */
+bool vocabulary_find_other(const option *table, const char *name, char *out, size_t size);
 
 #endif

@@ -138,8 +138,7 @@ static size_t softening_options(settings *s, option *out) {
 }
 
 static size_t results_options(settings *s, option *out) {
-  const option rows[] = {OPTION_HEADING("Results"), OPTION_OUT(&s->out),
-                         OPTION_THREADS(&s->threads)};
+  const option rows[] = {OPTION_HEADING("Results"), OPTIONS_OF_ALL(s)};
   return put(out, rows, sizeof rows / sizeof *rows);
 }
 

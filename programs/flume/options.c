@@ -98,8 +98,7 @@ static option table[] = {
     OPTION_INTEGER("frames", &model.s.frames, NULL),
     OPTION_INTEGER("animation", &model.s.animation, NULL),
     RESUME_OPTIONS(&model.s.checkpoint, &model.s.every_checkpoint, NULL, &model.s.restart),
-    OPTION_OUT(&model.s.out),
-    OPTION_THREADS(&model.s.threads),
+    OPTIONS_OF_ALL(&model.s),
     {0}};
 
 /* ---- texts ----------------------------------------------------------------------------------- */

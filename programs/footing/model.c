@@ -49,6 +49,8 @@ const char *footing_settle(settings *s, const option *table) {
   double *const sides[] = {&s->width, &s->depth};
   if (!options_lengths(s->domain, "m", 2, sides))
     return "--soil must be two lengths in m, WxH, such as 5x2";
+  options_whole("soil", &s->width, "--cell", s->h);
+  options_whole("soil", &s->depth, "--cell", s->h);
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "e0") ||
        options_given(table, "emax") || options_given(table, "cone")))

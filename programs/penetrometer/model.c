@@ -61,6 +61,8 @@ const char *pen_check(penetrometer *p, const option *table) {
   double *const sides[] = {&s->width, &s->breadth, &s->height};
   if (s->soil && !options_lengths(s->soil, "m", 3, sides))
     return "--soil must be three lengths in m, WxWxH, such as 0.6x0.6x0.4";
+  for (int k = 0; k < 3 && s->soil; k++) /* half of it is, in a quarter */
+    options_whole("soil", sides[k], k < 2 ? "2 cells" : "--cell", k < 2 ? 2.0 * s->h : s->h);
   if (fmin(s->width, s->breadth) < 2.0 * radius_below(s) + (8.0 - 1e-9) * s->h)
     return "--soil must be at least 8 cells of --cell wider than what is pushed in";
   if (s->depth > s->height - (4.0 - 1e-9) * s->h)

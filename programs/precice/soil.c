@@ -52,8 +52,7 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_TEXT("displacement", &s->coupling.displacement, "that are read"),
       OPTION_TEXT("force", &s->coupling.force, "that are written"),
       OPTION_HEADING("Running"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"precice-soil", purpose, table};
   return options_parse(&program, argc, argv);

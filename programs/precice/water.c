@@ -63,18 +63,17 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_TEXT("force", &s->coupling.force, "that are written"),
       OPTION_NUMBER("dt", &s->coupling.dt, "at most; preCICE may ask for shorter ones"),
       OPTION_HEADING("Running"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"precice-water", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  const double columns = fmax(1.0, round(s->length / s->spacing)),
-               rows = fmax(1.0, round(s->depth / s->spacing));
+  options_whole("length", &s->length, "--spacing", s->spacing);
+  options_whole("depth", &s->depth, "--spacing", s->spacing);
+  const double columns = nearbyint(s->length / s->spacing), rows = nearbyint(s->depth / s->spacing);
   if (!(columns * rows <= 1e6))
     return options_refuse(&program,
                           "--length and --depth hold more than a million particles of --spacing");
-  s->length = columns * s->spacing, s->depth = rows * s->spacing;
   s->coupling.count = (int64_t)rows;
   s->coupling.area = s->spacing;
   return -1;

@@ -150,14 +150,15 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
                      "default a tenth of the run; the end of the run writes one too", &s->restart),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-wave", purpose, table};
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = check_ground(&program, s);
   if (code < 0) code = check_rest(&program, s);
   if (s->layers_file && !options_given(table, "height")) s->height = NAN; /* that of the layers */
+  if (s->width > 0.5 * s->spacing) options_whole("width", &s->width, "--spacing", s->spacing);
+  if (s->height > 1.5 * s->spacing) options_whole("height", &s->height, "--spacing", s->spacing);
   return code;
 }
 

@@ -82,8 +82,8 @@ picture "$work/three/columns.png" 0x0 f3e3bd c98f4a 5b2c12
 
 # By either method, on from a checkpoint: the results of the run that never stopped.
 [ -f "$work/moving/water.vtkhdf" ] || exit 0 # built without HDF5
-for method in mps mpm; do
-  again="$1/mps-dam-break --method $method --cell 0.01143 --threads 1 --frames 5"
+for method in "mps --spacing" "mpm --cell"; do
+  again="$1/mps-dam-break --method $method 0.01143 --threads 1 --frames 5"
   $again --out "$work/whole" >"$work/log"
   $again --restart "$work/whole/checkpoint.h5" --out "$work/on" >"$work/log"
   for file in front.csv particles.csv summary.json; do

@@ -41,13 +41,14 @@ with() {
 
 # Waves: a record, a slope, damping, a pulse longer than the ground.
 awk 'BEGIN { for (k = 0; k <= 200; k++) print k / 100 "," sin(k / 5) * sin(k / 17) }' >"$work/record.csv"
-column="mps-wave --spacing 2 --width 4 --height 20 --courant 0.5"
+waves="mps-wave --spacing 2 --courant 0.5"
+column="$waves --width 4 --height 20"
 with travel_time_exact $column --duration 0.7
 without "travel_time_exact surface_peak_theory" "the input is a record" $column --record "$work/record.csv" --duration 1
-without "travel_time_exact surface_peak_theory" "not level" $column --width 20 --incline 5,10,12 --duration 0.7
+without "travel_time_exact surface_peak_theory" "not level" $waves --width 20 --height 20 --incline 5,10,12 --duration 0.7
 partly=1
 without surface_peak_theory "damped" $column --damping 0.05 --duration 0.7
-without surface_peak_theory "its reflection from the base arrives" $column --height 12 --duration 0.7
+without surface_peak_theory "its reflection from the base arrives" $waves --width 4 --height 12 --duration 0.7
 partly=
 
 # Critical steps: Euler's growth beside the response itself, and the paper's table.
@@ -90,7 +91,7 @@ with q_exact $footing --rate 5mm/s
 wall="mps-wall --cell 0.2 --rate 0.2"
 without K_theory "arches" $wall --motion top
 without K_theory "passive case" $wall --pressure passive --friction 0.3 --below-toe 0.8 --length 3
-without K_theory "inertia" $wall --pressure passive --length 3 --rate 2
+without K_theory "inertia" mps-wall --cell 0.2 --pressure passive --length 3 --rate 2
 without K_theory "wedge would reach" $wall --pressure passive --length 1.2
 without K_theory "mobilises less" mps-wall --cell 0.2 --rate 0.05 --below-toe 0.8
 without K_theory "slides along" mps-wall --cell 0.2 --rate 0.05 --friction 0.3
@@ -110,7 +111,7 @@ without "runout_law runout_error height_law" "still moves" $heap --falls 0.5
 without "runout_law runout_error height_law" "slides on the bed" $heap --friction 0.1 --falls 1
 dam="mps-dam-break --cell 0.01 --frames 0"
 without "experiment_reason front_error_rms height_error_rms" "viscosity" $dam --width 0.05 --viscosity 5 --duration 0.15
-without "experiment_reason front_error_rms height_error_rms" "surface tension" $dam --width 0.01 --cell 0.002 --duration 0.05
+without "experiment_reason front_error_rms height_error_rms" "surface tension" mps-dam-break --frames 0 --width 0.01 --cell 0.002 --duration 0.05
 without "experiment_reason front_error_rms height_error_rms" "far wall" $dam --width 0.05 --tank 2 --duration 0.15
 without "experiment_reason front_error_rms height_error_rms" "ends before" $dam --width 0.05 --duration 0.02
 

@@ -63,7 +63,7 @@ refused --case mcc --young 1MPa
 refused --case mcc --kappa 0.3
 refused --case mcc --load 1e8
 refused --drain-ratio 4
-refused --case barron --cell 0.08333333333
+refused --case barron --drain-ratio 3.1415
 run strip --cell 0.5
 within strip 0.03 0
 run strip --cell 0.5 --scheme implicit

@@ -26,8 +26,8 @@ picture "$work/a/levels.png" 0x0
 picture "$work/a/water.png" 0x0
 
 # A sea towards a caisson: rows of all tables, a discharge.
-sea="--spacing 0.04 --threads 1 --waves jonswap --height 0.16 --wall caisson --freeboard 0.08 --length 3"
-"$1/mps-flume" $sea --duration 16 --frames 3 --out "$work/b" >"$work/log"
+sea="--spacing 0.04 --threads 1 --waves jonswap --height 0.16 --wall caisson --length 3"
+"$1/mps-flume" $sea --freeboard 0.08 --duration 16 --frames 3 --out "$work/b" >"$work/log"
 s=$work/b/summary.json
 in_range "$s" Hm0_incident 0.08 0.2
 in_range "$s" q 1e-6 0.01

@@ -3,7 +3,8 @@
 # sum, a mesh, a whole model. Finer: docs/verification/wls-mpm/penetration.md.
 . "$(dirname "$0")/checks.sh"
 # On four cells a radius of 0.6 of them is a third of the tip's: its edges stay sharp.
-coarse="--cell 0.025 --soil 0.3x0.3x0.25 --rate 1 --threads 1 --corner 0"
+many="--cell 0.025 --soil 0.3x0.3x0.25 --rate 1 --corner 0"
+coarse="$many --threads 1"
 
 "$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --also-axisymmetric --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the tip: 0"
@@ -27,7 +28,7 @@ picture "$work/a/force.png" 1000x680 1f4e8c c0392b
 picture "$work/a/section.png" 0x800 555555 e6ebf1 6baed6
 
 # The same for every number of threads.
-"$1/mps-penetrometer" $coarse --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
+"$1/mps-penetrometer" $many --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
 cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another force.csv"
 
 # A sphere presses elastic ground as Hertz says, and more in so small a box: on a layer of that depth
@@ -48,13 +49,13 @@ in_range "$work/w/summary.json" force_total \
 
 # A blunt cone on D/8: edges are rounded, and q is within a tenth of what finer grids point at, 8.7 c
 # (verification); with sharp ones 10.8.
-blunt="--axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120 --threads 1"
-"$1/mps-penetrometer" $blunt --out "$work/blunt" >/dev/null
+blunt="--axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120"
+"$1/mps-penetrometer" $blunt --threads 1 --out "$work/blunt" >/dev/null
 in_range "$work/blunt/summary.json" n_factor 8.7 9.2
 in_range "$work/blunt/summary.json" particles_inside 0 0
 # What transfers take is kept for D/(40 rate): without that the same cone bears 9.51 c.
 in_range "$work/blunt/summary.json" flip_time 0.00999999 0.01000001
-"$1/mps-penetrometer" $blunt --flip-time 0 --out "$work/blunt0" >/dev/null
+"$1/mps-penetrometer" $blunt --threads 1 --flip-time 0 --out "$work/blunt0" >/dev/null
 in_range "$work/blunt0/summary.json" n_factor 9.3 9.7
 in_range "$work/q/summary.json" flip_time 0 0
 "$1/mps-penetrometer" $blunt --threads 3 --out "$work/blunt3" >/dev/null

@@ -47,17 +47,15 @@ TEST(options_are_read_in_both_spellings) {
   int wave = 0;
   bool flag = false;
   const char *out = "out";
-  option table[] = {OPTION_HEADING("Heading"),
-                    OPTION_NUMBER("radius", &radius, NULL),
-                    {.name = "incline",
-                     .count = 3,
-                     .range = OPTION_FROM_TO(-1e3, 1e3),
-                     .number = three},
-                    OPTION_INTEGER("seed", &count, NULL),
-                    OPTION_CHOICE_OF("wave", "S|P", &wave, NULL),
-                    OPTION_FLAG("drained", &flag, NULL),
-                    OPTION_OUT(&out),
-                    {0}};
+  option table[] = {
+      OPTION_HEADING("Heading"),
+      OPTION_NUMBER("radius", &radius, NULL),
+      {.name = "incline", .count = 3, .range = OPTION_FROM_TO(-1e3, 1e3), .number = three},
+      OPTION_INTEGER("seed", &count, NULL),
+      OPTION_CHOICE_OF("wave", "S|P", &wave, NULL),
+      OPTION_FLAG("drained", &flag, NULL),
+      OPTION_TEXT("out", &out, NULL),
+      {0}};
   const options_program program = {"test", "", table};
   char *argv[] = {(char[]){"test"},
                   (char[]){"--radius"},
@@ -157,7 +155,7 @@ TEST(options_are_compared_one_by_one) {
                     OPTION_CHOICE_OF("wave", "S|P", &wave, NULL),
                     OPTION_FLAG("drained", &flag, NULL),
                     OPTION_TEXT("layers", &file, NULL),
-                    OPTION_OUT(&out),
+                    OPTION_TEXT("out", &out, NULL),
                     {0}};
   char record[200], small[20], why[200];
   assert_true(options_record(table, record, sizeof record));
@@ -241,7 +239,7 @@ TEST(results_hold_no_nan) {
   option table[] = {OPTION_NUMBER("young", &young, NULL),
                     OPTION_NUMBER("rate", &rate, NULL),
                     OPTION_TEXT("layers", &name, NULL),
-                    OPTION_OUT(&name),
+                    OPTION_TEXT("out", &name, NULL),
                     {0}};
   const options_program program = {"test", "", table};
   char *argv[] = {(char[]){"test"}, (char[]){"--rate"}, (char[]){"5mm/s"}, NULL};

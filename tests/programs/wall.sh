@@ -8,7 +8,7 @@
 wall() { # NAME OPTION...
   name=$1
   shift
-  "${programs}/mps-wall" --cell "${h:-0.125}" --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
+  "${programs}/mps-wall" --cell "${h:-0.125}" --rate "${rate:-0.04}" "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
 }
 programs=$1
 value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$work/$1/summary.json"; }
@@ -35,7 +35,7 @@ in_range "$work/based/summary.json" K 0.317 0.35
 has "$work/based/summary.json" '"K_reduced": null'
 wall tip --below-toe 0.5 --psi 30 --sheet 0 # ground beside a toe at the level in front loses its pressure
 in_range "$work/tip/summary.json" K 0.15 0.3
-wall loose --below-toe 0.5 --rate 0.08
+rate=0.08 wall loose --below-toe 0.5
 in_range "$work/loose/summary.json" K_reduced 0.38196 0.38198 # tan(phi*) = sin(30 degrees)
 wall loaded --surcharge 5kPa # K (1 + 2 q/(gamma H)) = 0.52210
 in_range "$work/loaded/summary.json" K 0.506 0.538

@@ -29,7 +29,7 @@ has "$out/wave.gp" 'Verlet' # the integrator by its name
 in_range "$work/layers/summary.json" travel_time_exact 0.10166 0.10167
 has "$work/layers/summary.json" '"energy_drift": null'
 
-# The same layers by names in another order and in other units; a file without names says so.
+# The same layers by names in another order and in other units; a file without names is refused.
 sed 's/[;,]/ /g' "$2/layers.csv" | awk '/^[0-9]/ { print $2 / .3048 ";" $5 * 100 ";" $1 ";" $4 ";" $3 }' |
   { echo 'Vs (ft/s);damping (%);thickness (m);unit weight (kN/m3);vp [m/s]'; cat; } >"$work/other.csv"
 "$wave" --layers "$work/other.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
@@ -40,8 +40,8 @@ for key in travel_time_exact surface_peak; do
     "$(awk -v x="$want" 'BEGIN { printf "%.9g", x * (1 + 1e-4) }')"
 done
 sed 1d "$2/layers.csv" | sed /vs_m_s/d >"$work/bare.csv"
-"$wave" --layers "$work/bare.csv" --duration 0.01 --out "$work/bare" >/dev/null 2>"$work/log"
-has "$work/log" "bare.csv has no header: its columns are taken as thickness_m, vs_m_s, vp_m_s"
+"$wave" --layers "$work/bare.csv" --duration 0.01 --out "$work/bare" >/dev/null 2>"$work/log" && fail "layers without names"
+has "$work/log" "bare.csv:1: a header is missing: a layer has thickness_m, vs_m_s, vp_m_s"
 
 # A soft seam thinner than the particles is not lost.
 printf 'thickness_m,vs_m_s,vp_m_s,unit_weight_kN_m3,damping_ratio\n4,200,400,18,0.02\n0.4,40,400,16,0.02\n3.6,200,400,18,0.02\n' \
