@@ -34,8 +34,7 @@ int main(int argc, char **argv) {
   option table[] = {
       OPTION_HEADING("Pile"),
       OPTION_NUMBER("inner-diameter", &s->inner_diameter, NULL),
-      OPTION_NUMBER("wall-thickness", &s->wall,
-                    "of the pile; by --contact penalty at least 2 cells"),
+      OPTION_NUMBER("wall-thickness", &s->wall, "by --contact penalty at least 2 cells"),
       OPTION_NUMBER("friction", &s->friction, "of its surface, tan(delta)"),
       OPTION_NUMBER("depth", &s->depth, "of the tip, where the run ends"),
       OPTION_NUMBER("rate", &s->rate, NULL),

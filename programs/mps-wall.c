@@ -66,7 +66,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Wall"),
       OPTION_CHOICE_OF("pressure", "active|passive", &s->pressure, NULL),
       OPTION_CHOICE_OF("motion", "translate|toe|top", &s->motion, NULL),
-      OPTION_NUMBER("height", &s->height, "of the ground behind it"),
+      OPTION_NUMBER("height", &s->height, "of the ground behind the wall"),
       OPTION_NUMBER("friction", &s->friction, "of its face"),
       OPTION_NUMBER("travel", &s->path, NULL),
       OPTION_NUMBER("rate", &s->rate, "of that end"),

@@ -80,7 +80,7 @@ static const struct {
            "constants C3 and C4: the equation of Martin, Finn and Seed, not that of Byrne"),
     NUMBER("c4", "1", FROM_TO(1e-4, 100.0), "constant C4"),
     CHOICE("case", NULL, "the problem"),
-    NUMBER("cell", "m", LENGTH, "side of a cell of the grid, in which the particles lie"),
+    NUMBER("cell", "m", LENGTH, "side of a cell of the grid"),
     TEXT("checkpoint", "FILE",
          "written during the run and at Ctrl-C, to continue with --restart (default "
          "OUT/checkpoint.h5)"),

@@ -77,7 +77,7 @@ static size_t clay_options(settings *s, option *out) {
   const option rows[] = {
       OPTION_HEADING("Law"),
       OPTION_CHOICE_OF("law", ELEMENT_LAWS, &s->law,
-                       "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich; cyclicsand: "
+                       "mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich; cyclicsand: "
                        "Mohr-Coulomb that contracts in cycles, Martin, Finn and Seed, Byrne"),
       OPTION_NUMBER("M", &s->M, NULL),
       OPTION_NUMBER("lambda", &s->lambda, NULL),

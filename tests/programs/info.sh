@@ -8,7 +8,7 @@ run=$work/run
 "$1/mps-info" "$run/checkpoint.h5" "$run/column.vtkhdf" >"$work/text" || fail "mps-info"
 tr -s '[:space:]' ' ' <"$work/text" >"$work/flat"
 for text in "checkpoint of mps-column-collapse, written by libmps" "solver WLS-MPM" "particles 450" \
-  "dimensions 2" "to go on mps-column-collapse --restart" "h 0.02" "falls 0.3" "spline 3" \
+  "dimensions 2" "to go on mps-column-collapse --restart" "cell 0.02" "falls 0.3" "spline 3" \
   "velocity 2 x float64, m/s" "series of frames for ParaView" "first 0 s" "frames 3" "stress 4 x float64, Pa"; do
   has "$work/flat" "$text"
 done
