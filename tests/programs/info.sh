@@ -22,7 +22,7 @@ assert checkpoint["kind"] == "checkpoint" and series["kind"] == "series", (check
 assert checkpoint["particles"] == series["particles_least"] == series["particles_most"] == 450
 assert abs(checkpoint["time_s"] - series["time_last_s"]) < 1e-12
 assert checkpoint["version"] == series["version"] == json.load(open(sys.argv[2]))["version"]
-assert checkpoint["options"]["ppc"] == 9 and checkpoint["options"]["h"] == 0.02
+assert checkpoint["options"]["ppc"] == 9 and checkpoint["options"]["cell"] == 0.02
 assert series["fields"]["density"] == checkpoint["fields"]["density"] == "1 x float64, kg/m3"
 EOF
 fi
