@@ -11,11 +11,11 @@ enum { COLUMNS = 6, WHY = 512 };
 /* Ranges of ground: what is beyond them is of another unit or column. */
 static const table_def def = {
     .row = "layer",
-    .column = {{"thickness", "m", "m", 0.0, 2e3, true, .endless = true},
-               {"vs", "m/s", "m/s", 10.0, 6e3, false},
-               {"vp", "m/s", "m/s", 15.0, 1.2e4, false},
+    .column = {{"thickness", "m", "m", 0.0, 2e3, .open = true, .endless = true},
+               {"vs", "m/s", "m/s", 10.0, 6e3, .open = false},
+               {"vp", "m/s", "m/s", 15.0, 1.2e4, .open = false},
                {"unit weight", "N/m3", "kN/m3", 5e3, 5e4, .optional = true},
-               {"damping", "1", "ratio", 0.0, 0.5, false},
+               {"damping", "1", "ratio", 0.0, 0.5, .open = false},
                {"density", "kg/m3", "kg/m3", 500.0, 5e3, .optional = true}},
     .others = LAYERS_OTHERS,
     .count = COLUMNS,

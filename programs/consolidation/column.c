@@ -91,9 +91,9 @@ double column_degree(const simulation *sim, int step, double settlement) {
 
 static const char *read_layers(simulation *sim) {
   static const table_def def = {.row = "layer",
-                                .column = {{"thickness", "m", "m", 0.0, 1e4, true},
-                                           {"permeability", "m/s", "m/s", 0.0, 1.0, true},
-                                           {"modulus", "Pa", "Pa", 1e3, 1e13, false}},
+                                .column = {{"thickness", "m", "m", 0.0, 1e4, .open = true},
+                                           {"permeability", "m/s", "m/s", 0.0, 1.0, .open = true},
+                                           {"modulus", "Pa", "Pa", 1e3, 1e13, .open = false}},
                                 .count = 3,
                                 .others = LAYERS_OTHERS,
                                 .most = STRATA_MOST};

@@ -19,12 +19,12 @@ const char *site_law_name(int64_t law) { return laws[law]; }
 static const char *fault(const double *row);
 static const table_def def = {
     .row = "layer",
-    .column = {{"thickness", "m", "m", 0.0, 1e4, true, .endless = true},
-               {"density", "kg/m3", "kg/m3", 500.0, 5000.0, false},
-               {"vs", "m/s", "m/s", 1.0, 1e4, false},
+    .column = {{"thickness", "m", "m", 0.0, 1e4, .open = true, .endless = true},
+               {"density", "kg/m3", "kg/m3", 500.0, 5000.0, .open = false},
+               {"vs", "m/s", "m/s", 1.0, 1e4, .open = false},
                {"poisson", "1", "1", 0.0, 0.49, .optional = true},
                {"k0", "1", "1", 0.05, 10.0, .optional = true},
-               {"permeability", "m/s", "m/s", 0.0, 1.0, true, true},
+               {"permeability", "m/s", "m/s", 0.0, 1.0, .open = true, .optional = true},
                {"porosity", "1", "1", 0.01, 0.95, .optional = true},
                {"reference strain", "1", "1", 1e-7, 1.0, .optional = true},
                {"curvature", "1", "1", 0.5, 1.0, .optional = true},

@@ -142,11 +142,11 @@ static bool hangs(const settings *s, const double *a, const double *b) {
 
 /* The line of a file: x ascending, and where it is above the ground it is level, as a pool is. */
 static const char *read_line(settings *s) {
-  static const table_def def = {
-      .row = "point",
-      .column = {{"x", "m", "m", -1e6, 1e6, false}, {"level", "m", "m", -1e6, 1e6, false}},
-      .count = 2,
-      .most = SLOPE_POINTS};
+  static const table_def def = {.row = "point",
+                                .column = {{"x", "m", "m", -1e6, 1e6, .open = false},
+                                           {"level", "m", "m", -1e6, 1e6, .open = false}},
+                                .count = 2,
+                                .most = SLOPE_POINTS};
   static char why[600];
   if (!table_read(s->table_text, &def, s->line, &s->points, why, sizeof why)) return why;
   if (s->points < 2) return "--water-level: a line has at least two points";
