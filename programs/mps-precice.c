@@ -51,34 +51,27 @@ static int parse(settings *s, int argc, char **argv) {
                   .frames = 20,
                   .out = "out/precice"};
   const char *data = s->coupling.force, *velocity = NULL;
-  option table[] = {
-      OPTION_HEADING("Flap"),
-      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->flap.width,
-                    "thickness, rounded to whole spacings"),
-      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->flap.height, "height, rounded likewise"),
-      OPTION_NUMBER("x", "m", OPTION_FROM_TO(-1e6, 1e6), &s->flap.x, "middle of its foot"),
-      OPTION_NUMBER("y", "m", OPTION_FROM_TO(-1e6, 1e6), &s->flap.y, "level of the ground"),
-      COMMON_NUMBER("spacing", &s->flap.spacing, NULL),
-      COMMON_NUMBER("young", &s->flap.young, NULL),
-      COMMON_NUMBER("poisson", &s->flap.poisson, NULL),
-      COMMON_NUMBER("density", &s->flap.density, NULL),
-      OPTION_NUMBER("bending", "1", OPTION_FROM_TO(0.0, 1.0), &s->flap.bending,
-                    "a cell's own stiffness against bending; without it thin parts are too soft"),
-      OPTION_HEADING("Coupling"),
-      LOOP_OPTIONS(s->coupling),
-      OPTION_CHOICE("reads", "force|stress", &s->reads,
-                    "kind of the data that are read: N on each vertex, or Pa"),
-      OPTION_TEXT("data", "NAME", &data, "name of these data;"),
-      OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
-                  "name of the displacements that are written;"),
-      OPTION_TEXT("velocity", "NAME", &velocity, "name of velocities to be written too"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->flap.dt,
-                    "largest time step; preCICE may ask for shorter ones"),
-      OPTION_HEADING("Running"),
-      COMMON_INTEGER("frames", &s->frames, NULL),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
-      {0}};
+  option table[] = {OPTION_HEADING("Flap"),
+                    OPTION_NUMBER("width", &s->flap.width, "rounded to whole spacings"),
+                    OPTION_NUMBER("height", &s->flap.height, "rounded to whole spacings"),
+                    OPTION_NUMBER("x", &s->flap.x, "middle of its foot"),
+                    OPTION_NUMBER("y", &s->flap.y, NULL),
+                    OPTION_NUMBER("spacing", &s->flap.spacing, NULL),
+                    OPTION_NUMBER("young", &s->flap.young, NULL),
+                    OPTION_NUMBER("poisson", &s->flap.poisson, NULL),
+                    OPTION_NUMBER("density", &s->flap.density, NULL),
+                    OPTION_NUMBER("bending", &s->flap.bending, NULL),
+                    OPTION_HEADING("Coupling"),
+                    LOOP_OPTIONS(s->coupling),
+                    OPTION_CHOICE_OF("reads", "force|stress", &s->reads, NULL),
+                    OPTION_TEXT("data", &data, NULL),
+                    OPTION_TEXT("displacement", &s->coupling.displacement, "that are written"),
+                    OPTION_TEXT("velocity", &velocity, "that are written"),
+                    OPTION_NUMBER("dt", &s->flap.dt, "at most; preCICE may ask for shorter ones"),
+                    OPTION_HEADING("Running"),
+                    OPTION_INTEGER("frames", &s->frames, NULL),
+                    OPTIONS_OF_ALL(s),
+                    {0}};
   const options_program program = {"mps-precice", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
@@ -86,8 +79,8 @@ static int parse(settings *s, int argc, char **argv) {
   s->coupling.velocity = velocity;
   s->coupling.force = s->reads == 0 ? data : NULL;
   s->coupling.stress = s->reads == 1 ? data : NULL;
-  s->flap.width = fmax(1.0, round(s->flap.width / s->flap.spacing)) * s->flap.spacing;
-  s->flap.height = fmax(1.0, round(s->flap.height / s->flap.spacing)) * s->flap.spacing;
+  options_whole("width", &s->flap.width, "--spacing", s->flap.spacing);
+  options_whole("height", &s->flap.height, "--spacing", s->flap.spacing);
   if (!(s->flap.width / s->flap.spacing * (s->flap.height / s->flap.spacing) <= 4e6))
     return options_refuse(&program,
                           "--width and --height hold more than 4 million particles of --spacing");

@@ -7,17 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_whole(double length, double spacing) {
-  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
-}
-
-static const char *check(const seawall_settings *s) {
-  if (!is_whole(s->length, s->spacing)) return "--length must be a whole number of --spacing";
-  if (!is_whole(s->depth, s->spacing)) return "--depth must be a whole number of --spacing";
-  if (!is_whole(s->wall_thickness, s->spacing))
-    return "--wall-thickness must be a whole number of --spacing";
-  if (!is_whole(s->wall_height, s->spacing))
-    return "--wall-height must be a whole number of --spacing";
+static const char *check(seawall_settings *s) {
+  options_whole("length", &s->length, "--spacing", s->spacing);
+  options_whole("depth", &s->depth, "--spacing", s->spacing);
+  options_whole("wall-thickness", &s->wall_thickness, "--spacing", s->spacing);
+  options_whole("wall-height", &s->wall_height, "--spacing", s->spacing);
   if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9))
     return "--depth must be at least 5 times --spacing";
   if (s->length < 10.0 * s->spacing) return "--length must be at least 10 times --spacing";
@@ -98,35 +92,32 @@ int main(int argc, char **argv) {
   seawall_settings *s = &w.s;
   option table[] = {
       OPTION_HEADING("Tank"),
-      COMMON_NUMBER("length", &s->length, "from the piston to the wall"),
-      COMMON_NUMBER("depth", &s->depth, "of the water"),
-      COMMON_NUMBER("spacing", &s->spacing, "of water and wall"),
-      COMMON_NUMBER("disturb", &s->disturb,
+      OPTION_NUMBER("length", &s->length, "from the piston to the wall"),
+      OPTION_NUMBER("depth", &s->depth, "of the water"),
+      OPTION_NUMBER("spacing", &s->spacing, "of water and wall"),
+      OPTION_NUMBER("disturb", &s->disturb,
                     "a perfect lattice keeps its columns when it is stretched, and collides"),
-      OPTION_INTEGER("seed", "N", OPTION_FROM_TO(0.0, 1e9), &s->seed,
+      OPTION_INTEGER("seed", &s->seed,
                      "another disturbance each: behind a breaking wave the force differs"),
       OPTION_HEADING("Wave maker: amplitude sin(2 pi t/period)"),
-      COMMON_NUMBER("amplitude", &s->amplitude, "of the piston"),
-      COMMON_NUMBER("period", &s->period, NULL),
-      COMMON_NUMBER("ramp", &s->ramp, NULL),
+      OPTION_NUMBER("amplitude", &s->amplitude, "of the piston"),
+      OPTION_NUMBER("period", &s->period, NULL),
+      OPTION_NUMBER("ramp", &s->ramp, NULL),
       OPTION_HEADING("Wall: plane strain, held in the layer of particles at the bed"),
-      OPTION_NUMBER("wall-thickness", "m", OPTION_LENGTH, &s->wall_thickness, "of the wall"),
-      OPTION_NUMBER("wall-height", "m", OPTION_LENGTH, &s->wall_height, "above the bed"),
-      COMMON_NUMBER_IN("young", OPTION_FROM_TO(1e3, 1e16), &s->young, NULL),
-      COMMON_NUMBER("poisson", &s->poisson, NULL),
-      OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->wall_density, "of the wall"),
-      OPTION_FLAG("coupled", &s->coupled,
-                  "the wall moves the water too, in every step until both agree; else it is loaded "
-                  "only"),
+      OPTION_NUMBER("wall-thickness", &s->wall_thickness, NULL),
+      OPTION_NUMBER("wall-height", &s->wall_height, NULL),
+      OPTION_NUMBER_IN("young", OPTION_FROM_TO(1e3, 1e16), &s->young, NULL),
+      OPTION_NUMBER("poisson", &s->poisson, NULL),
+      OPTION_NUMBER("wall-density", &s->wall_density, NULL),
+      OPTION_FLAG("coupled", &s->coupled, NULL),
       OPTION_HEADING("Run"),
-      COMMON_NUMBER("duration", &s->duration, NULL),
-      COMMON_NUMBER("dt", &s->dt, NULL),
+      OPTION_NUMBER("duration", &s->duration, NULL),
+      OPTION_NUMBER("dt", &s->dt, NULL),
       WAVES_SOLVER(&s->solver, &s->tolerance),
-      COMMON_NUMBER("sample", &s->sample, "then the wall is solved too"),
-      COMMON_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 10000.0), &s->frames, "and of the animation"),
+      OPTION_NUMBER("sample", &s->sample, "then the wall is solved too"),
+      OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 10000.0), &s->frames, "and of the animation"),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-seawall",

@@ -6,16 +6,13 @@
 #include <math.h>
 #include <stdio.h>
 
-static bool is_whole(double length, double spacing) {
-  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
-}
-
 /* ---- numbers --------------------------------------------------------------------------------- */
 
 static int complete(const options_program *program, flume *m) {
   flume_settings *s = &m->s;
   const bool own = flume_has_structure(m) && s->wall == FLUME_OPEN_END; /* of the model file */
   if (isnan(s->spacing)) s->spacing = s->depth / 16.0;
+  options_whole("depth", &s->depth, "--spacing", s->spacing);
   m->wave_length = 2.0 * WAVES_PI / waves_number(s->period, s->depth);
   if (s->closed && s->wall != FLUME_OPEN_END)
     return flume_refuse(program, m, "--end closed needs a structure of --model, and --wall none");
@@ -27,6 +24,7 @@ static int complete(const options_program *program, flume *m) {
                         "it with --end closed alone");
   if (own && !s->closed) s->length = m->shape.structure_point[0][0];
   if (isnan(s->length)) s->length = ceil(3.0 * m->wave_length / s->spacing) * s->spacing;
+  if (!own || s->closed) options_whole("length", &s->length, "--spacing", s->spacing);
   if (isnan(s->ramp)) s->ramp = 2.0 * s->period;
   if (isnan(s->duration)) s->duration = 20.0 * s->period;
   if (isnan(s->sample)) s->sample = s->period / 60.0;
@@ -38,10 +36,6 @@ static int complete(const options_program *program, flume *m) {
     return flume_refuse(program, m, "--length must be at least 10 times --spacing");
   if (s->length / s->spacing * s->depth / s->spacing > 2e6)
     return flume_refuse(program, m, "--spacing gives more than 2 million particles");
-  if (!is_whole(s->depth, s->spacing) || !(is_whole(s->length, s->spacing) || (own && !s->closed)))
-    return flume_refuse(program, m,
-                        "--length and --depth must be whole numbers of --spacing: else "
-                        "the water does not fill the flume");
   return -1;
 }
 
@@ -55,7 +49,7 @@ static int check_times(const options_program *program, const flume *m) {
   if (!isnan(s->window[0]) && !(s->window[0] < s->window[1]))
     return flume_refuse(program, m, "--window must be two times, the first before the second");
   if (s->waves == FLUME_FILE && !s->file)
-    return flume_refuse(program, m, "--waves file needs --file");
+    return flume_refuse(program, m, "--waves file needs --levels");
   if (s->waves == FLUME_FOCUSED && (isnan(s->focus[0]) || isnan(s->focus[1])))
     return flume_refuse(program, m, "--waves focused needs --focus X,T");
   if (s->waves == FLUME_FILE && !options_given(m->table, "period"))
@@ -89,7 +83,7 @@ static int check_wall(const options_program *program, const flume *m) {
   const flume_shapes *p = &m->shape;
   const bool simple = s->wall == FLUME_CAISSON || s->wall == FLUME_SLOPE;
   if (simple && s->crest < s->spacing)
-    return flume_refuse(program, m, "--crest must be at least --spacing");
+    return flume_refuse(program, m, "--freeboard must be at least --spacing");
   if (simple && s->width < s->spacing)
     return flume_refuse(program, m, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && (s->wall != FLUME_OPEN_END || flume_is_open(m)))

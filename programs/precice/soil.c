@@ -43,17 +43,16 @@ static int parse(settings *s, int argc, char **argv) {
                   .out = "out/precice-soil"};
   option table[] = {
       OPTION_HEADING("Soil"),
-      OPTION_NUMBER("step", "s", OPTION_ABOVE_TO(0.0, 1e-3), &s->step, "time step of the soil"),
-      OPTION_FLAG("free", &s->free, "the box falls by itself, without a coupling"),
-      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 10.0), &s->duration, "of --free"),
+      OPTION_NUMBER_IN("dt", OPTION_ABOVE_TO(0.0, 1e-3), &s->step,
+                       "at most; preCICE may ask for shorter ones"),
+      OPTION_FLAG("free", &s->free, NULL),
+      OPTION_NUMBER_IN("duration", OPTION_ABOVE_TO(0.0, 10.0), &s->duration, "of --free"),
       OPTION_HEADING("Coupling"),
       LOOP_OPTIONS(s->coupling),
-      OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
-                  "name of the displacements that are read;"),
-      OPTION_TEXT("force", "NAME", &s->coupling.force, "name of the forces that are written;"),
+      OPTION_TEXT("displacement", &s->coupling.displacement, "that are read"),
+      OPTION_TEXT("force", &s->coupling.force, "that are written"),
       OPTION_HEADING("Running"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"precice-soil", purpose, table};
   return options_parse(&program, argc, argv);

@@ -52,32 +52,28 @@ static int parse(settings *s, int argc, char **argv) {
                   .out = "out/precice-water"};
   option table[] = {
       OPTION_HEADING("Water"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "length, rounded to whole spacings"),
-      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "depth, rounded likewise"),
-      OPTION_NUMBER("x", "m", OPTION_FROM_TO(-1e6, 1e6), &s->x, "the right wall"),
-      COMMON_NUMBER("spacing", &s->spacing, NULL),
+      OPTION_NUMBER("length", &s->length, "rounded to whole spacings"),
+      OPTION_NUMBER("depth", &s->depth, "rounded to whole spacings"),
+      OPTION_NUMBER("x", &s->x, "the right wall"),
+      OPTION_NUMBER("spacing", &s->spacing, NULL),
       OPTION_HEADING("Coupling"),
       LOOP_OPTIONS(s->coupling),
-      OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
-                  "name of the displacements that are read;"),
-      OPTION_TEXT("velocity", "NAME", &s->coupling.velocity,
-                  "name of the velocities that are read;"),
-      OPTION_TEXT("force", "NAME", &s->coupling.force, "name of the forces that are written;"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->coupling.dt,
-                    "largest time step; preCICE may ask for shorter ones"),
+      OPTION_TEXT("displacement", &s->coupling.displacement, "that are read"),
+      OPTION_TEXT("velocity", &s->coupling.velocity, "that are read"),
+      OPTION_TEXT("force", &s->coupling.force, "that are written"),
+      OPTION_NUMBER("dt", &s->coupling.dt, "at most; preCICE may ask for shorter ones"),
       OPTION_HEADING("Running"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
+      OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"precice-water", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  const double columns = fmax(1.0, round(s->length / s->spacing)),
-               rows = fmax(1.0, round(s->depth / s->spacing));
+  options_whole("length", &s->length, "--spacing", s->spacing);
+  options_whole("depth", &s->depth, "--spacing", s->spacing);
+  const double columns = nearbyint(s->length / s->spacing), rows = nearbyint(s->depth / s->spacing);
   if (!(columns * rows <= 1e6))
     return options_refuse(&program,
                           "--length and --depth hold more than a million particles of --spacing");
-  s->length = columns * s->spacing, s->depth = rows * s->spacing;
   s->coupling.count = (int64_t)rows;
   s->coupling.area = s->spacing;
   return -1;

@@ -79,7 +79,7 @@ refuse() { # TEXT MODEL
   has "$work/log" "$1"
 }
 refuse "bad.yaml, line 2: height is -1 m, must be in" 'depth: 0.4\nheight: -1\n'
-refuse "bad.yaml, line 1: unknown key hight, did you mean height?" 'hight: 0.1\n'
+refuse "bad.yaml, line 1: unknown key hight: did you mean height?" 'hight: 0.1\n'
 refuse "bad.yaml, line 2: --porosity is not used: it needs --rock" 'waves: regular\nporosity: 0.4\n'
 refuse "bad.yaml, line 2: --gauge must be at most 16 lengths" 'depth: 0.4\ngauge: [1, x]\n'
 refuse "bad.yaml, line 1: --depth must be at least 5 times --spacing" 'depth: 0.2\nspacing: 0.05\n'
@@ -123,7 +123,7 @@ refuse "line 1: bed 4,0.1 is the end of a slope at the far end" 'bed: [[0,0],[2,
 refuse "line 1: --length is less than that of the bed" 'length: 3\nbed: [[0,0],[2,0],[4,0]]\nwall: slope\n'
 refuse "line 2: --zone is longer than --length" 'absorb: zone\nzone: 4\nlength: 6\n'
 refuse "line 2: --focus must be in the flume" 'waves: focused\nfocus: [7, 20]\nlength: 6\n'
-refuse "--waves file needs --period" 'waves: file\nfile: x.csv\n'
+refuse "--waves file needs --period" 'waves: file\nlevels: x.csv\n'
 refuse "--length is that to the toe" 'structure: [[4, 0], [5, 0.6], [6, 0.6]]\nlength: 8\n'
 
 code=0

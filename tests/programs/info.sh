@@ -2,13 +2,13 @@
 # info.sh DIRECTORY: mps-info shows what a run wrote, as text and as JSON, and refuses other and damaged files.
 . "$(dirname "$0")/checks.sh"
 run=$work/run
-"$1/mps-column-collapse" --h 0.02 --falls 0.3 --frames 3 --threads 1 --out "$run" >/dev/null 2>&1 ||
+"$1/mps-column-collapse" --cell 0.02 --falls 0.3 --frames 3 --threads 1 --out "$run" >/dev/null 2>&1 ||
   fail "mps-column-collapse"
 
 "$1/mps-info" "$run/checkpoint.h5" "$run/column.vtkhdf" >"$work/text" || fail "mps-info"
 tr -s '[:space:]' ' ' <"$work/text" >"$work/flat"
 for text in "checkpoint of mps-column-collapse, written by libmps" "solver WLS-MPM" "particles 450" \
-  "dimensions 2" "to go on mps-column-collapse --restart" "h 0.02" "falls 0.3" "spline 3" \
+  "dimensions 2" "to go on mps-column-collapse --restart" "cell 0.02" "falls 0.3" "spline 3" \
   "velocity 2 x float64, m/s" "series of frames for ParaView" "first 0 s" "frames 3" "stress 4 x float64, Pa"; do
   has "$work/flat" "$text"
 done
@@ -22,7 +22,7 @@ assert checkpoint["kind"] == "checkpoint" and series["kind"] == "series", (check
 assert checkpoint["particles"] == series["particles_least"] == series["particles_most"] == 450
 assert abs(checkpoint["time_s"] - series["time_last_s"]) < 1e-12
 assert checkpoint["version"] == series["version"] == json.load(open(sys.argv[2]))["version"]
-assert checkpoint["options"]["ppc"] == 9 and checkpoint["options"]["h"] == 0.02
+assert checkpoint["options"]["ppc"] == 9 and checkpoint["options"]["cell"] == 0.02
 assert series["fields"]["density"] == checkpoint["fields"]["density"] == "1 x float64, kg/m3"
 EOF
 fi
