@@ -23,6 +23,10 @@ ENUMS = {"solver_get_numbers.kind": "mps_def_kind", "status_text.status": "mps_s
          "context_set_error.status": "mps_status", "solver_set_linear_solver.equation": "mps_linear_equation", "material_point_control.controlled": "MPS_MATERIAL_POINT_",
          "mpm_set_boundary.number": "mps_side", "mpm_remove_boundary.number": "mps_side", "mpm_get_boundary.number": "mps_side",
          "mpm_get_reaction.number": "mps_side"}
+#: Units of parameters whose comment does not have them behind their name.
+UNITS = {"lo": "m", "hi": "m", "x": "m", "xy": "m", "xyz": "m", "rz": "m", "points": "m", "positions": "m", "centre": "m", "r": "m",
+         "radius": "m", "station": "m", "t": "s", "t_end": "s", "dt": "s", "duration": "s", "times": "s", "peak_time": "s",
+         "density": "kg/m3"}
 #: Not there in Python: subscripts of a set do it, or the class of the object.
 HIDDEN = {"particles_view", "particles_edit", "particles_commit", "particles_abandon", "particles_set", "particles_set_array",
           "particles_has_field", "particles_remove_field", "context_create", "context_error", "context_parallel_for",
@@ -161,9 +165,7 @@ class Interface:
             for word in re.split(r", | or ", found[1]):
                 if word in self.units or re.fullmatch(r"m2|1/s|rad/s|N m?|m2/s", word):
                     return word
-        shared = {"lo": "m", "hi": "m", "x": "m", "xy": "m", "xyz": "m", "rz": "m", "points": "m", "positions": "m", "centre": "m", "t_end": "s",
-                  "t": "s", "radius": "m", "duration": "s", "times": "s"}
-        return shared.get(parameter.name) or self.spread.get(parameter.name, "")
+        return UNITS.get(parameter.name) or self.spread.get(parameter.name, "")
 
     # ---- types -------------------------------------------------------------------------------
 
@@ -364,7 +366,7 @@ class Interface:
             made.default = None
         if p.name in ("log", "progress", "cancel", "fn") and self.base(p.type) in self.callbacks:
             made.default = None if p.name != "fn" or name == "history_set_source" else ...
-        if p.type == "double" and p.name == "dt" and "NaN: it follows" in text:
+        if name.endswith("_set_dt"):  # None is NaN: it follows the limit
             made.type += " | None"
         if made.default is None:
             made.type += " | None"

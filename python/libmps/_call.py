@@ -11,7 +11,7 @@ import numpy
 
 from . import _cdef, _enums, _quantities, _shapes, _tables
 from ._errors import ArgumentError, failed
-from ._library import ffi, is_object, is_struct, library, tag
+from ._library import ffi, is_object, is_struct, library, opaque, tag
 
 _DTYPES = {"double": numpy.float64, "int64_t": numpy.int64, "int32_t": numpy.int32}
 SOLVERS = ("mpm", "dynamics", "elastic", "fluid", "solver")
@@ -142,7 +142,7 @@ def to_python(value):
     if not isinstance(value, ffi.CData):
         return value
     kind = ffi.typeof(value)
-    if kind.kind == "pointer" and kind.item.kind == "struct" and kind.item.fields:
+    if kind.kind == "pointer" and kind.item.kind == "struct" and not opaque(kind.item):
         return to_python(value[0]) if value else None
     if kind.kind == "struct":
         return struct_to_python(value, kind)
@@ -391,7 +391,7 @@ class Call:
             return self.view(value)
         if isinstance(value, (Mapping, Result)):
             return self.struct(kind.item, vars(value) if isinstance(value, Result) else value)
-        if isinstance(value, (list, tuple)) and kind.item.fields:
+        if isinstance(value, (list, tuple)) and not opaque(kind.item):
             return self.structs(kind.item, value)
         raise TypeError(f"{value!r} is no {class_name(tag(kind.item))}")
 
@@ -464,7 +464,7 @@ def _set_defaults(made, kind):
 def _output(kind):
     """What a trailing pointer points to."""
     made = ffi.new(f"{kind.item.cname}[1]")
-    if is_struct(kind) and kind.item.fields:
+    if is_struct(kind) and not opaque(kind.item):
         _set_defaults(made, kind.item)  # C reads some first, as mps_checkpoint
     return made
 

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from . import _cdef
+from . import _cdef, _tables
 from ._ffi import ffi
 
 
@@ -57,10 +57,15 @@ def tag(kind):
     return kind.cname.removeprefix("struct ").removeprefix("enum ")
 
 
+def opaque(kind):
+    """Whether the headers do not show what a struct has; cffi 2.1 ends the program where it is asked for its fields."""
+    return tag(kind).removeprefix("mps_") in _tables.KINDS
+
+
 def is_struct(kind):
     return kind.kind == "pointer" and kind.item.kind == "struct"
 
 
 def is_object(kind):
     """A pointer to what the headers do not show."""
-    return is_struct(kind) and kind.item.fields is None
+    return is_struct(kind) and opaque(kind.item)

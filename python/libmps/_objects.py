@@ -11,8 +11,8 @@ import numpy
 from . import _callbacks, _enums, _quantities, _show, _tables
 from ._arrays import Edit, Field, lend
 from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, same, to_python, unknown)
-from ._errors import ArgumentError, StateError, Warning, failed
-from ._library import ffi, library, tag
+from ._errors import ArgumentError, StateError, Warning, failed, spoken
+from ._library import ffi, library, opaque, tag
 
 
 class Object:
@@ -153,7 +153,7 @@ class Object:
                 if isinstance(held, Object) and same(held._pointer, result):
                     return held
             kind = ffi.typeof(result).item
-            if result and kind.kind == "struct" and kind.fields is None:
+            if result and kind.kind == "struct" and opaque(kind):
                 made = classes[tag(kind).removeprefix("mps_")]
                 return made.__new__(made)._hold(result, self.context, [self], owned=False)
         return _enums.named(function.enum, result) if function.enum else to_python(result)
@@ -219,7 +219,7 @@ def _warn(level, message):
     depth, frame = 1, sys._getframe()
     while frame.f_back and frame.f_globals.get("__package__") == __package__:
         depth, frame = depth + 1, frame.f_back
-    warnings.warn(message, Warning, stacklevel=depth)
+    warnings.warn(spoken(message), Warning, stacklevel=depth)
 
 
 def _leave(_holder):
