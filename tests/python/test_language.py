@@ -166,7 +166,9 @@ class Properties(unittest.TestCase):
             solver.time = 1.0
         coupling = mps.Coupling(size=1, method="aitken")
         coupling.begin()
-        coupling.next([1.0])
+        while not coupling.next([1.0]).done:
+            pass
+        coupling.accept()
         memory = coupling.memory
         coupling.memory = memory
         np.testing.assert_array_equal(coupling.memory, memory)
