@@ -28,7 +28,7 @@ def safe(name):
 
 
 class Writer:
-    UNSEEN = UNSEEN
+    UNSEEN, safe = UNSEEN, staticmethod(safe)
 
     def __init__(self, interface):
         self.interface = interface

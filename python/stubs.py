@@ -172,24 +172,19 @@ def quoted(text, indent):
 class Stubs:
     def __init__(self, writer):
         self.writer, self.interface = writer, writer.interface
-        self.names = {m for f in self.interface.functions.values() for m in [f.word]}
-
-    def kind(self, text):
-        """A type; `bool` and `object` mean Python's own."""
-        return text
 
     def keywords(self, struct):
-        return [f"{self.safe(k.name)}: {k.type}{'' if k.type.endswith('None') else ' | None'} = ..."
+        return [f"{self.writer.safe(k.name)}: {k.type}{'' if k.type.endswith('None') else ' | None'} = ..."
                 for k, _ in self.interface.keywords(struct)]
-
-    def safe(self, name):
-        return self.writer.safe(name) if hasattr(self.writer, "safe") else name + "_" if name in ("from", "in", "is", "lambda") else name
 
     def arguments(self, f, first):
         listed = ["self"] if first else []
         for a in f.arguments:
-            listed.append(f"{self.safe(a.name)}: {a.type}{'' if a.default is ... else ' = ...'}")
+            given = a.default is ... and not (a.name == "ids" and f.owner in ("particles", *SOLVERS))
+            listed.append(f"{self.writer.safe(a.name)}: {a.type}{'' if given else ' = ...'}")
         keys = self.keywords(f.definition) if f.definition else []
+        if "ids" in [a.name for a in f.arguments] and f.owner in ("particles", "solver", *SOLVERS):
+            keys += ["box: Sequence[Any] | None = ...", "all: bool = ..."]
         if f.word == "run":
             keys.append("progress: bool = ...")
         if f.form in ("class", "function") and any(role == "context" for role, _, _ in f.parameters):
@@ -200,10 +195,10 @@ class Stubs:
         """`def` of a function of the module (indent "") or of a method."""
         name = "__init__" if f.form == "class" else f.word
         head = f"{indent}def {name}({wrapped(self.arguments(f, bool(indent)), indent + '        ')})"
-        return f"{head} -> {self.kind(self.writer.result(f))}:\n{quoted(self.writer.doc(f), indent + '    ')}"
+        return f"{head} -> {self.writer.result(f)}:\n{quoted(self.writer.doc(f), indent + '    ')}"
 
     def attribute(self, f, setters):
-        head = f"    @property\n    def {f.word}(self) -> {self.kind(self.writer.result(f))}:\n{quoted(self.writer.doc(f), '        ')}"
+        head = f"    @property\n    def {f.word}(self) -> {self.writer.result(f)}:\n{quoted(self.writer.doc(f), '        ')}"
         if f.word in setters:
             a = setters[f.word].arguments[0]
             head += f"    @{f.word}.setter\n    def {f.word}(self, {a.name}: {a.type}) -> None: ..."

@@ -41,7 +41,7 @@ from ._block import Block
 from ._call import Result, column, functions, results
 from ._cdef import VERSION as __version__
 from ._enums import enumeration
-from ._errors import Error, StaleError, Warning
+from ._errors import Error, StaleError, Warning  # noqa: F401 (a name of the package)
 from ._library import library
 from ._objects import Context, FieldInfo, Object, Particles, default_context
 

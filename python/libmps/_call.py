@@ -49,6 +49,9 @@ class Function:
         #: Whether C stores objects or callbacks among the arguments: a callback without `release` is for the call alone.
         self.keeps = self.owner and (self.word.startswith(("add_", "set_", "drive")) and
                                      [role for role, _, _ in self.parameters].count("null") != 1)
+        #: Whether particles may be selected by a box, or all, in place of their ids.
+        self.selects = ("ids" in self.arguments and self.owner in ("particles", *SOLVERS) and
+                        any(role == "count" for role, _, _ in self.parameters))
         self.enum = self.type if self.type in _tables.ENUMS else ""
         self._c = self._kinds = self._tuple = None
         self.place = f"{class_name(self.owner)}.{self.word}()" if self.owner else f"{self.word}()"
@@ -199,8 +202,8 @@ def unknown(where, name, known):
     return TypeError(f"{where} {name!r}{f' (is it {near[0]!r}?)' if near else ''}: it has {', '.join(known)}")
 
 
-def _plain_row(name):
-    return ("", None, "", "", ())
+#: A member that no table has.
+_PLAIN = ("", None, "", "", ())
 
 
 class Call:
@@ -251,7 +254,7 @@ class Call:
         made, name = ffi.new(f"{kind.cname} *"), tag(kind)
         _set_defaults(made, kind)
         fields = dict(kind.fields)
-        rows = _tables.DEFINITIONS.get(name) or {field: _plain_row(field) for field in fields if not hidden(field)}
+        rows = _tables.DEFINITIONS.get(name) or {field: _PLAIN for field in fields if not hidden(field)}
         for field in fields:  # bytes of one struct of an array: layer_size of layers
             of = fields.get(field[:-5] + "s") if field.endswith("_size") else None
             if of and of.type.kind == "pointer" and of.type.item.kind == "struct":
@@ -305,7 +308,7 @@ class Call:
             shape = numpy.shape(value) if kind.item.kind == "primitive" else (len(value),)
             self._arrays.append((owner, name, int(numpy.prod(shape)), shape, constant))
 
-    def compare(self, words):
+    def compare(self, words, place):
         """Refuses arrays of another length than C takes them to be, and tables whose rows are not those that C reads."""
         for owner, name, given, shape, constant in self._arrays:
             formula = (_shapes.FUNCTIONS.get(owner) or _shapes.STRUCTS.get(owner) or {}).get(name)
@@ -315,10 +318,10 @@ class Call:
             shown = "" if formula.isdigit() else f" ({formula})"
             columns = _shapes.width(formula, words)
             if len(shape) > 1 and given and wanted and shape[-1] != (columns or given):
-                raise ArgumentError(f"{owner}: {name!r} has the shape {tuple(shape)}, and must be "
+                raise ArgumentError(f"{place}: {name!r} has the shape {tuple(shape)}, and must be "
                                     f"{f'rows of {columns}' if columns else 'a list of numbers'}{shown}")
             if given < wanted or (constant and given > wanted):
-                raise ArgumentError(f"{owner}: {name!r} has {given} values, and must have {wanted}{shown}")
+                raise ArgumentError(f"{place}: {name!r} has {given} values, and must have {wanted}{shown}")
 
     def assign(self, made, name, kind, value, row):
         owner = tag(ffi.typeof(made).item)
@@ -428,7 +431,7 @@ class Call:
             for name, value in row.items():
                 if name not in fields:
                     raise unknown(f"row {k} has no member", name, fields)
-                self.assign(ffi.addressof(made[k]), name, fields[name].type, value, known.get(name) or _plain_row(name))
+                self.assign(ffi.addressof(made[k]), name, fields[name].type, value, known.get(name) or _PLAIN)
         self.alive.append(made)
         return made
 
@@ -522,14 +525,14 @@ class Performance:
         self.call, self.kinds, self.const = function.c()
         self.values, self.made = [], {}  # what C writes, by place
         self.waiting, self.counts = [], []  # (place, name, type) of arrays; (place, name) of numbers
-        self.capacity = self.many = None
+        self.capacity = self.many = self.words = None
 
     def prepare(self):
         for kind, const, (role, word, more) in zip(self.kinds, self.const, self.function.parameters):
             self.values.append(getattr(self, "_" + role)(kind, const, word, more))
-        self.state.words_ = Words(self.owner, self.state.lengths)
+        self.words = Words(self.owner, self.state.lengths)
         self.count()
-        self.state.compare(self.state.words_)
+        self.state.compare(self.words, self.function.place)
 
     def _self(self, kind, _const, _word, _more):
         pointer = self.owner._pointer
@@ -555,7 +558,11 @@ class Performance:
         return 0
 
     def _def(self, kind, *_):
-        return self.state.struct(kind.item, self.members, f"{self.function.place} has no keyword")
+        place = self.function.place
+        try:
+            return self.state.struct(kind.item, self.members, f"{place} has no keyword")
+        except (TypeError, ValueError) as error:
+            raise (error if str(error).startswith(place) else type(error)(f"{place}: {error}")) from error.__cause__
 
     def _info(self, kind, *_):
         return self._def(kind) if self.members else ffi.NULL
@@ -612,7 +619,7 @@ class Performance:
 
     def count(self):
         """Numbers that arrays say, into their places."""
-        words, open_ = self.state.words_, list(self.counts)
+        words, open_ = self.words, list(self.counts)
         for place, word in open_ + open_:  # one may need another
             if word in self.state.lengths:
                 continue
@@ -638,9 +645,9 @@ class Performance:
                     return status
                 room = self.values[self.many][0]
             else:
-                room = _shapes.length(_shapes.WITHOUT[f"mps_{self.function.name}", "capacity"], self.state.words_)
+                room = _shapes.length(_shapes.WITHOUT[f"mps_{self.function.name}", "capacity"], self.words)
             self.values[self.capacity] = self.state.lengths["capacity"] = room
-        words = self.state.words_
+        words = self.words
         for place, word, kind in self.waiting:
             array = numpy.zeros(_shapes.shape(self.function.formulas[word], words), _DTYPES[kind.item.cname])
             self.made[place], self.values[place] = array, ffi.cast(kind, array.ctypes.data)
@@ -655,7 +662,7 @@ class Performance:
         formulas = _shapes.STRUCTS[tag(kind)]
         for name, field in kind.fields:
             if name in formulas:
-                arrays[name] = array = numpy.zeros(_shapes.shape(formulas[name], self.state.words_), _DTYPES[field.type.item.cname])
+                arrays[name] = array = numpy.zeros(_shapes.shape(formulas[name], self.words), _DTYPES[field.type.item.cname])
                 setattr(struct[0], name, ffi.cast(field.type, array.ctypes.data))
 
     def perform(self):

@@ -9,7 +9,7 @@ import warnings
 import numpy
 
 from . import _callbacks, _enums, _quantities, _show, _tables
-from ._arrays import Edit, Field, lend
+from ._arrays import Edit, lend
 from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, same, to_python, unknown)
 from ._errors import ArgumentError, StateError, Warning, failed, spoken
 from ._library import ffi, library, opaque, tag
@@ -98,6 +98,8 @@ class Object:
 
     def _invoke(self, function, values, keywords):
         self._open()
+        if function.selects and ("box" in keywords or "all" in keywords):
+            keywords = self._selected(function, values, dict(keywords))
         bound, members = bind(function, values, keywords)
         made, outputs = _perform(function, self, self.context, bound, members)
         if not function.status and function.parameters[-1][0] != "out":
@@ -105,6 +107,20 @@ class Object:
         found = [self._made(output, made.state) for output in outputs]
         self._remember(function, made.state, found)
         return None if not found else found[0] if len(found) == 1 else function.several(found)
+
+    def _selected(self, function, values, keywords):
+        """A selection of particles by a box, or of all, as their ids."""
+        box, every = keywords.pop("box", None), keywords.pop("all", False)
+        if (box is not None) + bool(every) + ("ids" in keywords or len(values) > list(function.arguments).index("ids")) != 1:
+            raise ArgumentError(f"{function.place}: one of 'ids', 'box' and 'all' selects the particles")
+        particles = self if self._kind == "particles" else self.particles
+        if box is None:
+            return {**keywords, "ids": numpy.array(particles["id"])}
+        if len(box) != 2:
+            raise ArgumentError(f"{function.place}: 'box' is {box!r}, must be two corners: (lower, upper)")
+        lower, upper = ([side if x is None else x for x in (corner if corner is not None else [None] * particles.dim)]
+                        for corner, side in zip(box, (-numpy.inf, numpy.inf)))
+        return {**keywords, "ids": particles.select_box(lower, upper)}
 
     def _checked(self, said, function, *values):
         """Calls a function of the library that is in no table; `said` is what Python calls it."""
@@ -116,9 +132,12 @@ class Object:
     def _keep(self, function, bound, alive):
         """What C has stored: callbacks and objects that Python must not drop. Another setting takes the place of the last."""
         kept = [held for held in _kept(alive) if held is not self and (_is_callback(held) or held._kind in ("signal", "material"))]
-        number = bound.get("number", bound.get("component", bound.get("equation")))
-        self._held[function.word if function.word.startswith("add_") and kept and number is None else (function.word, number)] = (
-            self._held.get(function.word, []) + kept if function.word.startswith("add_") else kept)
+        if function.word.startswith("add_") or function.word == "set_material":  # of some particles: the others keep theirs
+            held = self._held.setdefault(function.word, [])
+            held += [new for new in kept if not any(new is old for old in held)]
+        else:
+            which = next((bound[word] for word in ("number", "component", "equation", "column") if word in bound), None)
+            self._held[function.word, which] = kept
 
     def _stepped(self):
         """Fields of the solver's set that were taken before may have other values now: they are stale."""
@@ -351,11 +370,15 @@ class Particles(Object):
     def __iter__(self):
         return iter([name for name, _, _ in _show.fields(self)])
 
+    def _ipython_key_completions_(self):
+        return list(self)
+
     @property
     def fields(self):
         """The fields by name: their unit, meaning, components, whether they have whole numbers, or are only read."""
         self._open()
-        return {info.name: info for info in map(FieldInfo, range(library.mps_particles_field_count(self._pointer)), [self] * 1000)}
+        count = library.mps_particles_field_count(self._pointer)
+        return {info.name: info for info in (FieldInfo(k, self) for k in range(count))}
 
     def edit(self, name):
         """Opens a field for writing: `with p.edit("velocity") as v: v[:, 0] = 1.0` commits at the end of the
@@ -444,7 +467,8 @@ class _Progress:
             self.bar.update(round(100 * state.fraction) - self.bar.n)
             return
         self.begun = True
-        print(f"\r{state.task}: {100 * state.fraction:3.0f} %, t = {state.time:.4g} s", end="", file=sys.stderr, flush=True)
+        line = f"{state.task}: {100 * state.fraction:3.0f} %, t = {state.time:.4g} s"
+        print(f"\r{line:<48}", end="", file=sys.stderr, flush=True)
 
     def end(self):
         if self.bar is not None:
@@ -485,6 +509,9 @@ def described(made, function, first=""):
     if function.definition:
         parameters += [inspect.Parameter(word, inspect.Parameter.KEYWORD_ONLY, annotation=_Shown(row[0]), default=row[1])
                        for word, row in _tables.DEFINITIONS[function.definition].items()]
+    if function.selects:
+        parameters += [inspect.Parameter("box", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("Sequence[Any] | None"), default=None),
+                       inspect.Parameter("all", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("bool"), default=False)]
     if function.word == "run":
         parameters.append(inspect.Parameter("progress", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("bool"), default=False))
     if function.takes_context:
@@ -540,7 +567,7 @@ def _classes():
     for kind in sorted(_tables.KINDS, key=lambda kind: kind != "solver"):  # the others are solvers
         name = class_name(kind)
         parent = made["solver"] if kind in SOLVERS and kind != "solver" else Object
-        own = made.setdefault(kind, type(name, (parent,), {"__module__": "libmps", "__doc__": Object.__doc__, "_kind": kind}))
+        made.setdefault(kind, type(name, (parent,), {"__module__": "libmps", "__doc__": Object.__doc__, "_kind": kind}))
     for function in functions.values():
         if function.form == "method" and function.word not in made[function.owner].__dict__:
             setattr(made[function.owner], function.word, _method(function, class_name(function.owner)))

@@ -260,7 +260,7 @@ class Errors(unittest.TestCase):
         refused("Particles.fill_ball(): 'radius' is None: ", sand.fill_ball, [0, 0], None)
         refused("Particles.fill_ball() has no keyword 'radus' (is it 'radius'?): it has centre, radius", sand.fill_ball, [0, 0], radus=1)
         refused("Particles.copy() takes no keyword, and was given only: copy()", sand.copy, only=1)
-        refused("'layers' is [{'thicknes': 2}]: row 0 has no member 'thicknes' (is it 'thickness'?): it has thickness, ",
+        refused("Particles.set_geostatic(): 'layers' is [{'thicknes': 2}]: row 0 has no member 'thicknes' (is it 'thickness'?): it has thickness, ",
                 sand.set_geostatic, layers=[{"thicknes": 2}])
         refused("status_text() lacks 'status': status_text(status)", mps.status_text)
         with self.assertRaisesRegex(AttributeError, "Mpm of libmps has no 'stepp' .is it 'step'"):
