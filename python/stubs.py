@@ -163,6 +163,11 @@ def wrapped(words, indent):
     return "\n".join(lines)
 
 
+def shown(default):
+    """A default, where stubs may have it."""
+    return "..." if "inf" in repr(default) and not isinstance(default, str) else repr(default)
+
+
 def quoted(text, indent):
     body = textwrap.indent(text, indent).strip().replace("\\", "\\\\")
     body += " " if body.endswith('"') else ""
@@ -174,21 +179,22 @@ class Stubs:
         self.writer, self.interface = writer, writer.interface
 
     def keywords(self, struct):
-        return [f"{self.writer.safe(k.name)}: {k.type}{'' if k.type.endswith('None') else ' | None'} = ..."
+        return [f"{self.writer.safe(k.name)}: {k.type}{'' if k.type.endswith('None') else ' | None'} = {shown(k.default)}"
                 for k, _ in self.interface.keywords(struct)]
 
     def arguments(self, f, first):
         listed = ["self"] if first else []
         for a in f.arguments:
-            given = a.default is ... and not (a.name == "ids" and f.owner in ("particles", *SOLVERS))
-            listed.append(f"{self.writer.safe(a.name)}: {a.type}{'' if given else ' = ...'}")
+            needed = a.default is ... and not (a.name == "ids" and f.owner in ("particles", *SOLVERS))  # a box may stand for them
+            default = "" if needed else " = ..." if a.default is ... else f" = {shown(a.default)}"
+            listed.append(f"{self.writer.safe(a.name)}: {a.type}{default}")
         keys = self.keywords(f.definition) if f.definition else []
         if "ids" in [a.name for a in f.arguments] and f.owner in ("particles", "solver", *SOLVERS):
-            keys += ["box: Sequence[Any] | None = ...", "all: bool = ..."]
+            keys += ["box: Sequence[Any] | None = None", "all: bool = False"]
         if f.word == "run":
-            keys.append("progress: bool = ...")
+            keys.append("progress: bool = False")
         if f.form in ("class", "function") and any(role == "context" for role, _, _ in f.parameters):
-            keys.append("context: Context | None = ...")
+            keys.append("context: Context | None = None")
         return listed + (["*", *keys] if keys else [])
 
     def function(self, f, indent):

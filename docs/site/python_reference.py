@@ -25,12 +25,11 @@ def signature(function):
     """The arguments, those with a default as optional, then those by keyword alone; no types, which the text has."""
     a = function.args
     listed = [arg.arg for arg in a.posonlyargs + a.args]
-    optional = len(a.defaults)
-    for k in range(len(listed) - optional, len(listed)):
-        listed[k] += "=..."
-    listed = [name for name in listed if name.removesuffix("=...") != "self"]
+    for k, default in enumerate(a.defaults, len(listed) - len(a.defaults)):
+        listed[k] += f"={ast.unparse(default)}"
+    listed = [name for name in listed if name != "self"]
     if a.kwonlyargs:
-        listed += ["*", *(f"{arg.arg}=..." for arg in a.kwonlyargs)]
+        listed += ["*", *(f"{arg.arg}={ast.unparse(default)}" if default else arg.arg for arg, default in zip(a.kwonlyargs, a.kw_defaults))]
     return f"({', '.join(listed)})"
 
 
@@ -74,7 +73,7 @@ def is_property(item):
 
 
 def is_method(item):
-    return isinstance(item, ast.FunctionDef) and not item.decorator_list and (
+    return isinstance(item, ast.FunctionDef) and not item.decorator_list and not item.args.vararg and (
         not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__setitem__", "__delitem__", "__contains__", "__len__", "__iter__"))
 
 

@@ -308,7 +308,8 @@ class Types(unittest.TestCase):
             path = pathlib.Path(folder, "program.py")
             path.write_text(PROGRAM)
             done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--no-error-summary", f"--cache-dir={folder}/cache", str(path)],
-                                  capture_output=True, text=True, cwd=folder, env={**os.environ, "MYPYPATH": str(package)})
+                                  capture_output=True, text=True, cwd=folder,
+                                  env={**{k: v for k, v in os.environ.items() if k != "PYTHONPATH"}, "MYPYPATH": str(package)})
         wrong = [k + 1 for k, line in enumerate(PROGRAM.splitlines()) if line.endswith("# wrong")]
         lines = [line for line in done.stdout.splitlines() if ": error:" in line]
         self.assertEqual([int(line.split(":")[1]) for line in lines], wrong, done.stdout + done.stderr)
