@@ -84,7 +84,7 @@ class Object:
         raise AttributeError(self._near(name))
 
     def __setattr__(self, name, value):
-        if name[0] != "_" and name != "context" and not hasattr(type(self), name):  # it would do nothing
+        if name[0] != "_" and name != "context" and not hasattr(type(self), name) and type(self).__module__ == "libmps":  # a slip
             raise AttributeError(self._near(name))
         object.__setattr__(self, name, value)
 
@@ -592,6 +592,8 @@ def _without_self(function):
 
 
 classes, ways = _classes()
+for _made in (Object, Context, Particles, FieldInfo):
+    _made.__module__ = "libmps"
 
 
 def wrap(pointer, context, alive):

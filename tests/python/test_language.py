@@ -69,6 +69,16 @@ class Calls(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, f"is made by {ways}"):
                 kind()
 
+    def test_a_class_of_your_own(self):
+        class Named(mps.Mpm):
+            def __init__(self, name, *values, **keywords):
+                super().__init__(*values, **keywords)
+                self.name = name
+
+        solver = Named("first", block(), mps.LinearElastic(1e6, 0.3), cell=0.2)
+        solver.run(0.01, callback=lambda s: self.assertIs(s, solver))
+        self.assertEqual((solver.name, repr(solver)[:14]), ("first", "<libmps Named:"))
+
     def test_lengths_and_selections(self):
         sand = block()
         self.assertEqual(sand.fill_polygon([[2, 0], [3, 0], [3, 1]]), sand.count - 100)
