@@ -251,6 +251,65 @@ class Errors(unittest.TestCase):
             self.assertIsNone(solver.step())
 
 
+class Everything(unittest.TestCase):
+    """What each kind of object answers, and arrays of all forms."""
+
+    def test_properties_of_all_kinds(self):
+        sand = block()
+        solver, disc = resting(sand), mps.Disc(0.2, position=[0.5, 1.3])
+        contact, waves = solver.add_contact(disc, friction=0.3), mps.Waves(kind="regular", depth=1, height=0.1, period=2)
+        solver.step()
+        ground = block()
+        ground["shear_velocity"], ground["pressure_velocity"] = 100, 200
+        kinds = [sand, solver, disc, contact, waves, mps.WavesSignal(waves), mps.Absorber(depth=1, period=2), mps.Kernel("mps", 0.3),
+                 mps.Dynamics(ground), solver.grid, sand.context, solver.snapshot(), mps.LinearElastic(1e6, 0.3), mps.Coupling(size=2)]
+        asked = 0
+        for one in kinds:
+            for name, found in inspect.getmembers(type(one), lambda member: isinstance(member, property)):
+                try:
+                    answer = getattr(one, name)
+                except mps.StateError:  # no pore water, no budget, a wave is no record
+                    continue
+                self.assertFalse(repr(answer).startswith("<cdata"), f"{type(one).__name__}.{name}")
+                asked += 1
+        self.assertGreater(asked, 40)
+
+    def test_arrays_of_elasticity(self):
+        body = block()
+        body["young"], body["poisson"] = "10 MPa", 0.3
+        solver = mps.Elastic(body)
+        solver.add_boundary(box=(None, [1, 0.1]))
+        solver.add_load(kind="volume", all=True, force=[0, -1e4])
+        solver.solve()
+        self.assertAlmostEqual(solver.get_load_resultant().force[1], -1e4, delta=1e-6)
+        self.assertAlmostEqual(solver.get_section(axis=1, position=0.5).force[1], -5e3, delta=1e-3)
+        every, two = solver.get_facets(), solver.get_facets([0, 1])
+        self.assertEqual((every.centre.shape, two.centre.shape), ((solver.facet_count, 3), (2, 3)))
+        np.testing.assert_array_equal(two.centre, every.centre[:2])
+        modes = solver.modes(3)
+        self.assertEqual((modes.omega.shape, modes.shapes.shape), ((3,), (3, 100, 3)))
+        loads = np.zeros((2, 100, 3))
+        loads[1, 50, 1] = 1.0
+        moved = solver.solve_cases(loads)
+        self.assertEqual(moved.shape, (2, 100, 3))
+        self.assertEqual(float(abs(moved[0]).max()), 0.0)
+        self.assertGreater(moved[1, 50, 1], 0.0)
+
+    def test_columns_of_numbers(self):
+        solver = resting(block())
+        written, asked = mps.History(solver, "mine", ["a", "b"], ["m", "kg"]), mps.History(solver, "other", ["mass"], ["kg"])
+        written.record(0.5, [3.0, 4.0])
+        self.assertEqual((written.count, written.view("b").tolist()), (1, [4.0]))
+        asked.set_source("mass", lambda s: s.totals.mass)
+        gc.collect()
+        solver.step(2)
+        written.close()
+        with self.assertRaisesRegex(mps.ArgumentError, r"History\(\): 'units' has 1 values, and must have 2"):
+            mps.History(solver, "third", ["a", "b"], ["m"])
+        outside = block().set_table("pore_pressure", positions=[[0, 0], [1, 0], [0, 1]], values=[1, 2, 3])
+        self.assertEqual(outside, 0)
+
+
 class Runs(unittest.TestCase):
     def test_progress_is_a_line_and_leaves_the_hook(self):
         context, seen = mps.Context(threads=1), []
