@@ -2,6 +2,7 @@
 
 import collections
 import difflib
+import functools
 import os
 import reprlib
 from collections.abc import Mapping
@@ -114,14 +115,18 @@ def hidden(member):
     return member == "struct_size" or member.startswith("reserved") or member.endswith(("user", "release"))
 
 
+@functools.cache
+def shown(kind):
+    """The members of a struct that Python has."""
+    return [(member, field) for member, field in kind.fields if not hidden(member)]
+
+
 def struct_to_python(value, kind):
     name = tag(kind)
     if name == "mps_view":
         return view(value)
     formulas, chosen, found = _shapes.STRUCTS.get(name, {}), _tables.CHOSEN.get(name, {}), {}
-    for member, field in kind.fields:
-        if hidden(member):
-            continue
+    for member, field in shown(kind):
         made = getattr(value, member)
         if member in formulas and field.type.kind == "pointer" and field.type.item.cname in _DTYPES:
             made = numbers(made, _shapes.length(formulas[member], _Members(value))) if made else None
@@ -153,6 +158,8 @@ def to_python(value):
         return ffi.string(value).decode()
     if kind.kind == "array" and kind.item.kind == "pointer":
         return [to_python(item) for item in value]
+    if kind.kind == "array" and kind.item.cname in _DTYPES:
+        return numpy.frombuffer(ffi.buffer(value), _DTYPES[kind.item.cname]).copy()
     if kind.kind == "array":
         return numpy.array([to_python(item) for item in value])
     if kind.kind == "pointer" and kind.item.cname == "char":
