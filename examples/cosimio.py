@@ -48,33 +48,31 @@ class Connection:
 
 def run_water():
     import libmps as mps
-    import numpy
 
-    context = mps.Context(threads=1)
-    particles = context.particles_create(spacing=SPACING)
+    mps.default_context(threads=1)
+    particles = mps.Particles(spacing=SPACING)
     particles.fill_box([0, 0], [LENGTH, DEPTH])
-    fluid = context.fluid_create(particles)
+    fluid = mps.Fluid(particles)
     fluid.add_boundary(point=[0, 0, 0], normal=[0, 1, 0])
     fluid.add_boundary(point=[0, 0, 0], normal=[1, 0, 0])
     wall = fluid.add_boundary(point=[LENGTH, 0, 0], normal=[-1, 0, 0])
-    both = context.coupling_create(size=1, method=mps.COUPLING_METHOD_AITKEN, floor=1e-3)
+    both = mps.Coupling(size=1, method="aitken", floor=1e-3)
     other = Connection("water", "wall")
-    mean = numpy.zeros(1)  # what both must agree on: the wall's mean acceleration over the step
     velocity = 0.0  # of the wall, into the water
-    while fluid.time() < END:
+    while fluid.time < END:
         fluid.begin_step(DT)
-        both.begin(None, mean)
+        mean = both.begin()  # what both must agree on: the wall's mean acceleration over the step
         done = False
         while not done:
-            fluid.set_boundary_motion(wall, None, [velocity + DT * mean[0]])
+            fluid.set_boundary_motion(wall, velocity=[velocity + DT * mean[0]])
             fluid.solve_pressure()
             other.send("force", [TRY, -fluid.get_reaction(wall).force[0]])
-            done = both.next(other.receive("acceleration"), mean)
+            mean, done = both.next(other.receive("acceleration"))
         both.accept()
         fluid.end_step()
         velocity += DT * mean[0]
         other.send("force", [ACCEPT, mean[0]])
-    report = both.get_report()
+    report = both.report
     print(f"water: {report.steps} steps, {report.all_repeats / report.steps:.1f} solutions each")
     other.send("force", [STOP, 0.0])
     other.close()

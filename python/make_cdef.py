@@ -1,8 +1,10 @@
-"""Writes the declarations of the C headers, without comments, macros and bodies, for cffi.
+"""Writes the declarations of the C headers, without comments, macros and bodies, as cffi reads them: parsed when the package is
+built, so that its import needs no parser.
 
 usage: make_cdef.py CC INCLUDE OUT
 
-CC preprocesses INCLUDE/mps/mps.h and experimental.h. The result is a Python module with the text, the version and the SONAME.
+CC preprocesses INCLUDE/mps/mps.h and experimental.h. Written are OUT/_ffi.py, cffi's module without a compiled part, and
+OUT/_cdef.py: the version, the SONAME, names of parameters, callbacks.
 """
 
 import re
@@ -10,6 +12,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import cffi
 
 import headers
 
@@ -42,14 +46,14 @@ def without_bodies(text):
 
 
 def shared(include):
-    """Functions that all solvers share: their declarations under the name of one, and which function of mps_solver each
-    is, with its type, and the kind of definition that it takes first, or ""."""
+    """Functions that all solvers share: their declarations under the name of one, each with a type shared_<name>, and which
+    function of mps_solver each is, and the kind of definition that it takes first, or ""."""
     text, table = "", {}
     for header in sorted((include / "mps").glob("*.h")):
         for _, result, name, listed, target, kind in headers.shared(header.read_text()):
             listed = " ".join(listed.split())
-            text += f"{result} {name}({listed});\n"
-            table[name] = (f"{result} (*)({listed})", target, kind)
+            text += f"{result} {name}({listed});\ntypedef {result} (*shared_{name})({listed});\n"
+            table[name] = (target, kind)
     return text, table
 
 
@@ -99,8 +103,12 @@ def main():
     types, places = (f"{{\n{''.join(f'    {key!r}: {value!r},' + chr(10) for key, value in table.items())}}}"
                      for table in callbacks(text))
     number = ".".join(version[part] for part in ("MAJOR", "MINOR", "PATCH")) + suffix
-    out.write_text(f'"""Written by make_cdef.py."""\n\nVERSION = {number!r}\nSONAME = {soname!r}\n'
-                   f'PARAMETERS = {{\n{rows}}}\nSHARED = {inline!r}\nCALLBACKS = {types}\nPLACES = {places}\nTEXT = r"""\n{text}"""\n')
+    (out / "_cdef.py").write_text(f'"""Written by make_cdef.py."""\n\nVERSION = {number!r}\nSONAME = {soname!r}\n'
+                                  f'PARAMETERS = {{\n{rows}}}\nSHARED = {inline!r}\nCALLBACKS = {types}\nPLACES = {places}\n')
+    ffi = cffi.FFI()
+    ffi.cdef(text)
+    ffi.set_source("libmps._ffi", None)
+    ffi.emit_python_code(str(out / "_ffi.py"))
 
 
 if __name__ == "__main__":

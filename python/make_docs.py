@@ -1,269 +1,155 @@
-"""Writes what help() and editors show of the package, from the comments of the C headers.
+"""Writes what the package knows of the functions of C, and what help() and editors show of it, from the comments of the
+headers and the tables of definitions and units.
 
-usage: make_docs.py INCLUDE PACKAGE OUT
+usage: make_docs.py ROOT OUT
 
-INCLUDE/mps has the headers, PACKAGE the sources of the package (the lengths of arrays in _shapes.py). Written are
-OUT/_docs.py, the docstrings, and OUT/__init__.pyi, the stubs.
+ROOT is the source tree. Written are OUT/_tables.py, which libmps/_call.py works by, and OUT/__init__.pyi, the stubs.
 """
 
 import re
 import sys
 import textwrap
-from os.path import commonprefix
 from pathlib import Path
 
 import headers
+import stubs
+import tables
 from interface import Interface, class_name
 
-HEAD = '''"""Stubs of libmps, written by make_docs.py from the C headers."""
-
-from collections.abc import Callable, Mapping, Sequence
-from os import PathLike
-from types import SimpleNamespace, TracebackType
-from typing import Any, ClassVar
-
-from numpy import ndarray
-from numpy.lib.mixins import NDArrayOperatorsMixin
-from numpy.typing import ArrayLike
-
-__version__: str
-
-class Error(Exception):
-    """A failed call. `status` is ERROR_...; `step`, `particle` and `object` are those of the error record, where
-    the library knew them (-1, -1, "")."""
-
-    status: int
-    function: str
-    step: int
-    particle: int
-    object: str
-
-class StaleError(Exception):
-    """An array of a field taken before a solver stepped, or before particles were added, removed or sorted; a block
-    whose law has returned."""
-
-class MpsWarning(UserWarning):
-    """A warning of the library, where the context has no hook `log`."""
-
-class Field(NDArrayOperatorsMixin):
-    """A field of particles, without a copy; it computes and answers as a NumPy array does."""
-
-    stale: bool
-    shape: tuple[int, ...]
-    dtype: Any
-    ndim: int
-    size: int
-    T: Any
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any: ...
-    def __array__(self, dtype: Any = ..., copy: bool | None = ...) -> ndarray: ...
-    def __getitem__(self, key: Any) -> Any: ...
-    def __setitem__(self, key: Any, value: Any) -> None: ...
-    def __len__(self) -> int: ...
-    def __iter__(self) -> Any: ...
-    def __float__(self) -> float: ...
-    def __getattr__(self, name: str) -> Any: ...
-
-class Edit:
-    """A field open for writing: `array`, or the value of a `with` block, whose end commits."""
-
-    array: Field
-    def commit(self) -> None: ...
-    def abandon(self) -> None: ...
-    def __enter__(self) -> Field: ...
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
-                 trace: TracebackType | None) -> None: ...
-
-class Block:
-    """A block of particles: what a law in Python reads and writes."""
-
-    dim: int
-    count: int
-    dt: float
-    time: float
-    gradient: ndarray
-    stress: ndarray
-    volume_ratio: ndarray
-    deformation: ndarray | None
-    history: ndarray
-    flags: ndarray
-    ids: ndarray
-    position: ndarray
-    temperature: ndarray | None
-
-class Object:
-    """An object of the C library; close(), the end of a `with` block, or the last reference destroys it."""
-
-    kind: str
-    context: Context
-    def close(self) -> None: ...
-    def __enter__(self) -> Any: ...
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
-                 trace: TracebackType | None) -> None: ...
-
-class Result(SimpleNamespace):
-    """A struct that C has filled: its members are attributes."""
-
-    struct_size: int
-
-def column(pointer: Any, count: int) -> ndarray | None:
-    """The `count` numbers behind a pointer that a callback was given, for the duration of the callback."""
-
-library: Any
-'''
-
-EXTRA = {
-    "context": ["def __init__(self, {keywords}) -> None: ..."],
-    "particles": ["def __len__(self) -> int: ...", "def __getitem__(self, name: str) -> Field: ...",
-                  "def __setitem__(self, name: str, values: ArrayLike) -> None: ...",
-                  "def __delitem__(self, name: str) -> None: ...", "def __contains__(self, name: str) -> bool: ...",
-                  "def edit(self, name: str) -> Edit: ..."],
-}
-OWN = {"particles": ("particles_edit", "particles_commit", "particles_abandon", "particles_view")}
-SHADOWED = ("context", "kind", "close")  # attributes of every object
 WORDS = {"False", "None", "True", "and", "as", "class", "def", "del", "from", "in", "is", "lambda", "not", "or"}
+#: Structs that Python has no use for.
+UNSEEN = ("mps_view", "mps_edit", "mps_dtype", "mps_particles_field_info")
+ERRORS = {"IO": "FileError", "MEMORY": "OutOfMemoryError"}
+
+
+def safe(name):
+    """A name that Python has no other use for."""
+    return name + "_" if name in WORDS else name
 
 
 class Writer:
+    UNSEEN, safe = UNSEEN, staticmethod(safe)
+
     def __init__(self, interface):
         self.interface = interface
         self.spoken = {}
         for function in interface.functions.values():
             owner = class_name(function.owner) + "." if function.owner else ""
-            self.spoken[f"mps_{function.name}"] = self.spoken[function.full] = owner + function.method
+            self.spoken[f"mps_{function.name}"] = self.spoken[function.full] = owner + function.word
         for name in interface.structs:
             self.spoken.setdefault(name, class_name(name))
-        for name, entry in interface.enums.items():
-            self.spoken.setdefault(name, commonprefix([n.name for n in entry.names])[4:].rpartition("_")[0] + "_...")
         for kind in interface.kinds:
             self.spoken["mps_" + kind] = class_name(kind)
             self.spoken[f"mps_{kind}_destroy"] = class_name(kind) + ".close"
+        self.spoken.update({"mps_particles_edit": "Particles.edit", "mps_particles_commit": "Edit.commit", "mps_last_error": "Context.error",
+                            "mps_particles_abandon": "Edit.abandon", "mps_particles_view": "Particles[name]",
+                            "mps_particles_set": "Particles[name] =", "mps_particles_set_array": "Particles[name] =",
+                            "mps_particles_has_field": "name in Particles", "mps_particles_remove_field": "del Particles[name]",
+                            "mps_context_error": "Context.error", "mps_context_create": "Context"})
+        for name, (_, prefix, constants, of, _) in interface.groups.items():
+            self.spoken[of] = name
+            for n in constants:
+                self.spoken[n.name] = f"{name}.{self.member(n.name, prefix)}"
+        for status in (n.name for n in interface.groups["Status"][2]):
+            if status != "MPS_OK":
+                word = status.removeprefix("MPS_ERROR_")
+                self.spoken[status] = ERRORS.get(word, word.capitalize() + "Error")
+
+    @staticmethod
+    def member(name, prefix):
+        name = name.removeprefix(prefix).removeprefix("ERROR_")
+        return "_" + name if name[0].isdigit() else name
 
     def words(self, text):
         """A comment with the names that Python has."""
-        text = re.sub(r"\bmps_\w+", lambda m: self.spoken.get(m[0], m[0]), text)
-        return re.sub(r"\bNULL\b", "None", re.sub(r"\bMPS_(?=[A-Z])", "", text))
-
-    def members(self, struct):
-        return [m for m in self.interface.structs[struct].names
-                if m.name not in ("struct_size", "reserved") and not m.name.endswith(("user", "release"))]
+        text = re.sub(r"\bmps_\w+|\bMPS_\w+", lambda m: self.spoken.get(m[0], m[0].removeprefix("MPS_") if m[0].isupper() else m[0]), text)
+        return re.sub(r"\bNULL\b", "None", text)
 
     def result(self, function):
+        if function.form == "class":
+            return "None"
         kinds = [n.type for n in function.results]
+        if len(kinds) == 1 and function.results[0].name in self.interface.groups:
+            return function.results[0].name
         return "None" if not kinds else kinds[0] if len(kinds) == 1 else f"tuple[{', '.join(kinds)}]"
 
     def doc(self, function):
-        """The docstring: what C's comment says, the keywords, the results, the C function."""
-        parts = [textwrap.fill(p, 90) for p in self.words(function.entry.text).split("\n\n")]
-        forms = [form for n in function.entry.names if (form := self.interface.form(n))]
+        """The docstring: what C's comment says, arguments and keywords, the results, the C function."""
+        entry = function.entry
+        parts = [textwrap.fill(p, 90) for p in self.words(entry.text).split("\n\n")]
+        forms = [form for n in entry.names if (form := self.interface.form(n))]
         if forms:
             parts.append("Called by the library: " + "; ".join(forms) + ".")
+        noted = [f"{safe(a.name)} ({self.unit(a.unit)})" for a in function.arguments if a.unit]
+        if noted:
+            parts.append("Units: " + ", ".join(noted) + "; or texts with a unit.")
         if function.definition:
-            parts.append("Keywords (members of the definition; those not given have their defaults):\n"
-                         + self.rows(self.members(function.definition), "member"))
-        returned = [self.words(f"{n.name}: {n.type}" if n.name not in ("", "out") else n.type)
-                    for n in function.results]
-        if returned:
+            parts.append("Keywords (those not given have their defaults):\n" + self.rows(function.definition))
+        returned = [self.words(f"{n.name}: {n.type}" if n.name else n.type) for n in function.results]
+        if returned and function.form != "class":
             parts.append("Returns " + ", ".join(returned) + ".")
-        if function.entry.result == "mps_status":
-            parts.append("A failed call raises Error; its `status` is one of ERROR_... above.")
-        listed = ", ".join(f"{n.type} {n.name}".replace("* ", "*") for n in function.entry.names) or "void"
-        parts.append(textwrap.fill(f"C: {function.entry.result} {function.full}({listed}), mps/"
-                                   f"{function.entry.header}", 90, subsequent_indent="   "))
+        listed = ", ".join(f"{n.type} {n.name}".replace("* ", "*") for n in entry.names) or "void"
+        parts.append(textwrap.fill(f"C: {entry.result} {function.full}({listed}), mps/{entry.header}", 90, subsequent_indent="   "))
         return "\n\n".join(parts)
 
-    def rows(self, names, where):
-        return "\n".join(textwrap.fill(f"{n.name} ({self.interface.python(n.type, where)})"
-                                       f"{': ' + self.words(n.text) if n.text else ''}"
-                                       f"{f' (called as {form})' if (form := self.interface.form(n)) else ''}", 90,
-                                       initial_indent="  ", subsequent_indent="      ") for n in names)
+    def unit(self, unit):
+        return {"1": "a ratio"}.get(unit, unit)
 
-    def keywords(self, struct):
-        return [f"{m.name}: {self.interface.python(m.type, 'member')} = ..." for m in self.members(struct)
-                if m.name not in WORDS]
+    def rows(self, struct):
+        made = []
+        for keyword, member in self.interface.keywords(struct):
+            said = self.words(member.text)
+            form = self.interface.form(member)
+            made.append(textwrap.fill(f"{safe(keyword.name)} ({keyword.type}){': ' + said if said else ''}"
+                                      f"{f' (called as {form})' if form else ''}", 90, initial_indent="  ", subsequent_indent="      "))
+        return "\n".join(made)
 
-    def stub(self, function, indent):
-        """`def` of a function of the module (indent "") or of a method."""
-        listed = ["self"] if indent else []
-        required = len(function.arguments) - function.optional
-        for k, a in enumerate(function.arguments):
-            name = a.name + "_" if a.name in WORDS else a.name
-            listed.append(f"{name}: {a.type}{' = ...' if k >= required else ''}")
-        if len(listed) > (1 if indent else 0):
-            listed.append("/")  # given by their places
-        if function.definition:
-            listed += ["*", *self.keywords(function.definition)]
-        head = f"{indent}def {function.method if indent else function.name}({self.listed(listed, indent + '        ')})"
-        return f'{head} -> {self.result(function)}:\n{self.quoted(self.doc(function), indent + "    ")}'
-
-    @staticmethod
-    def listed(words, indent):
-        """Words with commas, in lines of at most 110 characters."""
-        lines = [""]
-        for k, word in enumerate(words):
-            word += "" if k + 1 == len(words) else ","
-            if len(lines[-1]) + len(word) > 100:
-                lines.append(indent + word)
-            else:
-                lines[-1] += (" " if lines[-1] else "") + word
-        return "\n".join(lines)
-
-    @staticmethod
-    def quoted(text, indent):
-        body = textwrap.indent(text, indent).strip().replace("\\", "\\\\")
-        body += " " if body.endswith('"') else ""
-        return f'{indent}"""{body}"""\n'
-
-    def stubs(self):
-        interface, out = self.interface, [HEAD]
-        for kind, entry in sorted(interface.structs.items()):
-            if kind in ("mps_error", "mps_edit"):
-                continue
-            out.append(f"class {class_name(kind)}(Result):")
-            out.append(self.quoted(self.words(entry.text) or kind, "    "))
-            for m in entry.names:
-                if m.name not in ("struct_size", "reserved", *WORDS):
-                    out.append(f"    {m.name}: {interface.python(m.type, 'out')}")
-                    if m.text:
-                        out.append(self.quoted(textwrap.fill(self.words(m.text), 90), "    "))
-            out.append("")
-        for kind in interface.kinds:
-            out.append(f"class {class_name(kind)}(Object):")
-            for line in EXTRA.get(kind, []):
-                keywords = self.listed(["*", *self.keywords("mps_context_def")], " " * 12)
-                out.append("    " + line.format(keywords=keywords))
-            out += [self.stub(f, "    ") for f in interface.functions.values()
-                    if f.owner == kind and f.method not in SHADOWED and f.name not in OWN.get(kind, ())]
-            out.append("    _libmps: ClassVar[Any]\n")
-        out += [self.stub(f, "") for f in interface.functions.values() if not f.owner and f.name != "context_create"]
-        for n in (n for n in interface.constants if not n.name.startswith("MPS_DEF_")):
-            out.append(f"{n.name.removeprefix('MPS_')}: int")
-            if n.text:
-                out.append(self.quoted(textwrap.fill(self.words(n.text), 90), ""))
-        return "\n".join(out)
-
-    def docs(self):
-        """The module _docs: of each function its docstring, arguments, how many may be left out, members of its
-        definition and result; of each object and struct what it is."""
+    def members(self, struct):
+        """What members a struct has and what they mean, for the docstring of its class."""
         rows = []
-        for f in self.interface.functions.values():
-            arguments = tuple((a.name, a.type) for a in f.arguments)
-            keywords = tuple((m.name, self.interface.python(m.type, "member"))
-                             for m in self.members(f.definition)) if f.definition else ()
-            rows.append(f"    {f.name!r}: ({self.doc(f)!r},\n        {arguments!r}, {f.optional}, {keywords!r}, "
-                        f"{self.result(f)!r}),")
-        structs = [f"    {name!r}: {(self.words(e.text) + chr(10) + chr(10) + self.rows(self.members(name), 'out'))!r},"
-                   for name, e in sorted(self.interface.structs.items())]
-        return ('"""Written by make_docs.py."""\n\nFUNCTIONS = {\n' + "\n".join(rows) + "\n}\nSTRUCTS = {\n"
-                + "\n".join(structs) + "\n}\n")
+        for m in self.interface.structs[struct].names:
+            if m.name != "struct_size" and not m.name.startswith("reserved") and not m.name.endswith(("user", "release")):
+                enum, _ = self.interface.member_enum(struct, m)
+                said = self.words(m.text)
+                rows.append(textwrap.fill(f"{m.name} ({enum or self.interface.python(m.type, 'out')}){': ' + said if said else ''}", 90,
+                                          initial_indent="  ", subsequent_indent="      "))
+        return "\n".join(rows)
+
+    def table(self):
+        """The module _tables."""
+        interface, rows = self.interface, []
+        for f in interface.functions.values():
+            parameters = tuple((role, word, more if isinstance(more, str) else "") for role, word, more in f.parameters)
+            arguments = tuple((safe(a.name), a.type, a.default, a.unit, a.enum) for a in f.arguments)
+            results = tuple((safe(n.name), n.type) for n in f.results)
+            rows.append(f"    {f.name!r}: ({f.full!r}, {f.owner!r}, {f.form!r}, {f.word!r}, {f.made!r}, {f.entry.result!r},\n"
+                        f"        {parameters!r},\n        {arguments!r},\n        {f.definition!r}, {results!r}, {self.result(f)!r},\n"
+                        f"        {self.doc(f)!r}),")
+        definitions = {struct: {safe(k.name): (k.type, k.default, k.unit, k.enum, interface.member_enum(struct, m)[1] if m.type else ())
+                                for k, m in interface.keywords(struct)}
+                       for struct in interface.structs if struct in interface.tables or struct.endswith("_layer")}
+        chosen = {struct: found for struct, entry in interface.structs.items()
+                  if (found := {m.name: enum for m in entry.names if (enum := interface.member_enum(struct, m)[0])})}
+        enums = {name: (kind, prefix, tuple(n.name for n in names), self.words(text))
+                 for name, (kind, prefix, names, _, text) in interface.groups.items()}
+        structs = {name: (class_name(name), self.words(e.text) + "\n\n" + self.members(name)) for name, e in sorted(interface.structs.items())
+                   if name not in UNSEEN and not name.endswith("_call")}
+        spoken = {name: said for name, said in self.spoken.items() if name.startswith("MPS_") or "." in said or said[0].isupper()}
+        return ('"""Written by make_docs.py."""\n\nfrom math import inf\n\n#: name: (C function, owner, form, word, kind that it makes, C result, parameters '
+                '(role, name, more), arguments\n#: (name, type, default, unit, enumeration), definition, results, type, docstring)\n'
+                "FUNCTIONS = {\n" + "\n".join(rows) + "\n}\n"
+                f"KINDS = {tuple(interface.kinds)!r}\nDEFINITIONS = {definitions!r}\nCHOSEN = {chosen!r}\nENUMS = {enums!r}\n"
+                f"STRUCTS = {structs!r}\nUNITS = {interface.units!r}\nSPOKEN = {spoken!r}\n"
+                f"CONSTANTS = {tuple(n.name for n in interface.constants)!r}\n")
 
 
 def main():
-    include, package, out = map(Path, sys.argv[1:4])
+    root, out = map(Path, sys.argv[1:3])
     shapes = {}
-    exec((package / "_shapes.py").read_text(), shapes)
-    writer = Writer(Interface(*headers.read(include / "mps"), shapes))
-    (out / "_docs.py").write_text(writer.docs())
-    (out / "__init__.pyi").write_text(writer.stubs())
+    exec((root / "python/libmps/_shapes.py").read_text(), shapes)
+    writer = Writer(Interface(*headers.read(root / "include/mps"), shapes, tables.members(root), tables.units(root)))
+    (out / "_tables.py").write_text(writer.table())
+    (out / "__init__.pyi").write_text(stubs.text(writer))
 
 
 main()

@@ -11,26 +11,25 @@ import textwrap
 
 import headers
 
-PLAIN = ("Error", "StaleError", "MpsWarning", "Field", "Block", "Edit", "Object", "Result")
+PLAIN = ("Warning", "Field", "FieldInfo", "Block", "Edit", "Object", "Result")
 
 
 def stubs(root):
     """The stubs as a syntax tree."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-B", root / "python/make_docs.py", root / "include", root / "python/libmps", folder], check=True)
+        subprocess.run([sys.executable, "-B", root / "python/make_docs.py", root, folder], check=True)
         return ast.parse((pathlib.Path(folder) / "__init__.pyi").read_text())
 
 
 def signature(function):
-    """The arguments: those by place, then those by keyword with an optional value; no types, which the text has."""
+    """The arguments, those with a default as optional, then those by keyword alone; no types, which the text has."""
     a = function.args
     listed = [arg.arg for arg in a.posonlyargs + a.args]
-    optional = len(a.defaults)
-    for k in range(len(listed) - optional, len(listed)):
-        listed[k] += "=..."
-    listed = [name for name in listed if name.removesuffix("=...") != "self"]
+    for k, default in enumerate(a.defaults, len(listed) - len(a.defaults)):
+        listed[k] += f"={ast.unparse(default)}"
+    listed = [name for name in listed if name != "self"]
     if a.kwonlyargs:
-        listed += ["*", *(f"{arg.arg}=..." for arg in a.kwonlyargs)]
+        listed += ["*", *(f"{arg.arg}={ast.unparse(default)}" if default else arg.arg for arg, default in zip(a.kwonlyargs, a.kw_defaults))]
     return f"({', '.join(listed)})"
 
 
@@ -51,11 +50,9 @@ def body(text, indent):
         if part.startswith("Keywords ("):
             head, _, rows = part.partition("\n")
             lines += [headers.escape(head), "", *keywords(rows), ""]
-        elif re.match(r"C: ", part):
+        elif re.match(r"C: ", part):  # of a property that is set, two
             name = re.search(r"\b(mps_\w+)\(", part)
             lines += [f"C: ``{name[1]}``" if name else headers.escape(part), ""]
-        elif part.startswith("A failed call raises Error"):
-            continue  # said once, at the head of the page
         else:
             lines += [row.removeprefix("") for row in headers.paragraphs(part, 0)]
     return [" " * indent + line if line else "" for line in lines]
@@ -71,6 +68,20 @@ def function(node, kind, indent):
     return [" " * indent + line if line else "" for line in lines]
 
 
+def is_property(item):
+    return isinstance(item, ast.FunctionDef) and any(isinstance(d, ast.Name) and d.id == "property" for d in item.decorator_list)
+
+
+def is_method(item):
+    return isinstance(item, ast.FunctionDef) and not item.decorator_list and not item.args.vararg and (
+        not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__setitem__", "__delitem__", "__contains__", "__len__", "__iter__"))
+
+
+def is_member(item):
+    """Of an enumeration."""
+    return isinstance(item, ast.Assign)
+
+
 def class_lines(node, indent=0):
     """A class with its attributes and methods."""
     lines = [f".. py:class:: {node.name}", "", *body(ast.get_docstring(node), 3)]
@@ -79,7 +90,14 @@ def class_lines(node, indent=0):
             behind = node.body[k + 1] if k + 1 < len(node.body) else None
             said = behind.value.value if isinstance(behind, ast.Expr) and isinstance(behind.value, ast.Constant) else ""
             lines += [f"   .. py:attribute:: {item.target.id}", f"      :type: {ast.unparse(item.annotation)}", "      :no-contents-entry:", "", *body(said, 6)]
-        elif isinstance(item, ast.FunctionDef) and (not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__setitem__", "__delitem__", "__contains__", "__len__")):
+        elif is_property(item):
+            lines += [f"   .. py:property:: {item.name}", f"      :type: {ast.unparse(item.returns)}", "      :no-contents-entry:", "",
+                      *body(ast.get_docstring(item), 6)]
+        elif is_member(item):
+            lines += ["   .. py:attribute:: " + item.targets[0].id, "      :no-contents-entry:", ""]
+            behind = node.body[k + 1] if k + 1 < len(node.body) else None
+            lines += body(behind.value.value, 6) if isinstance(behind, ast.Expr) else []
+        elif is_method(item):
             lines += function(item, "method", 3)
     return lines
 
@@ -109,9 +127,9 @@ INDEX = """Python reference
 Every object, function and constant of the package ``libmps``, with the comments of the C headers: the same that
 ``help(libmps.Mpm.step)`` shows. The guide is :doc:`/python`.
 
-Objects come from a ``Context``: ``context = libmps.Context()``, ``context.particles_create(...)``,
-``context.mpm_create(...)``. Arguments before ``*`` are given by their place, the others by name; one that is not given has the
-default of its text. A call that fails raises ``Error``, whose ``status`` is one of the ``ERROR_...`` that its text names.
+Objects are made by their classes: ``libmps.Particles(...)``, ``libmps.Mpm(...)``, materials by ``libmps.MohrCoulomb(...)`` and
+its like. Arguments behind ``*`` are given by name; one that is not given has the default of its text. A call that fails raises
+one of the errors that its text names; all are ``Error``.
 
 {table}
 
@@ -126,8 +144,13 @@ def stage(root, write):
     """Writes the pages; returns the number of methods and functions on them."""
     tree = stubs(root)
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
-    objects = [node for node in classes if node.name not in PLAIN and ast.unparse(node.bases[0]) == "Object"]
-    results = [node for node in classes if node.name not in PLAIN and node not in objects]
+    parent = {node.name: ast.unparse(node.bases[0]) if node.bases else "" for node in classes}
+    kinds = [node for node in classes if node.name not in PLAIN and parent[node.name] in ("Object", "Solver")]
+    ways = [node for node in classes if parent[node.name] in {kind.name for kind in kinds} - {"Solver"}]
+    enums = [node for node in classes if parent[node.name] in ("IntEnum", "IntFlag")]
+    results = [node for node in classes if parent[node.name] == "Result" and node.name not in PLAIN]
+    base = [node for node in classes if node not in kinds + ways + enums + results]
+    objects = kinds
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     count, rows = len(functions), []
     makers = {}  # which methods return an object
@@ -137,21 +160,25 @@ def stage(root, write):
                 for name in re.findall(r"\w+", ast.unparse(item.returns)):
                     makers.setdefault(name, []).append(f"``{owner.name}.{item.name}``")
     for node in objects:
-        methods = [item for item in node.body if isinstance(item, ast.FunctionDef)]
-        count += len(methods)
-        write(f"python-api/{node.name.lower()}.rst", titled(node.name, *made_by(makers.get(node.name, [])), *class_lines(node)))
-        rows.append(f"   * - :doc:`{node.name} <{node.name.lower()}>`\n     - {len(methods)} methods")
+        of_kind = [node, *(way for way in ways if parent[way.name] == node.name)]
+        count += sum(is_method(item) or is_property(item) for way in of_kind for item in way.body)
+        makes = [f"``{way.name}``" for way in of_kind[1:]] + makers.get(node.name, [])
+        write(f"python-api/{node.name.lower()}.rst", titled(node.name, *made_by(makes), *(line for way in of_kind for line in class_lines(way))))
+        own = [item for item in node.body if is_method(item) or is_property(item)]
+        rows.append(f"   * - :doc:`{node.name} <{node.name.lower()}>`\n     - {len(own)} methods and properties")
     write("python-api/functions.rst", titled("Functions of the module", *(line for node in functions for line in function(node, "function", 0))))
     write("python-api/results.rst", titled("Results", "Structs that C fills, with members as attributes.", "",
                                            *(line for node in results for line in class_lines(node))))
-    base = [node for node in classes if node.name in PLAIN]
+    write("python-api/enumerations.rst", titled("Enumerations", "Choices: by a member, or by its name as a text, in capitals or not.", "",
+                                                *(line for node in enums for line in class_lines(node))))
     write("python-api/base.rst", titled("Errors, fields, edits", *(line for node in base for line in class_lines(node))))
     lines = []
     for name, said in constants(tree):
         lines += [f".. py:data:: {name}", "   :no-contents-entry:", "", *body(said, 3)]
     write("python-api/constants.rst", titled("Constants", *lines))
     rest = [("functions", f"{len(functions)} functions without an object"), ("results", f"{len(results)} structs that calls return"),
-            ("base", "errors, fields of particles, edits, what all objects have"), ("constants", "choices and statuses")]
+            ("enumerations", f"{len(enums)} lists of choices"), ("base", "errors, fields of particles, edits, what all objects have"),
+            ("constants", "numbers")]
     rows += [f"   * - :doc:`{name}`\n     - {what}" for name, what in rest]
     table = ".. list-table::\n   :header-rows: 1\n   :widths: 40 60\n\n   * - page\n     - what\n" + "\n".join(rows)
     pages = [node.name.lower() for node in objects] + [name for name, _ in rest]

@@ -1,11 +1,13 @@
 """Fields of particles as arrays: the set's own memory, looked at only while it is valid."""
 
+import os
 import warnings
 
 import numpy
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from ._call import StaleError, ffi, library
+from ._errors import StaleError
+from ._library import ffi, library
 
 #: Ways to the memory itself, which would outlive the check, or around a commit.
 _RAW = frozenset(("base", "ctypes", "data", "flat", "getbuffer", "setflags"))
@@ -21,13 +23,13 @@ class _Loan:
 
     def _steps(self):
         """How many calls may have changed fields of the set."""
-        return self.owner.context._steps.get(int(ffi.cast("intptr_t", self.owner.pointer)), 0)
+        return self.owner.context._steps.get(int(ffi.cast("intptr_t", self.owner._pointer)), 0)
 
     def reason(self):
         """Why the memory may not be looked at any more; None where it may."""
         if self.ended is None:
-            if (self.owner.pointer is None or
-                    library.mps_particles_epoch(self.owner.pointer) != self.epoch):
+            if (self.owner._pointer is None or
+                    library.mps_particles_epoch(self.owner._pointer) != self.epoch):
                 self.ended = "particles were added, removed or sorted, or a field was removed: take the field again"
             elif self.steps is not None and self.steps != self._steps():
                 self.ended = "a solver has stepped since: take the field again; numpy.array(field) is a copy that stays"
@@ -166,7 +168,8 @@ class Edit:
 
     def __init__(self, owner, name):
         self._owner, self._edit = owner, ffi.new("mps_edit *")
-        owner._invoke("particles_edit", (name, self._edit), {})
+        text = os.fsencode(name)
+        owner._checked("Particles.edit()", library.mps_particles_edit, text, self._edit)
         self.array = lend(owner, self._edit.view, True)
         self._name = name
 
@@ -175,18 +178,18 @@ class Edit:
 
     def __del__(self):
         array = getattr(self, "array", None)
-        if array is None or array.stale or self._owner.context.pointer is None:
+        if array is None or array.stale or self._owner.context._pointer is None:
             return
         warnings.warn(f"the edit of {self._name!r} was dropped without commit(), and is abandoned",
                       RuntimeWarning, stacklevel=2)
         self.abandon()
 
     def commit(self):
-        self._owner._invoke("particles_commit", (self._edit,), {})
+        self._owner._checked("Edit.commit()", library.mps_particles_commit, self._edit)
         self.array._loan.ended = "the edit has been committed: take the field to read it"
 
     def abandon(self):
-        self._owner._invoke("particles_abandon", (self._edit,), {})
+        self._owner._checked("Edit.abandon()", library.mps_particles_abandon, self._edit)
         self.array._loan.ended = "the edit has been abandoned: take the field to read it"
 
     def __enter__(self):

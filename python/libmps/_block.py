@@ -3,7 +3,8 @@ that none can outlive its memory."""
 
 import numpy
 
-from ._call import StaleError, ffi
+from ._errors import StaleError
+from ._library import ffi
 
 #: Columns of the stress: xx, yy, zz, xy in 2D, and zx, yz besides in 3D (mps/material.h).
 STRESSES = {2: 4, 3: 6}

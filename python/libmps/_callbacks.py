@@ -4,10 +4,12 @@ import inspect
 
 import numpy
 
-from . import _cdef, _shapes
-from ._call import ffi, library
+from . import _cdef, _enums, _shapes
+from ._library import ffi, library, tag
 
 _DTYPES = {"double": numpy.float64, "int64_t": numpy.int64, "int32_t": numpy.int32}
+#: Contexts with a call under way, the last one begun at the end.
+active = []
 _STATUSES = frozenset(ffi.typeof("mps_status").elements)
 
 
@@ -27,7 +29,9 @@ def received(pointer):
     numbers = {name: getattr(pointer, name) for name, field in kind.fields if field.type.kind == "primitive"}
     numbers["entries"] = int(pointer.start[pointer.rows]) if pointer.start else 0
     arrays = {name: array(getattr(pointer, name), _shapes.length(formula, numbers))
-              for name, formula in _shapes.RECEIVED[kind.cname].items()}
+              for name, formula in _shapes.RECEIVED[tag(kind)].items()}
+    if "change" in numbers:
+        numbers["change"] = _enums.named("LinearChange", numbers["change"])
     return {**numbers, **arrays}
 
 
@@ -68,7 +72,7 @@ class Callback:
             made = [self.state.wrap(value) for value in values[:len(self.passes or values)]]
             answer = self.function(*made)
             for held in made:
-                if hasattr(type(held), "pointer"):  # a solver, which steps on: fields taken here are stale then
+                if hasattr(type(held), "_pointer"):  # a solver, which steps on: fields taken here are stale then
                     held._stepped()
             return None if self.kind.result.kind == "void" else self.status(answer)
         given = dict(zip(self.names, values))
@@ -118,7 +122,7 @@ class Callback:
         if answer is None:
             return 0
         if isinstance(answer, (bool, numpy.bool_)) or answer not in _STATUSES:
-            raise TypeError(f"{self.word!r} returned {answer!r}: must return None, or a status (ERROR_CANCELLED ends the call); "
+            raise TypeError(f"{self.word!r} returned {answer!r}: must return None, or a Status (Status.CANCELLED ends the call); "
                             "an exception ends the call, too")
         return int(answer)
 
@@ -145,7 +149,7 @@ class Law(Callback):
 
 def make(state, kind, function, owner, word):
     """The C function that calls a Python function; what that raises goes into state.raised."""
-    laws = any(argument.cname == "mps_material_block *" for argument in kind.args)
+    laws = any(argument.cname == "struct mps_material_block *" for argument in kind.args)
     calls = (Law if laws else Callback)(state, kind, function, owner, word)
     stops = kind.cname == "int32_t(*)(void *)"  # the hook `cancel`
 
@@ -156,7 +160,11 @@ def make(state, kind, function, owner, word):
         return calls(*values)
 
     def failed(_type, exception, trace):
-        state.raised.append(exception.with_traceback(trace))  # the user's own lines are in it
+        # A law or a signal of another context is asked by a solver: what it raises comes out of the solver's call.
+        raised = state.raised
+        if active and not any(context._raised is raised for context in active):
+            raised = active[-1]._raised
+        raised.append(exception.with_traceback(trace))  # the user's own lines are in it
 
     error = None if kind.result.kind == "void" else library.MPS_ERROR_CANCELLED if kind.result.kind == "enum" else 1
     return ffi.callback(kind, called, error=error, onerror=failed)

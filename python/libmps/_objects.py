@@ -1,50 +1,63 @@
-"""Objects of the library: what they own and their methods."""
+"""Objects of the library: how they are made, what they own, their methods and properties."""
 
+import difflib
 import inspect
+import os
 import sys
 import warnings
 
 import numpy
 
-from . import _cdef, _docs, _show
+from . import _callbacks, _enums, _quantities, _show, _tables
 from ._arrays import Edit, lend
-from ._call import (Call, Error, MpsWarning, call, class_name, ffi, functions, library, returns_status, same,
-                    to_python)
+from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, same, to_python, unknown)
+from ._errors import ArgumentError, StateError, Warning, failed, spoken
+from ._library import ffi, library, opaque, tag
 
 
 class Object:
-    """An object of the C library. Its methods are the functions of its header; close(), the end of a `with`
-    block, or the last reference destroys it."""
+    """An object of the C library. Its methods and properties are the functions of its header; close(), the end of a
+    `with` block, or the last reference destroys it."""
 
-    pointer = None
-    lengths = {}
+    _pointer = None
+    _lengths = {}
+    _kind = ""
 
-    def __init__(self, pointer, context=None, alive=(), owned=True):
-        self.pointer = pointer
-        self.kind = ffi.typeof(pointer).item.cname.removeprefix("mps_")
+    def __init__(self, *_values, **_keywords):
+        makers = sorted(f.word for f in functions.values() if f.form == "class" and f.made == self._kind)
+        raise TypeError(f"a {type(self).__name__} is made by {', '.join(makers) or 'a method of another object'}")
+
+    def _hold(self, pointer, context=None, alive=(), owned=True):
+        self._pointer = pointer
         self.context = context or self
         self._alive = list(alive)  # callbacks, and what the object was made from
+        self._held = {}  # what C has been given since
         # Garbage is collected anywhere, inside cffi too: nothing may have to be looked up then.
-        self._destroy = getattr(library, f"mps_{self.kind}_destroy") if owned else _leave
-        self._holder = ffi.new(f"mps_{self.kind} *[1]", [pointer])
-        if context is None:
-            self._running, self._late = 0, []  # calls under way; what is destroyed after them
-            self._steps = {}  # calls that may have changed fields, by the address of the set
-            self._raised = []  # by callbacks in the call under way
+        self._destroy = getattr(library, f"mps_{self._kind}_destroy") if owned else _leave
+        self._holder = ffi.new(f"mps_{self._kind} *[1]", [pointer])
+        return self
+
+    def _create(self, function, values, keywords, context):
+        """Makes the object of this Python object by a function mps_..._create."""
+        bound, members = bind(function, values, keywords)
+        context = _context_of(context, bound)
+        made, outputs = _perform(function, None, context, bound, members)
+        self._hold(outputs[0], context, _kept(made.state.alive))
+        self._lengths = {word: value for word, value in made.state.lengths.items() if isinstance(value, (int, float))}
 
     def close(self):
         """Destroys the object; without effect the second time."""
-        if self.pointer is None:
+        if self._pointer is None:
             return
-        self.pointer = None
+        self._pointer = None
         if self.context._running:  # by garbage collection in a callback
             self.context._late.append((self._destroy, self._holder, self._alive))
         else:
             self._destroy(self._holder)
-        self._alive = []
+        self._alive, self._held = [], {}
 
     def __del__(self):
-        if self.pointer is not None:
+        if self._pointer is not None:
             self.close()
 
     def __enter__(self):
@@ -54,7 +67,7 @@ class Object:
         self.close()
 
     def __reduce_ex__(self, _protocol):
-        raise TypeError(f"a {class_name(self.kind)} is neither copied nor pickled: a checkpoint (save, restore) keeps the state of "
+        raise TypeError(f"a {type(self).__name__} is neither copied nor pickled: a checkpoint (save, restore) keeps the state of "
                         "a solver, and numpy.array(set[name]) a field")
 
     def __repr__(self):
@@ -63,89 +76,159 @@ class Object:
     def _repr_html_(self):
         return _show.html(self)
 
-    def __getattr__(self, name):
-        raise AttributeError(f"{self.kind if 'kind' in self.__dict__ else 'object'} of libmps has no {name!r}")
+    def _near(self, name):
+        near = difflib.get_close_matches(name, [n for n in dir(type(self)) if n[0] != "_"], 1)
+        return f"{type(self).__name__} of libmps has no {name!r}{f' (is it {near[0]!r}?)' if near else ''}"
 
-    def _invoke(self, name, values, members):
-        if self.pointer is None:
-            raise ValueError(f"the {self.kind} is closed")
-        context = self.context
-        if context.pointer is None:
-            raise ValueError(f"the context of the {self.kind} is closed")
-        context._running += 1
-        try:
-            result, outputs, state = call(name, self, values, members)
-        finally:
-            context._running -= 1
-            if _may_step(self.kind, name):
-                self._stepped()
-            while not context._running and context._late:
-                destroy, holder, _alive = context._late.pop()
-                destroy(holder)
-        if name.startswith("context_set_"):  # a hook stays: before anything may raise
-            self._alive += [held for held in state.alive if _is_callback(held)]
-        if context._raised and not context._running:  # the first of them is the cause
-            exception = context._raised[0]
-            context._raised.clear()
-            raise exception
-        if not returns_status(name):
-            return self._known(result, state)
-        if result != 0:
-            raise Error("mps_" + name, result, library.mps_context_error(context.pointer))
-        made = [output if isinstance(output, numpy.ndarray) else self._made(output[0], state)
-                for output in outputs]
-        self._remember(name, state, made)
-        return None if not made else made[0] if len(made) == 1 else tuple(made)
+    def __getattr__(self, name):
+        raise AttributeError(self._near(name))
+
+    def __setattr__(self, name, value):
+        if name[0] != "_" and name != "context" and not hasattr(type(self), name) and type(self).__module__ == "libmps":  # a slip
+            raise AttributeError(self._near(name))
+        object.__setattr__(self, name, value)
+
+    def _open(self):
+        """The pointer, of an object that is not closed."""
+        if self._pointer is None:
+            raise StateError(f"the {class_name(self._kind)} is closed")
+        if self.context._pointer is None:
+            raise StateError(f"the Context of the {class_name(self._kind)} is closed")
+        return self._pointer
+
+    def _invoke(self, function, values, keywords):
+        self._open()
+        if function.selects and ("box" in keywords or "all" in keywords):
+            keywords = self._selected(function, values, dict(keywords))
+        bound, members = bind(function, values, keywords)
+        made, outputs = _perform(function, self, self.context, bound, members)
+        if not function.status and function.parameters[-1][0] != "out":
+            return self._known(outputs, function, made.state)
+        found = [self._made(output, made.state) for output in outputs]
+        self._remember(function, made.state, found)
+        return None if not found else found[0] if len(found) == 1 else function.several(found)
+
+    def _selected(self, function, values, keywords):
+        """A selection of particles by a box, or of all, as their ids."""
+        box, every = keywords.pop("box", None), keywords.pop("all", False)
+        if (box is not None) + bool(every) + ("ids" in keywords or len(values) > list(function.arguments).index("ids")) != 1:
+            raise ArgumentError(f"{function.place}: one of 'ids', 'box' and 'all' selects the particles")
+        particles = self if self._kind == "particles" else self.particles
+        if box is None:
+            return {**keywords, "ids": numpy.array(particles["id"])}
+        if len(box) != 2:
+            raise ArgumentError(f"{function.place}: 'box' is {box!r}, must be two corners: (lower, upper)")
+        lower, upper = ([side if x is None else x for x in (corner if corner is not None else [None] * particles.dim)]
+                        for corner, side in zip(box, (-numpy.inf, numpy.inf)))
+        return {**keywords, "ids": particles.select_box(lower, upper)}
+
+    def _checked(self, said, function, *values):
+        """Calls a function of the library that is in no table; `said` is what Python calls it."""
+        with _Running(self.context):
+            status = function(self._open(), *values)
+        if status:
+            raise failed(said, status, library.mps_context_error(self.context._pointer))
+
+    def _keep(self, function, bound, alive):
+        """What C has stored: callbacks and objects that Python must not drop. Another setting takes the place of the last."""
+        kept = [held for held in _kept(alive) if held is not self and (_is_callback(held) or held._kind in ("signal", "material"))]
+        if function.word.startswith("add_") or function.word == "set_material":  # of some particles: the others keep theirs
+            held = self._held.setdefault(function.word, [])
+            held += [new for new in kept if not any(new is old for old in held)]
+        else:
+            which = next((bound[word] for word in ("number", "component", "equation", "column") if word in bound), None)
+            self._held[function.word, which] = kept
 
     def _stepped(self):
         """Fields of the solver's set that were taken before may have other values now: they are stale."""
-        if self.pointer is not None:
-            place = int(ffi.cast("intptr_t", getattr(library, f"mps_{self.kind}_particles")(self.pointer)))
+        if self._pointer is not None:
+            place = int(ffi.cast("intptr_t", getattr(library, f"mps_{self._kind}_particles")(self._pointer)))
             self.context._steps[place] = self.context._steps.get(place, 0) + 1
 
-    def _remember(self, name, state, made):
+    def _remember(self, function, state, made):
         """Contacts belong to their solver, until close(); lengths that only a definition has."""
         for result in made:
             if not isinstance(result, Object):
                 continue
-            if result.kind == "contact":
+            if result._kind == "contact":
                 result._alive = [held for held in result._alive if held is not self]
                 self._alive.append(result)
-            result.lengths = {word: value for word, value in state.lengths.items()
-                              if isinstance(value, (int, float))}
-        if name in ("fluid_add_boundary", "fluid_set_boundary"):
+            result._lengths = {word: value for word, value in state.lengths.items()
+                               if isinstance(value, (int, float))}
+        if function.name in ("fluid_add_boundary", "fluid_set_boundary"):
             number = made[0] if made else state.lengths["number"]
-            self.lengths[number] = state.lengths["node_count"]
+            self._lengths = {**self._lengths, number: state.lengths["node_count"]}
 
     def _made(self, value, state):
-        if isinstance(value, ffi.CData) and ffi.typeof(value).kind == "pointer":
+        if isinstance(value, ffi.CData) and ffi.typeof(value).kind == "pointer" and value:
             return wrap(value, self.context, state.alive)
         return to_python(value)
 
-    def _known(self, result, state):
+    def _known(self, result, function, state=None):
         """What a question returns. An object that is lent is the one that made this, or a part of
         this, which it keeps alive."""
         if isinstance(result, ffi.CData) and ffi.typeof(result).kind == "pointer":
-            for held in [self.context, *self._alive, *state.alive]:
-                if isinstance(held, Object) and same(held.pointer, result):
+            for held in [self.context, *self._alive, *(state.alive if state else ())]:
+                if isinstance(held, Object) and same(held._pointer, result):
                     return held
             kind = ffi.typeof(result).item
-            if result and kind.kind == "struct" and kind.fields is None:
-                return classes[kind.cname.removeprefix("mps_")](result, self.context, [self], owned=False)
-        return to_python(result)
+            if result and kind.kind == "struct" and opaque(kind):
+                made = classes[tag(kind).removeprefix("mps_")]
+                return made.__new__(made)._hold(result, self.context, [self], owned=False)
+        return _enums.named(function.enum, result) if function.enum else to_python(result)
+
+
+class _Running:
+    """A call of the library is under way: what callbacks raise comes out, what is destroyed in it waits."""
+
+    def __init__(self, context):
+        self.context = context
+
+    def __enter__(self):
+        self.context._running += 1
+        _callbacks.active.append(self.context)
+
+    def __exit__(self, *_):
+        context = self.context
+        context._running -= 1
+        _callbacks.active.remove(context)
+        while not context._running and context._late:
+            destroy, holder, _alive = context._late.pop()
+            destroy(holder)
+        if context._raised and not context._running:  # the first of them is the cause
+            exception = context._raised[0]
+            context._raised.clear()
+            raise exception
+
+
+def _perform(function, owner, context, bound, members):
+    """(the call, its results); a failed one raises."""
+    made = Performance(function, owner, context, bound, members)
+    steps = owner is not None and _may_step(owner._kind, function)
+    if context is None:
+        result = made.perform()
+    else:
+        try:
+            with _Running(context):
+                result = made.perform()
+        finally:
+            if steps:
+                owner._stepped()
+            if owner is not None and function.keeps:
+                owner._keep(function, bound, made.state.alive)
+    if function.status and result != 0:
+        raise failed(function.place, result, library.mps_context_error(context._pointer if context else ffi.NULL))
+    return made, made.results() if function.status or made.made else result
 
 
 #: Objects that change fields of a set of particles, and what they do without changing them.
-_SOLVERS = ("mpm", "dynamics", "elastic", "fluid", "solver")
-_KEEP_FIELDS = ("add_", "remove_", "set_", "save", "snapshot", "grid", "dt", "find_limit")
+_KEEP_FIELDS = ("add_", "remove_", "set_", "save", "snapshot", "grid", "dt", "find_limit", "get_")
 
 
-def _may_step(kind, name):
-    """Whether mps_`name` of a solver may change fields of its particles."""
-    if kind not in _SOLVERS or name.removeprefix(kind + "_").startswith(_KEEP_FIELDS):
-        return False
-    full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
-    return not _cdef.PARAMETERS[full][0].startswith("const ")
+def _may_step(kind, function):
+    """Whether a function of a solver may change fields of its particles."""
+    return (kind in SOLVERS and not function.c()[2][0] and
+            not function.name.removeprefix(function.owner + "_").startswith(_KEEP_FIELDS))
 
 
 def _warn(level, message):
@@ -155,7 +238,7 @@ def _warn(level, message):
     depth, frame = 1, sys._getframe()
     while frame.f_back and frame.f_globals.get("__package__") == __package__:
         depth, frame = depth + 1, frame.f_back
-    warnings.warn(message, MpsWarning, stacklevel=depth)
+    warnings.warn(spoken(message), Warning, stacklevel=depth)
 
 
 def _leave(_holder):
@@ -166,6 +249,10 @@ def _is_callback(held):
     return isinstance(held, ffi.CData) and ffi.typeof(held).kind == "function"
 
 
+def _kept(alive):
+    return [held for held in alive if isinstance(held, Object) or _is_callback(held)]
+
+
 def _go_on():
     """The cancel hook where the program has none. Python looks for signals when a function of its own
     begins: so Ctrl-C ends a run within a step, by KeyboardInterrupt."""
@@ -173,72 +260,234 @@ def _go_on():
 
 
 class Context(Object):
-    """mps_context: the members of mps_context_def by keyword (threads, executor, log ...). Without a
+    """Threads, memory, hooks and the last error of what is made from it. Without a
     hook `cancel` Ctrl-C ends the call under way, as `cancel=lambda: 0` does; without a hook `log` warnings of the
-    library are Python's (MpsWarning, by the module `warnings`)."""
+    library are Python's (libmps.Warning, by the module `warnings`)."""
+
+    _kind = "context"
 
     def __init__(self, **members):
         raised = []
+        self._progress = members.get("progress")
         members = {**members, "cancel": members.get("cancel") or _go_on, "log": members.get("log") or _warn}
         state, made, text = Call(raised), ffi.new("mps_context *[1]"), ffi.new("char[512]")
         definition = state.struct(ffi.typeof("mps_context_def"), members, "Context() has no keyword")
         status = library.mps_context_create(definition, made, text, 512)
         if status != 0:
-            error = Error("mps_context_create", status)
-            error.args = (ffi.string(text).decode(),)
-            raise error
-        super().__init__(made[0], None, state.alive)
-        self._raised = raised
+            raise failed("Context()", status, text=f"Context(): {ffi.string(text).decode().removeprefix('mps_context_create: ')}")
+        self._running, self._late = 0, []  # calls under way; what is destroyed after them
+        self._steps = {}  # calls that may have changed fields, by the address of the set
+        self._raised = raised  # by callbacks in the call under way
+        self._hold(made[0], None, state.alive)
 
-    def set_cancel(self, cancel):
-        """mps_context_set_cancel; None: Ctrl-C alone ends a call."""
-        self._invoke("context_set_cancel", (cancel or _go_on,), {})
+    def set_cancel(self, cancel=None):
+        """Another hook `cancel`: a function without arguments, true to end the call; None: Ctrl-C alone ends it."""
+        self._invoke(functions["context_set_cancel"], (cancel or _go_on,), {})
 
-    def set_log(self, log):
-        """mps_context_set_log: log(level, message); None: warnings become Python's (MpsWarning)."""
-        self._invoke("context_set_log", (log or _warn,), {})
+    def set_log(self, log=None):
+        """Another hook `log`: log(level, message); None: warnings become Python's (libmps.Warning)."""
+        self._invoke(functions["context_set_log"], (log or _warn,), {})
+
+    def set_progress(self, progress=None):
+        """Another hook `progress`: progress(state), whose members are task, step, time, time_end, fraction; None: none."""
+        self._progress = progress
+        self._invoke(functions["context_set_progress"], (progress,), {})
+
+
+_default = None
+
+
+def default_context(**members):
+    """The context of all that is made without `context=`; with keywords, those of Context, a new one takes its place.
+    What was made before keeps its own."""
+    global _default
+    if members or _default is None or _default._pointer is None:
+        _default = Context(**members)
+    return _default
+
+
+def _context_of(given, bound):
+    """The context that is given; else that of the first object among the arguments; else the default."""
+    if given is not None:
+        if not isinstance(given, Context):
+            raise TypeError(f"'context' is {given!r}, must be a Context")
+        given._open()
+        return given
+    for value in bound.values():
+        if isinstance(value, Object):
+            if value._pointer is None:
+                raise StateError(f"the {class_name(value._kind)} is closed")
+            return value.context
+    return default_context()
 
 
 class Particles(Object):
-    """mps_particles: set["velocity"] reads a field, set.edit("velocity") writes it, set["velocity"] = values sets all of it,
-    "velocity" in set asks for it, del set["user.dose"] removes it."""
+    """A set of particles: p["velocity"] reads a field, p["velocity"] = values sets it, p["velocity", 0] is a component,
+    p.edit("velocity") opens it for writing, "velocity" in p asks for it, del p["user.dose"] removes it. len(p) is the
+    number of particles, and `for name in p` goes over the names of the fields."""
+
+    _kind = "particles"
 
     def __len__(self):
-        return self.count()
+        return library.mps_particles_count(self._open())
 
     def __getitem__(self, name):
-        view = ffi.new("mps_view *")
-        self._invoke("particles_view", (name, view), {})
-        return lend(self, view[0], False)
+        name, component = name if isinstance(name, tuple) else (name, None)
+        seen = ffi.new("mps_view *")
+        self._checked("Particles[]", library.mps_particles_view, _text(name), seen)
+        field = lend(self, seen[0], False)
+        return field if component is None else field[:, component] if field.ndim > 1 else field[:].reshape(-1, 1)[:, component]
 
     def __setitem__(self, name, values):
-        """mps_particles_set_array of all components, from (particles, components) values, of one component (particles,)."""
-        self.set_array(name, -1, values, len(values))
+        name, component = name if isinstance(name, tuple) else (name, -1)
+        text, count = _text(name), len(self)
+        if isinstance(values, (str, list, tuple)):
+            values = self._numbers(name, values)
+        width = components(self.context, self._pointer, name) or 1  # 0: C says that there is none
+        shape = (count,) if component >= 0 or width == 1 else (count, width)
+        try:
+            held = numpy.ascontiguousarray(numpy.broadcast_to(numpy.asarray(values, numpy.float64), shape))
+        except ValueError as error:
+            raise ArgumentError(f"the values of {name!r} have the shape {numpy.shape(values)}, must have {shape}, or one that "
+                                "broadcasts to it") from error
+        self._checked("Particles[]", library.mps_particles_set_array, text, component, ffi.cast("double *", held.ctypes.data), count)
+
+    def _numbers(self, name, values):
+        """Texts with units as numbers."""
+        if isinstance(values, str) or any(isinstance(v, str) for v in values):
+            if name not in self:
+                self.add_field(name)
+            unit = self.fields[name].unit
+            values = _quantities.number(values, "" if unit in ("", "-", "1") else unit, name)
+        return values
 
     def __delitem__(self, name):
-        self.remove_field(name)
+        self._checked("Particles[]", library.mps_particles_remove_field, _text(name))
 
     def __contains__(self, name):
-        return self.has_field(name) == 1
+        return library.mps_particles_has_field(self._open(), _text(name)) == 1
 
     def __iter__(self):
-        raise TypeError("a set of particles is not iterated: set['position'] has a row for each of them")
+        return iter([name for name, _, _ in _show.fields(self)])
+
+    def _ipython_key_completions_(self):
+        return list(self)
+
+    @property
+    def fields(self):
+        """The fields by name: their unit, meaning, components, whether they have whole numbers, or are only read."""
+        self._open()
+        count = library.mps_particles_field_count(self._pointer)
+        return {info.name: info for info in (FieldInfo(k, self) for k in range(count))}
 
     def edit(self, name):
-        """Opens a field for writing: `with set.edit("velocity") as v: v[:, 0] = 1.0` commits at the end of the
-        block. Error with ERROR_FIELD: no such field, or one that only the library writes; ERROR_STATE: it is open
+        """Opens a field for writing: `with p.edit("velocity") as v: v[:, 0] = 1.0` commits at the end of the
+        block. FieldError: no such field, or one that only the library writes; StateError: it is open
         already, or a callback of a solver is running."""
         return Edit(self, name)
 
+    def _columns(self, names):
+        """(name, labels of the components, a copy) of the fields named, or of all."""
+        for name in names or self:
+            values = numpy.array(self[name])
+            many = 1 if values.ndim == 1 else values.shape[1]
+            labels = {1: [""], self.dim: list("xyz")[:self.dim]}.get(many) or (
+                ["xx", "yy", "zz", "xy", "zx", "yz"][:many] if name == "stress" else [str(k) for k in range(many)])
+            yield name, labels, values
+
+    def to_pandas(self, *names):
+        """The fields of these names, or all, as a pandas.DataFrame: a row for each particle by its id, a column for each
+        component (velocity_x). A copy."""
+        pandas = _wanted("pandas", "to_pandas")
+        columns = {}
+        for name, labels, values in self._columns([n for n in names if n != "id"] or [n for n in self if n != "id"]):
+            for k, label in enumerate(labels):
+                columns[f"{name}_{label}" if label else name] = values if values.ndim == 1 else values[:, k]
+        return pandas.DataFrame(columns, index=pandas.Index(numpy.array(self["id"]), name="id"))
+
+    def to_xarray(self, *names):
+        """The fields of these names, or all, as an xarray.Dataset over particles, with units and meanings. A copy."""
+        xarray = _wanted("xarray", "to_xarray")
+        found, known = {}, self.fields
+        for name, labels, values in self._columns([n for n in names if n != "id"] or [n for n in self if n != "id"]):
+            attributes = {"units": known[name].unit, "long_name": known[name].meaning}
+            if values.ndim == 1:
+                found[name] = ("particle", values, attributes)
+            else:
+                axis = "axis" if labels == list("xyz")[:self.dim] else f"{name}_component"
+                found[name] = (("particle", axis), values, attributes)
+        made = xarray.Dataset(found, coords={"id": ("particle", numpy.array(self["id"]))}, attrs={"spacing": self.spacing})
+        return made.assign_coords(axis=list("xyz")[:self.dim]) if "axis" in made.dims else made
+
+
+class FieldInfo(Result):
+    """What a field of particles is: name, unit, meaning, components, integer, readonly."""
+
+    def __init__(self, index, particles):
+        info = ffi.new("mps_particles_field_info *")
+        particles._checked("Particles.fields", library.mps_particles_get_field_info_sized, index, info, ffi.sizeof(info[0]))
+        said = {word: ffi.string(text).decode() if text else "" for word, text in
+                (("name", info.name), ("unit", info.unit), ("meaning", info.meaning))}
+        super().__init__(**said, components=info.components, integer=info.dtype.code != 2,
+                         readonly=bool(info.flags & library.MPS_VIEW_READONLY))
+
+
+def _text(name):
+    text = os.fsencode(name)
+    if b"\0" in text:
+        raise ArgumentError(f"{name!r} has a null character, where C would end it")
+    return text
+
+
+def _wanted(module, method):
+    """A package that libmps does not need."""
+    try:
+        return __import__(module)
+    except ImportError as error:
+        raise ImportError(f"{method}() needs {module}, which is not installed: pip install {module}") from error
+
+
+# ---- the progress of a run --------------------------------------------------------------------------
+
+
+class _Progress:
+    """The hook `progress` of run(progress=True): tqdm's bar where that is installed, else a line."""
+
+    def __init__(self):
+        self.bar, self.begun = None, False
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            return
+        self.bar = tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
+
+    def __call__(self, state):
+        if self.bar is not None:
+            self.bar.set_postfix_str(f"t = {state.time:.4g} s", refresh=False)
+            self.bar.update(round(100 * state.fraction) - self.bar.n)
+            return
+        self.begun = True
+        line = f"{state.task}: {100 * state.fraction:3.0f} %, t = {state.time:.4g} s"
+        print(f"\r{line:<48}", end="", file=sys.stderr, flush=True)
+
+    def end(self):
+        if self.bar is not None:
+            self.bar.close()
+        elif self.begun:
+            print(file=sys.stderr)
+
+
+def _run_with_progress(solver, function, values, keywords):
+    shown, before = _Progress(), solver.context._progress
+    solver.context.set_progress(shown)
+    try:
+        return solver._invoke(function, values, keywords)
+    finally:
+        solver.context.set_progress(before)
+        shown.end()
+
 
 # ---- the functions of the headers as methods -------------------------------------------------------
-
-
-def takes(kind, name):
-    """Whether mps_`name` is a function of an object of that kind."""
-    full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
-    args = ffi.typeof(getattr(library, full)).args
-    return bool(args) and args[0].cname == f"mps_{kind} *"
 
 
 class _Shown:
@@ -251,55 +500,122 @@ class _Shown:
         return self.text
 
 
-_DEFAULT = _Shown("...")  # the member's, as the docstring says
-
-
-def _word(name):
-    return name + "_" if name in ("from", "lambda", "in", "is") else name
-
-
-def described(function, name, itself=True):
-    """Gives a function of the package name, docstring and signature of mps_`name`."""
-    text, arguments, optional, keywords, result = _docs.FUNCTIONS[name]
-    parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)] if itself else []
-    for k, (word, kind) in enumerate(arguments):
-        default = None if k >= len(arguments) - optional else inspect.Parameter.empty
-        parameters.append(inspect.Parameter(_word(word), inspect.Parameter.POSITIONAL_ONLY, annotation=_Shown(kind),
-                                            default=default))
-    parameters += [inspect.Parameter(_word(word), inspect.Parameter.KEYWORD_ONLY, annotation=_Shown(kind), default=_DEFAULT)
-                   for word, kind in keywords]
-    function.__doc__ = text
-    function.__signature__ = inspect.Signature(parameters, return_annotation=_Shown(result))
-    return function
-
-
-def _method(name, word, owner):
-    def method(self, *values, **members):
-        return self._invoke(name, values, members)
-
-    method.__name__, method.__qualname__, method.__module__ = word, f"{owner}.{word}", "libmps"
-    return described(method, name)
-
-
-def _classes():
-    """A class for each kind of object; functions that C's header has of that object are its methods."""
-    made = {"context": Context, "particles": Particles}
-    kinds = {name[4:-8] for name in _cdef.PARAMETERS if name.endswith("_destroy")} | {"grid"}
-    for kind in sorted(kinds):
-        name = class_name(kind)
-        own = made.setdefault(kind, type(name, (Object,), {"__module__": "libmps", "__doc__": Object.__doc__}))
-        for function in functions:
-            word = function.removeprefix(kind + "_")
-            hidden = ("context", "kind", *(("view", "commit", "abandon") if kind == "particles" else ()))
-            if takes(kind, function) and word not in hidden and word not in own.__dict__:
-                setattr(own, word, _method(function, word, name))
+def described(made, function, first=""):
+    """Gives a function of the package docstring and signature of its row."""
+    parameters = [inspect.Parameter(first, inspect.Parameter.POSITIONAL_OR_KEYWORD)] if first else []
+    for word, kind, default, _, _ in function.arguments.values():
+        parameters.append(inspect.Parameter(word, inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=_Shown(kind),
+                                            default=inspect.Parameter.empty if default is ... else default))
+    if function.definition:
+        parameters += [inspect.Parameter(word, inspect.Parameter.KEYWORD_ONLY, annotation=_Shown(row[0]), default=row[1])
+                       for word, row in _tables.DEFINITIONS[function.definition].items()]
+    if function.selects:
+        parameters += [inspect.Parameter("box", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("Sequence[Any] | None"), default=None),
+                       inspect.Parameter("all", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("bool"), default=False)]
+    if function.word == "run":
+        parameters.append(inspect.Parameter("progress", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("bool"), default=False))
+    if function.takes_context:
+        parameters.append(inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=_Shown("Context | None"), default=None))
+    made.__doc__ = function.doc
+    made.__signature__ = inspect.Signature(parameters, return_annotation=_Shown(function.type))
     return made
 
 
-classes = _classes()
+def _method(function, owner):
+    if function.word == "run":
+        def method(self, *values, progress=False, **keywords):
+            if progress:
+                return _run_with_progress(self, function, values, keywords)
+            return self._invoke(function, values, keywords)
+    else:
+        def method(self, *values, **keywords):
+            return self._invoke(function, values, keywords)
+
+    method.__name__, method.__qualname__, method.__module__ = function.word, f"{owner}.{function.word}", "libmps"
+    return described(method, function, "self")
+
+
+def _property(function, setter):
+    """A question without arguments; set_... of one argument sets it."""
+    direct = not function.status and function.parameters[-1][0] == "self"
+
+    def get(self):
+        if not direct:
+            return self._invoke(function, (), {})
+        call, kinds, _ = function.c()
+        pointer = self._open()
+        return self._known(call(pointer if ffi.typeof(pointer) is kinds[0] else ffi.cast(kinds[0], pointer)), function)
+
+    def put(self, value):
+        self._invoke(setter, (value,), {})
+
+    get.__module__ = "libmps"
+    return property(get, put if setter else None, None, function.doc + (f"\n\nSetting it: {setter.doc}" if setter else ""))
+
+
+def _maker(function, name):
+    def __init__(self, *values, context=None, **keywords):
+        self._create(function, values, keywords, context)
+
+    __init__.__qualname__, __init__.__module__ = f"{name}.__init__", "libmps"
+    return described(__init__, function, "self")
+
+
+def _classes():
+    """A class for each kind of object, with its methods and properties; classes of the ways to make one."""
+    made, ways = {"context": Context, "particles": Particles}, {}
+    for kind in sorted(_tables.KINDS, key=lambda kind: kind != "solver"):  # the others are solvers
+        name = class_name(kind)
+        parent = made["solver"] if kind in SOLVERS and kind != "solver" else Object
+        made.setdefault(kind, type(name, (parent,), {"__module__": "libmps", "__doc__": Object.__doc__, "_kind": kind}))
+    for function in functions.values():
+        if function.form == "method" and function.word not in made[function.owner].__dict__:
+            setattr(made[function.owner], function.word, _method(function, class_name(function.owner)))
+        elif function.form == "property":
+            setter = functions.get(f"{function.owner}_set_{function.word}")
+            setter = setter if setter is not None and setter.form == "setter" else None
+            setattr(made[function.owner], function.word, _property(function, setter))
+        elif function.form == "class":
+            kind = made[function.made]
+            if function.word != kind.__name__:
+                kind = ways[function.word] = type(function.word, (kind,), {"__module__": "libmps", "__doc__": function.doc})
+            elif kind.__doc__ == Object.__doc__:
+                kind.__doc__ = function.doc
+            kind.__init__ = _maker(function, function.word)
+            kind.__signature__ = _without_self(kind.__init__)
+    return made, ways
+
+
+def _without_self(function):
+    found = function.__signature__
+    return found.replace(parameters=list(found.parameters.values())[1:], return_annotation=inspect.Signature.empty)
+
+
+classes, ways = _classes()
+for _made in (Object, Context, Particles, FieldInfo):
+    _made.__module__ = "libmps"
 
 
 def wrap(pointer, context, alive):
     """The Python object of what a function has made."""
-    kept = [held for held in alive if isinstance(held, Object) or _is_callback(held)]
-    return classes[ffi.typeof(pointer).item.cname.removeprefix("mps_")](pointer, context, kept)
+    made = classes[tag(ffi.typeof(pointer).item).removeprefix("mps_")]
+    return made.__new__(made)._hold(pointer, context, _kept(alive))
+
+
+def free(function):
+    """A function of the module."""
+    def called(*values, context=None, **keywords):
+        if context is not None and not function.takes_context:
+            raise unknown(f"{function.place} has no keyword", "context", function.arguments)
+        bound, members = bind(function, values, keywords)
+        context = _context_of(context, bound) if function.takes_context else None
+        made, outputs = _perform(function, None, context, bound, members)
+        if not function.status:
+            return to_python(outputs)
+        found = [wrap(o, context, made.state.alive) if isinstance(o, ffi.CData) and ffi.typeof(o).kind == "pointer" else to_python(o)
+                 for o in outputs]
+        return None if not found else found[0] if len(found) == 1 else function.several(found)
+
+    called.__name__ = called.__qualname__ = function.word
+    called.__module__ = "libmps"
+    return described(called, function)

@@ -10,7 +10,8 @@ A length is a formula of other arguments (members) by name, and of
     MPS_...            a constant
 
 Every array of the headers stands here: tests/python looks for missing ones. An array given as a table must have as
-many columns as the formula says: 2 of `2 * vertices`."""
+many columns as the formula says: 2 of `2 * vertices`. A number that a formula has, such as `vertices`, is no argument in
+Python: the array says it."""
 
 import re
 
@@ -69,6 +70,7 @@ FUNCTIONS = {
     "mps_fluid_get_body_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_levels": {"station": "count", "level": "count"},
     "mps_mpm_set_material": {"ids": "count"},
+    "mps_neighbours_lists": {"offsets": "count + 1", "indices": "last(offsets)"},
     "mps_mpm_set_pore_level": {"point": "dim"},
     "mps_waves_get_components": {"frequency": "capacity", "amplitude": "capacity", "phase": "capacity"},
     "mps_waves_get_levels": {"t": "count", "linear": "count", "level": "count"},
@@ -111,6 +113,11 @@ STRUCTS = {
     "mps_mpm_load_def": {"ids": "id_count", "area": "id_count"},
 }
 
+#: Numbers where no array says them: a property of the object, or a formula.
+WITHOUT = {
+    ("mps_elastic_get_facets", "count"): "facet_count",
+    ("mps_overtopping_find", "capacity"): "samples",
+}
 
 #: C type of a callback: ({array that it reads: length}, {what it returns: length}). Besides the words above
 #:
@@ -159,13 +166,54 @@ def length(formula, words):
     return int(eval(formula, {"__builtins__": {}, "max": max}, words))  # formulas of this file alone
 
 
-def width(formula, words):
-    """How many numbers a row has where the array is given as a table; None: it is a list of single numbers."""
+def _branch(formula, words):
+    """The part of a formula with a condition that holds."""
+    choice = re.fullmatch(r"(.+) if (.+) else (.+)", formula)
+    return choice[1 if eval(choice[2], {"__builtins__": {}}, words) else 3] if choice else formula
+
+
+def counts(formula):
+    """The numbers by name that a formula multiplies."""
     choice = re.fullmatch(r"(.+) if (.+) else (.+)", formula)
     if choice:
-        condition = eval(choice[2], {"__builtins__": {}}, words)
-        return width(choice[1 if condition else 3], words)
-    factors = formula.split(" * ")
+        return counts(choice[1]) | counts(choice[3])
+    return {word for word in formula.split(" * ") if re.fullmatch(r"[a-z_]+", word)}
+
+
+def solve(formula, word, size, words):
+    """The value of `word` with which a formula gives `size`; None where others are not known."""
+    try:
+        factors = _branch(formula, words).split(" * ")
+        if word not in factors:
+            return None
+        factors.remove(word)
+        other = length(" * ".join(factors), words) if factors else 1
+    except (KeyError, AttributeError):
+        return None
+    return size // other if other > 0 else None
+
+
+def _of_row(factor):
+    """Whether a factor is the length of a row."""
+    return factor.isdigit() or factor == "dim" or factor.startswith("components")
+
+
+def width(formula, words):
+    """How many numbers a row has where the array is given as a table; None: it is a list of single numbers."""
+    factors = _branch(formula, words).split(" * ")
     if len(factors) == 1:
         return None
-    return length(factors[0] if factors[0].isdigit() or factors[0] in ("dim", "components") else factors[-1], words)
+    return length(next(filter(_of_row, factors), factors[-1]), words)
+
+
+def shape(formula, words):
+    """The shape of an array that C fills: a row for each particle, point or instant."""
+    factors = _branch(formula, words).split(" * ")
+    order = sorted(factors, key=_of_row)  # those of a row are last
+    found = tuple(length(factor, words) for factor in order)
+    return found[:-1] if len(found) > 1 and found[-1] == 1 else found
+
+
+def bits(numbers):
+    """Places of bits as the number that has them."""
+    return sum({1 << number for number in numbers})

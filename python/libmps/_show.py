@@ -4,11 +4,11 @@ from html import escape
 
 import numpy
 
-from ._call import ffi, library
+from ._library import ffi, library
 
 
 def _ask(owner, function, *values):
-    return getattr(library, f"mps_{owner.kind}_{function}")(owner.pointer, *values)
+    return getattr(library, f"mps_{owner._kind}_{function}")(owner._pointer, *values)
 
 
 def _many(number, word):
@@ -60,7 +60,7 @@ def fields(owner):
     info = ffi.new("mps_particles_field_info *")
     found = []
     for k in range(_ask(owner, "field_count")):
-        if library.mps_particles_get_field_info_sized(owner.pointer, k, info, ffi.sizeof(info[0])) == 0:
+        if library.mps_particles_get_field_info_sized(owner._pointer, k, info, ffi.sizeof(info[0])) == 0:
             found.append(tuple(ffi.string(text).decode() if text else ""
                                for text in (info.name, info.unit, info.meaning)))
     return found
@@ -68,9 +68,9 @@ def fields(owner):
 
 def text(owner):
     name = type(owner).__name__
-    if owner.pointer is None or owner.context.pointer is None:
+    if owner._pointer is None or owner.context._pointer is None:
         return f"<libmps {name}, closed>"
-    facts = FACTS.get(owner.kind, lambda _owner: [])(owner)
+    facts = FACTS.get(owner._kind, lambda _owner: [])(owner)
     return f"<libmps {name}{': ' if facts else ''}{', '.join(facts)}>"
 
 
@@ -84,7 +84,7 @@ def table(rows, head):
 def html(owner):
     """A set shows its fields with units and ranges; other objects their line."""
     line = f"<p>{escape(text(owner)[1:-1])}</p>"
-    if owner.kind != "particles" or owner.pointer is None or owner.context.pointer is None:
+    if owner._kind != "particles" or owner._pointer is None or owner.context._pointer is None:
         return line
     rows = []
     for name, unit, meaning in fields(owner):

@@ -8,7 +8,7 @@
             ...
             stress[0][k] += ...
 
-    material = context.material_create_user(update=elastic, name="elastic", bulk_modulus=K, shear_modulus=G)
+    material = UserMaterial(update=elastic, name="elastic", bulk_modulus=K, shear_modulus=G)
 
 Other callbacks may be numba.cfunc of the C type (mps/*.h); the package takes their address.
 """
@@ -23,7 +23,7 @@ from numba import carray, cfunc, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from ._call import ffi, library
+from ._library import ffi, library
 
 _KIND = ffi.typeof("mps_material_block")
 #: Place of each member in words of eight bytes.
@@ -55,13 +55,13 @@ def _place(words, count, k):
 
 
 def law(update: Callable[..., Any] | None = None, *, history: int = 0) -> Any:
-    """Decorator: a constitutive law as a compiled callback for material_create_user.
+    """Decorator: a constitutive law as a compiled callback for UserMaterial.
 
     update(dt, gradient, stress, volume_ratio, history) is called with a block of n particles: dt in s; `gradient`,
     nine arrays of n, dv_i/dx_j in 1/s, row by row; `stress`, six arrays of n, Cauchy stress in Pa (xx, yy, zz, xy, zx, yz), to be written;
     `volume_ratio`, V/V0; `history`, as many arrays as `history` says, to be written. Arrays that the dimension does
     not have are empty (in plane strain also gradient[8]). It returns nothing, or the number of the particle in the
-    block at which it fails, which ends the step with ERROR_NUMERIC. It must not raise: numba has no way to carry an
+    block at which it fails, which ends the step with NumericError. It must not raise: numba has no way to carry an
     exception out of a callback."""
     if update is None:
         return lambda function: law(function, history=history)

@@ -60,7 +60,7 @@ def _values(particles, field):
 
 def _plane(particles, plane):
     """(which particles are drawn, axes of the drawing) of a set in 2D, or of one in 3D that a plane cuts."""
-    dim, position = particles.dim(), numpy.array(particles["position"])
+    dim, position = particles.dim, numpy.array(particles["position"])
     if dim == 2:
         if plane is not None:
             raise ValueError(f"plane is {plane!r}, must be None for a set in 2D")
@@ -68,7 +68,7 @@ def _plane(particles, plane):
     if plane is None or plane[0] not in AXES:
         raise ValueError(f"plane is {plane!r}, must be ('x', 'y' or 'z', its coordinate in m) for a set in 3D")
     normal = AXES.index(plane[0])
-    near = numpy.flatnonzero(abs(position[:, normal] - plane[1]) <= 0.5001 * particles.spacing())
+    near = numpy.flatnonzero(abs(position[:, normal] - plane[1]) <= 0.5001 * particles.spacing)
     if not len(near):
         raise ValueError(f"the plane {plane[0]} = {plane[1]:g} m cuts no particle")
     return position, near, tuple(a for a in range(3) if a != normal)
@@ -76,7 +76,7 @@ def _plane(particles, plane):
 
 def _shapes(particles, which, axes):
     """The edges (2 x 2) of each particle's square, as deformed."""
-    count, dim = len(which), particles.dim()
+    count, dim = len(which), particles.dim
     edges = numpy.tile(numpy.eye(2), (count, 1, 1))
     if "deformation_gradient" in particles:
         gradient = numpy.array(particles["deformation_gradient"])[which]
@@ -86,7 +86,7 @@ def _shapes(particles, which, axes):
     elif "volume_ratio" in particles:
         ratio = numpy.array(particles["volume_ratio"])[which]
         edges *= (numpy.where(ratio > 0, ratio, 1.0) ** (1.0 / dim))[:, None, None]
-    return edges * particles.spacing()
+    return edges * particles.spacing
 
 
 def _draw_bodies(ax, bodies, axes, plane, box):
@@ -97,13 +97,11 @@ def _draw_bodies(ax, bodies, axes, plane, box):
     y = numpy.arange(low, high + step, step)
     grid = numpy.meshgrid(x, y)
     for body in bodies:
-        points = numpy.zeros((grid[0].size, body.dim()))
+        points = numpy.zeros((grid[0].size, body.dim))
         points[:, axes[0]], points[:, axes[1]] = grid[0].ravel(), grid[1].ravel()
-        if body.dim() == 3:
+        if body.dim == 3:
             points[:, AXES.index(plane[0])] = plane[1]
-        distance = numpy.zeros(len(points))
-        body.distance(len(points), points.ravel(), distance, None, None, None)
-        distance = distance.reshape(grid[0].shape)
+        distance = body.distance(points).distance.reshape(grid[0].shape)
         if distance.min() < 0 < distance.max():
             ax.contourf(x, y, distance, [distance.min(), 0], colors=["0.75"], zorder=3)
             ax.contour(x, y, distance, [0], colors="black", linewidths=1, zorder=4)
@@ -124,7 +122,7 @@ def particles(particles: Particles, field: str | tuple[str, int] | ArrayLike | N
             gradient
     ax      axes to draw into, cleared before; None: new ones
 
-    Returns the axes. Error (ERROR_FIELD): no field of that name; ValueError: values, plane or component that do not
+    Returns the axes. FieldError: no field of that name; ValueError: values, plane or component that do not
     fit the set."""
     position, which, axes = _plane(particles, plane)
     values, named = (None, None) if field is None else _values(particles, field)
@@ -198,13 +196,13 @@ def animation(path: str | PathLike[str], solver: Mpm | Fluid | Dynamics, t_end: 
         raise ValueError(f"frames is {frames}, must be at least 2")
     figure = pyplot.figure(figsize=size, layout="constrained")
     try:
-        ax, writer, start = figure.add_subplot(), writers[ending](fps=fps), solver.time()
+        ax, writer, start = figure.add_subplot(), writers[ending](fps=fps), solver.time
         with writer.saving(figure, str(path), dpi):
             for k in range(frames):
                 if k:
-                    solver.run(start + (t_end - start) * k / (frames - 1), 1 << 40)
+                    solver.run(start + (t_end - start) * k / (frames - 1))
                 draw(ax)
-                ax.set_title(f"t = {solver.time():.3f} s")
+                ax.set_title(f"t = {solver.time:.3f} s")
                 writer.grab_frame()
     finally:
         pyplot.close(figure)

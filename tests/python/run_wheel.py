@@ -15,25 +15,25 @@ import libmps as mps
 assert "dist-packages/libmps" not in mps.__file__, mps.__file__
 assert mps.__version__ == mps.version(), (mps.__version__, mps.version())
 height, density, g = 2.0, 1800.0, 9.81
-context = mps.Context(threads=1)
-sand = context.particles_create(spacing=0.1)
+mps.default_context(threads=1)
+sand = mps.Particles(spacing=0.1)
 sand.fill_box([0, 0], [1, height])
-sand.set("density", 0, density)
+sand["density"] = density
 sand.add_field("stress", 0)
-law = context.material_create_linear_elastic(1e7, 0.0)
-solver = context.mpm_create(sand, law, cell=0.2, lower=[0, 0, 0], upper=[1, 4, 0], gravity=[0, -g, 0],
+law = mps.LinearElastic(1e7, 0.0)
+solver = mps.Mpm(sand, law, cell=0.2, lower=[0, 0, 0], upper=[1, 4, 0], gravity=[0, -g, 0],
                             local_damping=0.7)
-solver.run(0.5, 1000, None)
+solver.run(0.5)
 mean, theory = sand["stress"][:, 1].mean(), -density * g * height / 2
 print(f"{sys.version.split()[0]}: mean stress {mean:.1f} Pa, theory {theory:.1f}")
 assert abs(mean / theory - 1) < 0.01
-beam = context.particles_create(spacing=0.1)       # CHOLMOD and HDF5 are in the wheel too
+beam = mps.Particles(spacing=0.1)  # CHOLMOD and HDF5 are in the wheel too
 beam.fill_box([0, 0], [1, 0.3])
-beam.set("young", 0, 1e7)
-beam.set("poisson", 0, 0.0)
-elastic = context.elastic_create(beam)
-elastic.add_boundary(ids=beam.select_box([0, 0], [0.1, 0.3]), kind=mps.BOUNDARY_HELD)
-solver.save("job.h5", None)
+beam["young"] = 1e7
+beam["poisson"] = 0.0
+elastic = mps.Elastic(beam)
+elastic.add_boundary(box=([0, 0], [0.1, 0.3]), kind="held")
+solver.save("job.h5")
 """
 
 
