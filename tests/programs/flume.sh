@@ -135,7 +135,7 @@ fi
 # hundredth of a millimetre do not show.
 for case in "0.5 0.05 0.015" "1 0.025 0.005" "1.37 0.05 0.015" "2 0.05 0.015" "2 0.0125 0.005" "3 0.025 0.005" "6 0.025 0.005"; do
   set -- "$1" $case
-  "$1/mps-flume" --wall slope --slope "$2" --crest 0.2 --depth 0.4 --length 1.2 --spacing "$3" --height 1e-5 \
+  "$1/mps-flume" --wall slope --slope "$2" --freeboard 0.2 --depth 0.4 --length 1.2 --spacing "$3" --height 1e-5 \
     --duration 0.3 --sample 0.005 --frames 0 --threads 1 --out "$work/rest-$2-$3" >"$work/log"
   awk -F, -v case="$2, $3" -v bound="$4" '
     NR == 1 { for (i = 1; i <= NF; i++) if ($i == "force_N") f = i }
