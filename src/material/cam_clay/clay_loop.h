@@ -10,7 +10,7 @@
 
 #include "material/tensor.h"
 
-#define CLAY_CHUNK 64
+#define CLAY_CHUNK 32
 #define CLAY_LANES 8      /* doubles of the longest vector: a divisor of CLAY_CHUNK */
 #define CLAY_LONGEST 1e-2 /* strain of an undivided step, as in cam_clay.c */
 #define CLAY_LARGEST 1.0  /* argument of the exponentials */
