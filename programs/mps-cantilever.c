@@ -10,7 +10,7 @@ typedef struct settings {
   beam problem;
   elastic_settings method;
   int64_t nx, ny, threads;
-  double length;
+  double spacing, length;
   int wall;
   bool convergence;
   const char *out;
@@ -20,51 +20,49 @@ static const char purpose[] =
     "Deflection and stress of a cantilever of particles (implicit elasticity, CHOLMOD), against\n"
     "the analytic solution. The defaults are the paper's case of 153 particles.";
 
-/* The length that was requested, in whole particles: -1, or an exit code. */
+/* Whole particles in the height, and in the length, which ends in the middle of a layer: -1, or an
+ * exit code. */
 static int find_size(const options_program *program, settings *s) {
-  const double spacing = s->problem.height / (double)s->ny;
-  char text[200];
-  if (options_given(program->table, "length")) {
-    const int64_t nx = (int64_t)llround(s->length / spacing + 0.5);
-    if (options_given(program->table, "nx") && nx != s->nx) {
-      snprintf(text, sizeof text,
-               "--nx is %lld, but --length %g m with particles of %g m asks for %lld",
-               (long long)s->nx, s->length, spacing, (long long)nx);
-      return options_refuse(program, text);
-    }
-    if (nx < 3 || nx > 20000) {
-      snprintf(text, sizeof text, "--length %g m is %lld particles of %g m, allowed are 3 to 20000",
-               s->length, (long long)nx, spacing);
-      return options_refuse(program, text);
-    }
-    s->nx = nx;
+  const double height = s->problem.height;
+  if (isnan(s->spacing)) s->spacing = height / 9.0;
+  if (s->spacing < height / 5000.5 || s->spacing > height / 1.5)
+    return options_refuse(program, "--spacing must give 2 to 5000 particles in --height");
+  s->ny = (int64_t)options_divide("spacing", &s->spacing, "--height", height, false);
+  if (isnan(s->length)) s->length = 16.5 * height / 9.0;
+  s->nx = (int64_t)llround(s->length / s->spacing + 0.5);
+  if (s->nx < 3 || s->nx > 20000) {
+    char text[200];
+    snprintf(text, sizeof text, "--length %g m is %lld particles of %g m, allowed are 3 to 20000",
+             s->length, (long long)s->nx, s->spacing);
+    return options_refuse(program, text);
   }
-  s->problem.length = model_length(s->problem.height, s->nx, s->ny);
+  s->problem.length = model_length(height, s->nx, s->ny);
+  if (fabs(s->length - s->problem.length) > 1e-5 * s->length)
+    options_note(
+        "--length is %.6g m, taken as %.6g m: particles every %.6g m, the last at the wall",
+        s->length, s->problem.length, s->spacing);
   return -1;
 }
 
 static int parse(settings *s, int argc, char **argv) {
   *s = (settings){.problem = {.height = 2.0, .load = 1.0},
                   .method = elastic_settings_defaults(),
-                  .nx = 17,
-                  .ny = 9,
+                  .spacing = NAN,
                   .length = NAN,
                   .out = "out/cantilever"};
   option table[] = {
       OPTION_HEADING("Beam"),
-      OPTION_INTEGER("nx", "N", OPTION_FROM_TO(3, 20000), &s->nx, "particles along the beam"),
-      OPTION_INTEGER("ny", "N", OPTION_FROM_TO(2, 5000), &s->ny, "particles across it"),
-      COMMON_NUMBER("length", &s->length,
-                    "loaded end to wall, rounded to whole particles (instead of --nx)"),
-      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->problem.height, "height of the section"),
+      OPTION_NUMBER("spacing", &s->spacing, "default a ninth of --height"),
+      OPTION_NUMBER(
+          "length", &s->length,
+          "from the loaded end to the wall, whole particles; default 16.5 ninths of --height"),
+      OPTION_NUMBER("height", &s->problem.height, "of the section"),
       ELASTIC_MATERIAL(&s->method),
-      OPTION_NUMBER("load", "N/m", OPTION_FROM_TO(1e-9, 1e15), &s->problem.load,
-                    "end load P, downwards"),
-      OPTION_CHOICE("wall", "exact|clamp", &s->wall, "the wall moves as (11) says, or not at all"),
+      OPTION_NUMBER("end-load", &s->problem.load, NULL),
+      OPTION_CHOICE_OF("support", "exact|clamp", &s->wall, NULL),
       ELASTIC_METHOD(&s->method),
       OPTION_HEADING("Running"),
-      OPTION_FLAG("convergence", &s->convergence,
-                  "also compare both methods and finite elements at four sizes"),
+      OPTION_FLAG("convergence", &s->convergence, NULL),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
       {0}};
@@ -102,7 +100,7 @@ static int run(app *a, const settings *s) {
   done = app_agree(a, done && model_solve(a, problem, m.reference, s->nx, s->ny, &method, &m));
   elastic_bar(a, seconds / all, 0.0, 0.0);
   app_leave_at_once(a, false);
-  if (done) elastic_warn(a, options_read(), "load", m.tip, problem->length);
+  if (done) elastic_warn(a, options_read(), "end-load", m.tip, problem->length);
   done = done && app_agree(a, a->rank > 0 || results_write(&m, &method, s->out));
   if (done) {
     printf("reactions balance the load to %.1e; %lld unknowns, ", m.equilibrium,

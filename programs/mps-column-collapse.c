@@ -20,6 +20,7 @@
 enum { CASES_MAX = 6, SAMPLES = 400, FRAMES = 4 };
 
 typedef struct settings {
+  double courant;
   double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, falls;
   double flip_time; /* s */
   sand_voids voids;
@@ -143,6 +144,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   mps_mpm_def def = mps_mpm_defaults();
   if (s->axisymmetric) def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.lower[0] = def.lower[1] = 0.0;
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
@@ -560,7 +562,7 @@ static int complete(const options_program *program, simulation *sim) {
   if (s->phi == 0.0 && s->cohesion == 0.0)
     return options_refuse(program, "--phi and --cohesion must not both be 0");
   if (fabs(s->width / s->h - nearbyint(s->width / s->h)) > 1e-6 || s->width < 3.5 * s->h)
-    return options_refuse(program, "--width must be a whole number of cells --h, at least 4");
+    return options_refuse(program, "--width must be a whole number of cells --cell, at least 4");
   const double weight = s->density * G * s->aspect * s->width;
   const char *large = mpm_model_too_large(s->aspect * pow(s->width / s->h, 2.0) * (double)s->ppc);
   if (large) return options_refuse(program, large);
@@ -595,6 +597,7 @@ int main(int argc, char **argv) {
                                  .poisson = 0.3,
                                  .density = 1600.0,
                                  .falls = 8.0,
+                                 .courant = 0.5,
                                  .ppc = 9,
                                  .spline = 1,
                                  .course = MPM_COURSE_DEFAULTS,
@@ -602,35 +605,32 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Column"),
-      OPTION_NUMBER("aspect", "1", OPTION_FROM_TO(0.1, 20.0), &s->aspect, "a = H0/L0"),
-      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "L0 from the wall, whole cells"),
-      OPTION_FLAG("axisymmetric", &s->axisymmetric, "a cylinder of the radius --width"),
-      OPTION_FLAG("sweep", &s->sweep, "columns of a = 0.5, 1, 2, 3, 4, 6 against the law"),
-      OPTION_FLAG("compare", &s->compare,
-                  "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),
+      OPTION_NUMBER("aspect", &s->aspect, NULL),
+      OPTION_NUMBER("width", &s->width, "L0 from the wall, or radius of the cylinder"),
+      OPTION_FLAG("axisymmetric", &s->axisymmetric, "a cylinder"),
+      OPTION_FLAG("sweep", &s->sweep, NULL),
+      OPTION_FLAG("compare", &s->compare, NULL),
       OPTION_HEADING("Soil (Drucker-Prager)"),
-      COMMON_NUMBER("phi", &s->phi, NULL),
-      COMMON_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
+      OPTION_NUMBER("phi", &s->phi, NULL),
+      OPTION_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
       SAND_E0_OPTION(&s->voids),
       SAND_E_MAX_OPTION(&s->voids),
-      COMMON_NUMBER("cohesion", &s->cohesion, NULL),
-      OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
-                    "how it meets Mohr-Coulomb"),
-      COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER("poisson", &s->poisson, NULL),
-      COMMON_NUMBER("density", &s->density, "in bulk"),
+      OPTION_NUMBER("cohesion", &s->cohesion, NULL),
+      OPTION_CHOICE("cone", &s->cone, NULL),
+      OPTION_NUMBER("young", &s->young, NULL),
+      OPTION_NUMBER("poisson", &s->poisson, NULL),
+      OPTION_NUMBER("density", &s->density, "in bulk"),
       OPTION_HEADING("Bed"),
-      OPTION_NUMBER("bed-friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->bed_friction,
-                    "Coulomb's mu of a rigid bed (default: soil sticks to it)"),
+      OPTION_NUMBER("friction", &s->bed_friction, "of the bed (default: soil sticks to it)"),
       OPTION_HEADING("Grid"),
-      COMMON_NUMBER("h", &s->h, "default width/20"),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
-      COMMON_NUMBER("flip-time", &s->flip_time,
+      OPTION_NUMBER("cell", &s->h, "default width/20"),
+      OPTION_INTEGER("ppc", &s->ppc, NULL),
+      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_CHOICE("spline", &s->spline, NULL),
+      OPTION_NUMBER("flip-time", &s->flip_time,
                     "which takes energy out of the flow; try (H0/g)^1/2/10"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->falls,
-                    "where the run ends, if the column does not come to rest before"),
+      OPTION_NUMBER("falls", &s->falls, "if the column does not come to rest before"),
       MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

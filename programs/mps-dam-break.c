@@ -2,7 +2,7 @@
  * experiments of Martin and Moyce (1952).
  *
  * The water stands between the wall x = 0 and a gate at x = a that vanishes at once; it is n^2 a
- * high. --rest keeps the gate: then nothing should move, and p = rho g depth.
+ * high. --still keeps the gate: then nothing should move, and p = rho g depth.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/compare.h"
 #include "common/plot.h"
@@ -132,6 +132,7 @@ mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   law.no_tension = s->tension == 0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
   def.lower[0] = def.lower[1] = 0.0;
@@ -431,17 +432,25 @@ static bool finish(app *a, void *user) {
 /* Defaults that depend on others, and lengths that must be whole cells. Returns -1 or a code. */
 static int complete(const options_program *program, settings *s) {
   if (s->impact && (s->method != METHOD_MPS || s->rest || s->n2 != 2))
-    return options_refuse(program, "--impact needs --method mps, and has no --rest and --n2");
+    return options_refuse(program, "--impact needs --method mps, and has no --still and --n2");
   if (s->solver != 0 && s->method != METHOD_MPS)
     return options_refuse(program, "--solver is for --method mps only");
   if (s->impact) s->tank = 0.5 * 5.366;
   if (isnan(s->base)) s->base = s->impact ? 1.2 : 0.05715;
-  if (isnan(s->h)) s->h = s->base / (s->impact ? 60.0 : s->method == METHOD_MPS ? 20.0 : 40.0);
-  const double cells = s->base / s->h, tank = s->tank * cells;
-  if (cells < 4.0 || fabs(cells - nearbyint(cells)) > 1e-6)
-    return options_refuse(program, "--base must be a whole number of cells --h, at least 4");
-  if (s->method == METHOD_MPM && !s->rest && fabs(tank - nearbyint(tank)) > 1e-6)
-    return options_refuse(program, "--tank times --base must be a whole number of cells --h");
+  const bool mps = s->method == METHOD_MPS;
+  if (options_given(program->table, mps ? "cell" : "spacing"))
+    return options_refuse(program, mps ? "--cell is for --method mpm, of mps it is --spacing"
+                                       : "--spacing is for --method mps, of mpm it is --cell");
+  if (isnan(s->h)) s->h = s->base / (s->impact ? 60.0 : mps ? 20.0 : 40.0);
+  const double cells = options_divide(mps ? "spacing" : "cell", &s->h, "--width", s->base, false);
+  if (cells < 4.0)
+    return options_refuse(program, mps ? "--spacing must be at most a quarter of --width"
+                                       : "--cell must be at most a quarter of --width");
+  const double tank = nearbyint(s->tank * cells) / cells;
+  if (!mps && !s->rest && fabs(tank - s->tank) > 1e-6) {
+    options_note("--tank is %.6g widths, taken as %.6g: whole cells", s->tank, tank);
+    s->tank = tank;
+  }
   const char *large = mpm_model_too_large(cells * cells * (double)(s->n2 * s->ppc));
   if (large) return options_refuse(program, large);
   if (s->method == METHOD_MPM && speed_of_sound(s) < 2.0 * sqrt(2.0 * G * column_height(s)))
@@ -463,6 +472,7 @@ int main(int argc, char **argv) {
                                  .disturb = 0.1,
                                  .tolerance = WAVES_TOLERANCE,
                                  .n2 = 2,
+                                 .courant = 0.5,
                                  .ppc = 4,
                                  .state = MPS_MATERIAL_STATE_EQUATION_TAIT,
                                  .spline = 1,
@@ -472,37 +482,34 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Method"),
-      OPTION_CHOICE(
+      OPTION_CHOICE_OF(
           "method", "mpm|mps", &s->method,
           "WLS-MPM on a grid, weakly compressible; MPS, moving particles, incompressible: "
-          "then --h is their spacing, and of the options of the grid none is read"),
-      OPTION_FLAG(
-          "impact", &s->impact,
-          "by MPS: a column H high and 2 H = --base wide (default 1.2 m) hits a wall at 5.366 "
-          "H; its pressure at .2 H against Buchner (2002)"),
+          "--spacing in place of --cell, and of the options of the grid none is read"),
+      OPTION_FLAG("impact", &s->impact, NULL),
       OPTION_HEADING("Water"),
-      OPTION_NUMBER("base", "m", OPTION_LENGTH, &s->base,
-                    "width a of the column, whole cells (default .05715)"),
-      OPTION_INTEGER("n2", "1", OPTION_FROM_TO(1.0, 2.0), &s->n2, "n^2: the height over a"),
-      OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &s->tank, "to the far wall"),
-      COMMON_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL),
-      OPTION_NUMBER("sound-speed", "m/s", OPTION_SPEED, &s->sound,
-                    "c, K = rho c^2 (default 10 sqrt(2 g n^2 a))"),
-      OPTION_CHOICE("state", "tait|linear", &s->state, "pressure from density"),
-      OPTION_CHOICE("tension", "none|full", &s->tension, "negative pressure"),
-      OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
-      OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),
+      OPTION_NUMBER("width", &s->base, "a of the column (default .05715)"),
+      OPTION_INTEGER("n2", &s->n2, NULL),
+      OPTION_NUMBER("tank", &s->tank, NULL),
+      OPTION_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL),
+      OPTION_NUMBER("sound-speed", &s->sound, NULL),
+      OPTION_CHOICE_OF("equation-of-state", "tait|linear", &s->state, NULL),
+      OPTION_CHOICE_OF("negative-pressure", "none|full", &s->tension, NULL),
+      OPTION_CHOICE_OF("bed", "slip|fixed", &s->bed, NULL),
+      OPTION_FLAG("still", &s->rest, NULL),
       OPTION_HEADING("Grid"),
-      COMMON_NUMBER("h", &s->h, "default base/40, of MPS base/20 or with --impact base/60"),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
-      OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
-      COMMON_CHOICE("volumetric", &s->volumetric, NULL),
-      COMMON_NUMBER("disturb", &s->disturb, "of MPS"),
+      OPTION_NUMBER("cell", &s->h, "default width/40"),
+      OPTION_NUMBER("spacing", &s->h, "of --method mps; default width/20, with --impact width/60"),
+      OPTION_INTEGER("ppc", &s->ppc, NULL),
+      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_CHOICE("spline", &s->spline, NULL),
+      OPTION_CHOICE_OF("transfer", "shape|weight", &s->transfer, NULL),
+      OPTION_CHOICE("volumetric", &s->volumetric, NULL),
+      OPTION_NUMBER("disturb", &s->disturb, "of MPS"),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      COMMON_NUMBER("duration", &s->duration, "default T = 6"),
-      COMMON_INTEGER("frames", &s->frames, NULL),
+      OPTION_NUMBER("duration", &s->duration, "default T = 6"),
+      OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a fifth of the run",
                      &s->restart),
       OPTION_OUT(&s->out),

@@ -27,50 +27,60 @@ static int check_hole(const options_program *program, settings *s) {
       return options_refuse(program, "--radius is for --case hole only");
     return -1;
   }
-  if (!options_given(program->table, "cells")) s->plate.cells = 40;
   if (!options_given(program->table, "side")) s->plate.side = 4.0 * s->plate.radius;
-  const double across = s->plate.side / s->plate.radius * ((double)s->plate.cells + 0.5);
   if (!(s->plate.side >= 3.0 * s->plate.radius))
     return options_refuse(program, "--side must be at least 3 times --radius");
-  if (s->plate.cells < 5)
-    return options_refuse(program, "--cells must be at least 5 a radius of the hole");
-  if (across > 3000.0) return options_refuse(program, "more than 3000 particles a side");
+  return -1;
+}
+
+/* Whole particles along the side; along the radius half a spacing more, as the centre of the hole
+ * is between particles. -1, or an exit code. */
+static int find_spacing(const options_program *program, settings *s) {
+  plate_def *p = &s->plate;
+  const double length = p->hole ? p->radius : p->side;
+  if (isnan(p->spacing)) p->spacing = length / (p->hole ? 40.5 : 17.0);
+  p->across =
+      options_divide("spacing", &p->spacing, p->hole ? "--radius" : "--side", length, p->hole);
+  if (p->across < (p->hole ? 5.0 : 2.0))
+    return options_refuse(program, p->hole ? "--spacing must be at most a fifth of --radius"
+                                           : "--spacing must be at most half of --side");
+  if (p->side > 3000.5 * p->spacing)
+    return options_refuse(program, "--spacing must give at most 3000 particles along --side");
   return -1;
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.plate = {.cells = 17, .side = 1.0, .radius = 1.0, .tension = 1.0},
+  *s = (settings){.plate = {.spacing = NAN, .side = 1.0, .radius = 1.0, .tension = 1.0},
                   .method = elastic_settings_defaults(),
                   .out = "out/plate"};
-  option table[] = {
-      OPTION_HEADING("Plate"),
-      OPTION_CHOICE("case", "tension|hole", &s->shape, "square, or quarter of a plate with a hole"),
-      OPTION_INTEGER("cells", "N", OPTION_FROM_TO(2, 3000), &s->plate.cells,
-                     "particles along a side; hole: along its radius (default 40)"),
-      OPTION_NUMBER("side", "m", OPTION_LENGTH, &s->plate.side,
-                    "side; hole: of the quarter (default 4 radii)"),
-      OPTION_NUMBER("radius", "m", OPTION_LENGTH, &s->plate.radius, "radius of the hole"),
-      OPTION_NUMBER("tension", "Pa", OPTION_FROM_TO(1e-9, 1e15), &s->plate.tension,
-                    "stress at the far edge"),
-      ELASTIC_MATERIAL(&s->method),
-      ELASTIC_METHOD(&s->method),
-      OPTION_HEADING("Running"),
-      OPTION_THREADS(&s->threads),
-      OPTION_OUT(&s->out),
-      {0}};
+  option table[] = {OPTION_HEADING("Plate"),
+                    OPTION_CHOICE_OF("case", "tension|hole", &s->shape,
+                                     "square, or quarter of a plate with a hole"),
+                    OPTION_NUMBER("spacing", &s->plate.spacing,
+                                  "default a seventeenth of --side; hole: 1/40.5 of --radius"),
+                    OPTION_NUMBER("side", &s->plate.side, NULL),
+                    OPTION_NUMBER("radius", &s->plate.radius, NULL),
+                    OPTION_NUMBER("edge-stress", &s->plate.tension, NULL),
+                    ELASTIC_MATERIAL(&s->method),
+                    ELASTIC_METHOD(&s->method),
+                    OPTION_HEADING("Running"),
+                    OPTION_THREADS(&s->threads),
+                    OPTION_OUT(&s->out),
+                    {0}};
   const options_program program = {"mps-plate", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
   s->plate.young = s->method.young;
   s->plate.poisson = s->method.poisson;
   s->plate.plane_strain = s->method.state == 1;
-  return check_hole(&program, s);
+  const int refused = check_hole(&program, s);
+  return refused >= 0 ? refused : find_spacing(&program, s);
 }
 
 static int run(app *a, const settings *s) {
   plate p = {.a = a, .def = &s->plate};
   const double across = s->plate.hole ? s->plate.side / s->plate.radius : 1.0;
-  const double seconds = elastic_seconds(pow(across * (double)s->plate.cells, 2.0));
+  const double seconds = elastic_seconds(pow(across * s->plate.across, 2.0));
   const elastic_method method = elastic_settings_method(&s->method);
   bool done = app_agree(a, a->rank > 0 ||
                                (output_directory(a, s->out) && plate_reserve(&p, &method, s->out)));
@@ -80,7 +90,7 @@ static int run(app *a, const settings *s) {
   elastic_bar(a, 1.0, 0.0, 0.0);
   app_leave_at_once(a, false);
   const double end = s->plate.tension / s->plate.young * s->plate.side;
-  if (done) elastic_warn(a, options_read(), "tension", end, s->plate.side);
+  if (done) elastic_warn(a, options_read(), "edge-stress", end, s->plate.side);
   done = done && app_agree(a, a->rank > 0 || plate_write(&p, &method, s->out));
   if (done) {
     printf("%s method, %lld particles, ", elastic_method_name(&s->method),

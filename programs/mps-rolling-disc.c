@@ -27,6 +27,7 @@
 enum { BODY_SLOPE, BODY_DISC, FILL_LATTICE = 0, FILL_RINGS, SAMPLES = 100 };
 
 typedef struct settings {
+  double courant;
   double h, mu, angle, k, young, poisson, duration;
   int64_t ppc, threads;
   int fill, body, contact; /* contact: mps_contact_method */
@@ -142,6 +143,7 @@ static mps_status build(mps_context *context, void *user) {
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   if (s->body == BODY_SLOPE) {
     sim->along[0] = cos(a), sim->along[1] = -sin(a);
@@ -346,6 +348,7 @@ int main(int argc, char **argv) {
                                  .young = 1e6,
                                  .poisson = 0.3,
                                  .duration = 0.5,
+                                 .courant = 0.5,
                                  .ppc = 4,
                                  .spline = 1,
                                  .course = MPM_COURSE_DEFAULTS,
@@ -353,21 +356,21 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Disc and slope"),
-      OPTION_CHOICE("body", "slope|disc", &s->body,
-                    "which of the two is rigid; disc: it is free, and the slope elastic"),
-      OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
-      COMMON_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
+      OPTION_CHOICE_OF("body", "slope|disc", &s->body, NULL),
+      OPTION_NUMBER("slope-angle", &s->angle, NULL),
+      OPTION_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
       MPM_MODEL_CONTACT(&s->contact),
-      COMMON_NUMBER("k", &s->k, NULL),
-      COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER("poisson", &s->poisson, NULL),
+      OPTION_NUMBER("k", &s->k, NULL),
+      OPTION_NUMBER("young", &s->young, NULL),
+      OPTION_NUMBER("poisson", &s->poisson, NULL),
       OPTION_HEADING("Grid"),
-      COMMON_NUMBER_IN("h", OPTION_FROM_TO(1e-4, 0.05), &s->h, "the disc's radius R is 0.05 m"),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
-      OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
+      OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.05), &s->h, "the disc's radius R is 0.05 m"),
+      OPTION_INTEGER("ppc", &s->ppc, NULL),
+      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_CHOICE("spline", &s->spline, NULL),
+      OPTION_CHOICE_OF("fill", "lattice|rings", &s->fill, NULL),
       OPTION_HEADING("Run"),
-      COMMON_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
+      OPTION_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
                        "x_error_05 is that at its end"),
       MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTION_OUT(&s->out),

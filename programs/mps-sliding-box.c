@@ -24,6 +24,7 @@
 enum { BOTTOM, RIGHT, TOP, LEFT, PLATES, SAMPLES = 400 };
 
 typedef struct settings {
+  double courant;
   double h, k, offset, turn, mu, young, poisson, density;
   int contact; /* mps_contact_method */
   int spline;  /* degree of the weights less 2 */
@@ -148,6 +149,7 @@ static mps_status build(mps_context *context, void *user) {
     status = mps_material_create_linear_elastic(context, s->young, s->poisson, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.origin[0] = def.origin[1] = s->offset * s->h;
   if (status == MPS_OK) status = make_plates(context, sim);
@@ -274,33 +276,32 @@ int main(int argc, char **argv) {
                                  .young = 1e6,
                                  .poisson = 0.3,
                                  .density = 1000.0,
+                                 .courant = 0.5,
                                  .ppc = 4,
                                  .spline = 1,
                                  .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/sliding-box"}};
   settings *s = &sim.s;
-  option table[] = {
-      OPTION_HEADING("Block"),
-      COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER("poisson", &s->poisson, NULL),
-      COMMON_NUMBER("density", &s->density, NULL),
-      OPTION_HEADING("Contact"),
-      MPM_MODEL_CONTACT(&s->contact),
-      COMMON_NUMBER("k", &s->k, NULL),
-      COMMON_NUMBER("friction", &s->mu, "of the lower plate"),
-      OPTION_HEADING("Grid"),
-      COMMON_NUMBER_IN("h", OPTION_FROM_TO(1e-4, 0.1), &s->h, NULL),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
-      OPTION_NUMBER("offset", "h", OPTION_FROM_TO(-1.0, 1.0), &s->offset,
-                    "where the grid lies: its shift along x and y, in cells"),
-      OPTION_NUMBER("turn", "degrees", OPTION_FROM_TO(-180.0, 180.0), &s->turn,
-                    "of block and plates against the grid; forces are along the plates"),
-      OPTION_HEADING("Run"),
-      MPM_COURSE_OPTIONS(&s->course, SAMPLES),
-      OPTION_OUT(&s->out),
-      OPTION_THREADS(&s->threads),
-      {0}};
+  option table[] = {OPTION_HEADING("Block"),
+                    OPTION_NUMBER("young", &s->young, NULL),
+                    OPTION_NUMBER("poisson", &s->poisson, NULL),
+                    OPTION_NUMBER("density", &s->density, NULL),
+                    OPTION_HEADING("Contact"),
+                    MPM_MODEL_CONTACT(&s->contact),
+                    OPTION_NUMBER("k", &s->k, NULL),
+                    OPTION_NUMBER("friction", &s->mu, "of the lower plate"),
+                    OPTION_HEADING("Grid"),
+                    OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.1), &s->h, NULL),
+                    OPTION_INTEGER("ppc", &s->ppc, NULL),
+                    OPTION_NUMBER("courant", &s->courant, NULL),
+                    OPTION_CHOICE("spline", &s->spline, NULL),
+                    OPTION_NUMBER("offset", &s->offset, NULL),
+                    OPTION_NUMBER("turn", &s->turn, NULL),
+                    OPTION_HEADING("Run"),
+                    MPM_COURSE_OPTIONS(&s->course, SAMPLES),
+                    OPTION_OUT(&s->out),
+                    OPTION_THREADS(&s->threads),
+                    {0}};
   const options_program program = {
       "mps-sliding-box",
       "An elastic block of 0.1 m pressed between plates and dragged (WLS-MPM): Nakamura, Figures "

@@ -25,8 +25,8 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->slip)) s->slip = 0.01 * s->height;
   if (softens && !s->runout)
     return "--residual-phi, --residual-cohesion and --slip are for --runout";
-  if (options_given(table, "tolerance") && (s->runout || !isnan(s->factor)))
-    return "--tolerance is for a factor that is sought, without --runout and --factor";
+  if (options_given(table, "factor-tolerance") && (s->runout || !isnan(s->factor)))
+    return "--factor-tolerance is for a factor that is sought, without --runout and --factor";
   if (options_given(table, "slip") && !options_given(table, "residual-phi") &&
       !options_given(table, "residual-cohesion"))
     return "--slip is for a strength that falls, to --residual-phi or --residual-cohesion";
@@ -41,9 +41,9 @@ static const char *settle(settings *s, const option *table) {
   if (s->runout && s->residual_phi == 0.0 && s->residual_cohesion == 0.0)
     return "--residual-phi and --residual-cohesion must not both be 0";
   if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
-    return "--base must be 0 or at least 2 cells of --h";
-  if (s->base == 0.0 && options_given(table, "toe")) return "--toe is for a --base above 0";
-  if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
+    return "--below-toe must be 0 or at least 2 cells of --cell";
+  if (s->base == 0.0 && options_given(table, "toe")) return "--toe is for a --below-toe above 0";
+  if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --cell";
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
   if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
     return "--young must be at least 10 times the stress below the crest, density g height";
@@ -78,73 +78,50 @@ int main(int argc, char **argv) {
                                  .falls = NAN,
                                  .h = NAN,
                                  .ppc = 4,
+                                 .courant = 0.5,
                                  .spline = 1,
                                  .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/slope"}};
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Slope"),
-      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->height, "of the crest over the toe"),
-      OPTION_NUMBER("slope", "1", OPTION_FROM_TO(0.0, 10.0), &s->slope,
-                    "horizontal per vertical; 0: a vertical cut"),
-      OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
-                    "depth of ground below the toe; rigid rough ground below"),
-      OPTION_NUMBER("crest", "m", OPTION_LENGTH, &s->crest,
-                    "level ground behind the crest; default 1.2 times height and base"),
-      OPTION_NUMBER(
-          "toe", "m", OPTION_LENGTH, &s->toe,
-          "level ground in front of the toe, up to whole cells; default 1.5 heights with --base"),
+      OPTION_NUMBER("height", &s->height, "of the crest over the toe"),
+      OPTION_NUMBER_IN("slope", OPTION_FROM_TO(0.0, 10.0), &s->slope, "0: a vertical cut"),
+      OPTION_NUMBER("below-toe", &s->base, "rigid rough ground below"),
+      OPTION_NUMBER("crest", &s->crest, NULL),
+      OPTION_NUMBER("toe", &s->toe, NULL),
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
-      COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
-      COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
+      OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
+      OPTION_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
       SAND_E0_OPTION(&s->voids),
       SAND_E_MAX_OPTION(&s->voids),
-      COMMON_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
-      OPTION_NUMBER("strength-gradient", "Pa/m", OPTION_FROM_TO(0.0, 1e9), &s->gradient,
-                    "growth of the cohesion with the depth below the crest's level"),
-      COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49), &s->poisson, NULL),
-      COMMON_NUMBER("density", &s->density, NULL),
-      COMMON_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
+      OPTION_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
+      OPTION_NUMBER("strength-gradient", &s->gradient, "below the crest's level"),
+      OPTION_NUMBER("young", &s->young, NULL),
+      OPTION_NUMBER("poisson", &s->poisson, NULL),
+      OPTION_NUMBER("density", &s->density, NULL),
+      OPTION_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
       OPTION_HEADING("Water"),
-      OPTION_TEXT(
-          "water-table", "m|FILE", &s->table_text,
-          "level above the toe, of a pool where it is above the ground; or a line, each of "
-          "its points x_m from the crest's edge (to the toe) and level_m above the toe, level "
-          "beyond its ends; "
-          "below it phi and cohesion are effective, --density is saturated"),
-      OPTION_CHOICE("seepage", "rest|along", &s->flow,
-                    "pressures below a line: of water at rest, or of water that flows along it, "
-                    "cos^2 of its inclination times that"),
-      OPTION_NUMBER("drawdown", "m", OPTION_FROM_TO(-1e6, 1e6), &s->drawdown,
-                    "level above the toe from which a pool has fallen to --water-table at once, "
-                    "undrained: the pressures are less the load that the ground has lost"),
-      OPTION_NUMBER("ru", "1", OPTION_FROM_TO(0.0, 0.9), &s->ru,
-                    "pressure of the water over the weight of the ground above, everywhere"),
-      OPTION_NUMBER("moist-density", "kg/m3", OPTION_DENSITY, &s->moist,
-                    "of the ground above --water-table; default --density"),
+      OPTION_TEXT("water-level", &s->table_text, NULL),
+      OPTION_CHOICE_OF("seepage", "rest|along", &s->flow, NULL),
+      OPTION_NUMBER("drawdown", &s->drawdown, NULL),
+      OPTION_NUMBER("ru", &s->ru, NULL),
+      OPTION_NUMBER("moist-density", &s->moist, NULL),
       OPTION_HEADING("Factor of safety"),
-      OPTION_NUMBER("factor", "1", OPTION_FROM_TO(0.05, 20.0), &s->factor,
-                    "one trial with c and tan(phi) divided by it; default: it is sought"),
-      OPTION_NUMBER("tolerance", "1", OPTION_FROM_TO(1e-3, 1.0), &s->tolerance,
-                    "of the factor: between one that stands and one that fails"),
-      OPTION_NUMBER("fails", "H", OPTION_FROM_TO(1e-4, 1.0), &s->fails,
-                    "displacement at which it has failed, of all but 1 % of the particles"),
-      OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e5), &s->falls,
-                    "time it has to fail; default 10, --runout 30"),
+      OPTION_NUMBER("factor", &s->factor, NULL),
+      OPTION_NUMBER("factor-tolerance", &s->tolerance, NULL),
+      OPTION_NUMBER("fails", &s->fails, NULL),
+      OPTION_NUMBER_IN("falls", OPTION_FROM_TO(1e-3, 1e5), &s->falls, "default 10, --runout 30"),
       OPTION_HEADING("Run-out"),
-      OPTION_FLAG("runout", &s->runout,
-                  "of the strength divided by --factor (default 1), which softens, until it rests"),
-      OPTION_NUMBER("residual-phi", "degrees", OPTION_FROM_TO(0.0, 50.0), &s->residual_phi,
-                    "at last; default phi"),
-      OPTION_NUMBER("residual-cohesion", "Pa", OPTION_STRENGTH, &s->residual_cohesion,
-                    "at last; default the cohesion"),
-      OPTION_NUMBER("slip", "m", OPTION_LENGTH, &s->slip,
-                    "displacement across a band at which 1/e of the fall is left; default 0.01 H"),
+      OPTION_FLAG("runout", &s->runout, NULL),
+      OPTION_NUMBER_IN("residual-phi", OPTION_FROM_TO(0.0, 50.0), &s->residual_phi, NULL),
+      OPTION_NUMBER("residual-cohesion", &s->residual_cohesion, NULL),
+      OPTION_NUMBER("slip", &s->slip, "default 0.01 H"),
       OPTION_HEADING("Grid"),
-      COMMON_NUMBER("h", &s->h, "default height/20"),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
+      OPTION_NUMBER("cell", &s->h, "default height/20"),
+      OPTION_INTEGER("ppc", &s->ppc, NULL),
+      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_CHOICE("spline", &s->spline, NULL),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, SLOPE_SAMPLES),
       OPTION_OUT(&s->out),

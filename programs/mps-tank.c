@@ -49,7 +49,7 @@ static int complete(const options_program *program, tank_settings *s) {
     s->amplitude = fmin(s->amplitude, 0.4 * WAVES_G / pow(tank_spring_omega(s), 2.0));
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
   if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))
-    return options_refuse(program, "--scheme classical has no coupling and no --viscosity");
+    return options_refuse(program, "--method classical has no coupling and no --viscosity");
   if (s->depth < 5.0 * s->spacing)
     return options_refuse(program, "--depth must be at least 5 times --spacing");
   if (s->kind != TANK_DROP && s->length < 5.0 * s->spacing)
@@ -77,7 +77,7 @@ static int complete(const options_program *program, tank_settings *s) {
                                      "numbers of --spacing: else the water does not touch it");
     if (4.0 * fabs(s->amplitude) > s->draft)
       return options_refuse(program, "--amplitude must be at most a quarter of --draft");
-    if (s->scheme == 1) return options_refuse(program, "--scheme classical has no bodies");
+    if (s->scheme == 1) return options_refuse(program, "--method classical has no bodies");
   }
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
     return options_refuse(program,
@@ -180,68 +180,55 @@ int main(int argc, char **argv) {
   const char *gauges = NULL;
   option table[] = {
       OPTION_HEADING("Case"),
-      OPTION_CHOICE(
+      OPTION_CHOICE_OF(
           "case", "still|sloshing|piston|spring|plate|drop|resonance|float", &s->kind,
-          "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
-          "end wall on a spring, let go --amplitude off its rest; a column of water on a "
-          "clamped plate; an elliptic drop of radius --depth without gravity; an end "
-          "wall on a spring that waves of a piston swing; a box that floats in the middle, "
-          "and heaves from the moment that a weight is put on it"),
-      COMMON_NUMBER("length", &s->length,
+          "water at rest; first mode of sloshing; waves of a piston in a closed tank; an end wall "
+          "on a spring, let go --amplitude off its rest; a column of water on a clamped plate; an "
+          "elliptic drop of radius --depth without gravity; an end wall on a spring that waves of "
+          "a piston swing; a box that floats in the middle, and heaves from the moment that a "
+          "weight is put on it"),
+      OPTION_NUMBER("length", &s->length,
                     "of the tank (default .6, .7, 1.6, .6, of resonance 3, of float .8 m; on a "
                     "plate, the plate's)"),
-      COMMON_NUMBER("depth", &s->depth,
+      OPTION_NUMBER("depth", &s->depth,
                     "of the water (default .3, on a plate 2, of float .4 m), or the drop's radius "
                     "(default 1 m)"),
-      COMMON_NUMBER("amplitude", &s->amplitude,
+      OPTION_NUMBER("amplitude", &s->amplitude,
                     "of the sloshing at the walls (default 10 mm), of the piston (20 mm, of "
                     "resonance 10 mm), of the wall on the spring (1 mm, less where its "
                     "acceleration would exceed .4 g), of the box (5 mm)"),
-      COMMON_NUMBER("period", &s->period, NULL),
-      COMMON_NUMBER("ramp", &s->ramp, NULL),
-      COMMON_NUMBER("viscosity", &s->viscosity, NULL),
+      OPTION_NUMBER("period", &s->period, NULL),
+      OPTION_NUMBER("ramp", &s->ramp, NULL),
+      OPTION_NUMBER("viscosity", &s->viscosity, NULL),
       OPTION_HEADING("Structures, of 1 m across"),
-      OPTION_NUMBER("mass", "kg", OPTION_FROM_TO(1e-6, 1e12), &s->mass,
-                    "of the wall on a spring (default 10, of resonance 100)"),
-      OPTION_NUMBER("stiffness", "N/m", OPTION_FROM_TO(1e-3, 1e16), &s->stiffness,
-                    "of its spring (default 211800, of resonance by --ratio)"),
-      OPTION_NUMBER("ratio", "1", OPTION_FROM_TO(0.05, 20.0), &s->ratio,
-                    "resonance: frequency of the waves over that of the wall in water, which gives "
-                    "its spring"),
-      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "of the box that floats"),
-      OPTION_NUMBER("draft", "m", OPTION_LENGTH, &s->draft,
-                    "of the box, half its height: its mass is that of the water there"),
-      OPTION_NUMBER("plate-length", "m", OPTION_LENGTH, &s->plate_length, "of the plate"),
-      OPTION_NUMBER("plate-thickness", "m", OPTION_LENGTH, &s->plate_thickness, "of the plate"),
-      COMMON_NUMBER("young", &s->young, "of the plate"),
-      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "of the plate"),
-      OPTION_NUMBER("plate-density", "kg/m3", OPTION_DENSITY, &s->plate_density, "of the plate"),
+      OPTION_NUMBER("mass", &s->mass, NULL),
+      OPTION_NUMBER("stiffness", &s->stiffness, NULL),
+      OPTION_NUMBER("frequency-ratio", &s->ratio, NULL),
+      OPTION_NUMBER("width", &s->width, "of the box that floats"),
+      OPTION_NUMBER("draft", &s->draft, NULL),
+      OPTION_NUMBER("plate-length", &s->plate_length, NULL),
+      OPTION_NUMBER("plate-thickness", &s->plate_thickness, NULL),
+      OPTION_NUMBER("young", &s->young, "of the plate"),
+      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "of the plate"),
+      OPTION_NUMBER("plate-density", &s->plate_density, NULL),
       OPTION_HEADING("Particles"),
-      COMMON_NUMBER("spacing", &s->spacing,
+      OPTION_NUMBER("spacing", &s->spacing,
                     "default .02, on a plate .05 m, of a drop a twentieth of its radius"),
-      COMMON_NUMBER("disturb", &s->disturb, "default 0, of a drop .1"),
-      OPTION_CHOICE(
-          "scheme", "modern|classical", &s->scheme,
+      OPTION_NUMBER("disturb", &s->disturb, "default 0, of a drop .1"),
+      OPTION_CHOICE_OF(
+          "method", "modern|classical", &s->scheme,
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      COMMON_NUMBER("duration", &s->duration,
+      OPTION_NUMBER("duration", &s->duration,
                     "to the first step that reaches it; default 4, 5.2, 6, 1, .25, 1, 9, 4 s"),
-      COMMON_NUMBER("dt", &s->dt, "default the library's; spring 5e-4, plate 2e-4 s"),
-      COMMON_NUMBER("sample", &s->sample, "default .01 s; of structures --dt"),
-      COMMON_TEXT("gauge", &gauges, NULL),
-      {.name = "window",
-       .unit = "s",
-       .range = OPTION_FROM_TO(0.0, 1e6),
-       .count = 2,
-       .number = s->window,
-       .help = "two times T1,T2: window of the means and harmonics (default: the last 4 periods of "
-               "a piston, half the run "
-               "at rest, else all)"},
-      OPTION_NUMBER("density-at", "m", OPTION_FROM_TO(0.0, 1e6), &s->density_at,
-                    "x of a vertical line on which the density of the particles is given over the "
-                    "height at the end"),
-      COMMON_INTEGER("frames", &s->frames, NULL),
+      OPTION_NUMBER("dt", &s->dt, "default the library's; spring 5e-4, plate 2e-4 s"),
+      OPTION_NUMBER("sample", &s->sample, "default .01 s; of structures --dt"),
+      OPTION_TEXT("gauge", &gauges, "at most 8"),
+      OPTION_NUMBERS("window", 2, s->window,
+                     "default the last 4 periods of a piston, half the run at rest, else all"),
+      OPTION_NUMBER("density-at", &s->density_at, NULL),
+      OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

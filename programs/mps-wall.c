@@ -23,15 +23,15 @@ static const char *settle(settings *s, const option *table) {
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (sand_check(&s->voids)) return sand_check(&s->voids);
-  if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
+  if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --cell";
   if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
-    return "--base must be 0 or at least 2 cells of --h";
+    return "--below-toe must be 0 or at least 2 cells of --cell";
   if (s->sheet > 0.0 && s->base < s->sheet + 2.0 * s->h * (1.0 - 1e-9))
-    return "--base must be at least 2 cells of --h more than --sheet";
+    return "--below-toe must be at least 2 cells of --cell more than --sheet";
   if (fabs(s->sheet / s->h - nearbyint(s->sheet / s->h)) > 1e-6)
-    return "--sheet must be whole cells of --h";
+    return "--sheet must be whole cells of --cell";
   if (s->length < s->height) return "--length must be at least --height";
-  if (s->path > 0.2 * s->height) return "--path must be at most a fifth of --height";
+  if (s->path > 0.2 * s->height) return "--travel must be at most a fifth of --height";
   const char *why = wall_settle_ground(s, table);
   if (why) return why;
   if (s->heaviest * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
@@ -57,60 +57,46 @@ int main(int argc, char **argv) {
                                  .rate = 0.02,
                                  .h = NAN,
                                  .ppc = 4,
+                                 .courant = 0.5,
                                  .spline = 1,
                                  .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/wall"}};
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Wall"),
-      OPTION_CHOICE("pressure", "active|passive", &s->pressure,
-                    "it moves away from the ground or into it"),
-      OPTION_CHOICE("motion", "translate|toe|top", &s->motion,
-                    "as a whole, or turning about its toe or its top"),
-      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->height, "of the ground behind it"),
-      COMMON_NUMBER("friction", &s->friction, "of its face"),
-      OPTION_NUMBER("path", "m", OPTION_LENGTH, &s->path,
-                    "of the end that moves most; default 0.01 of the height, passive 0.02"),
-      COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 10.0), &s->rate, "of that end"),
-      COMMON_NUMBER("corner", &s->corner, "of its toe"),
+      OPTION_CHOICE_OF("pressure", "active|passive", &s->pressure, NULL),
+      OPTION_CHOICE_OF("motion", "translate|toe|top", &s->motion, NULL),
+      OPTION_NUMBER("height", &s->height, "of the ground behind it"),
+      OPTION_NUMBER("friction", &s->friction, "of its face"),
+      OPTION_NUMBER("travel", &s->path, NULL),
+      OPTION_NUMBER("rate", &s->rate, "of that end"),
+      OPTION_NUMBER("corner", &s->corner, "of its toe"),
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
-      OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
-                    "depth of ground below the toe and in front of it; 0: a smooth bed"),
-      OPTION_NUMBER("sheet", "m", OPTION_FROM_TO(0.0, 1e6), &s->sheet,
-                    "of the wall below the ground in front, whole cells, beside which no pressure "
-                    "is counted; default 2 cells with --pressure active and --base of at least 4 "
-                    "cells, but not "
-                    "with --motion toe"),
-      OPTION_NUMBER("surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
-                    "on the surface behind the wall"),
-      OPTION_NUMBER("water-table", "m", OPTION_FROM_TO(0.0, 1e6), &s->water,
-                    "depth below the surface; below it phi and cohesion are effective, densities "
-                    "saturated; the water is at rest on both sides of the wall, in front up to the "
-                    "ground"),
-      OPTION_TEXT(
-          "layers", "FILE", &s->layers_file,
-          "of the ground from the surface behind the wall, in place of the following: a header "
-          "names, in any order and unit, thickness_m, phi_degrees, psi_degrees, cohesion_Pa, "
-          "density_kg_m3; the last one continues downwards"),
-      OPTION_NUMBER(
-          "length", "m", OPTION_LENGTH, &s->length,
-          "of the ground behind the wall, up to whole cells; default 2.5 heights, passive 5"),
-      COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
-      COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
+      OPTION_NUMBER("below-toe", &s->base, "and in front of it; 0: a smooth bed"),
+      OPTION_NUMBER("sheet", &s->sheet, NULL),
+      OPTION_NUMBER("surcharge", &s->surcharge, "behind the wall"),
+      OPTION_NUMBER("water-table", &s->water, NULL),
+      OPTION_TEXT("layers", &s->layers_file,
+                  "thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3: behind the "
+                  "wall, in place of the following; the last one continues downwards"),
+      OPTION_NUMBER("length", &s->length,
+                    "of the ground behind the wall; default 2.5 heights, passive 5"),
+      OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
+      OPTION_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
       SAND_E0_OPTION(&s->voids),
       SAND_E_MAX_OPTION(&s->voids),
-      COMMON_NUMBER("cohesion", &s->cohesion, NULL),
-      OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.0, 10.0), &s->k0,
-                    "horizontal over vertical stress at rest; default 1 - sin(phi)"),
-      COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49), &s->poisson, NULL),
-      COMMON_NUMBER("density", &s->density, NULL),
-      COMMON_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
+      OPTION_NUMBER("cohesion", &s->cohesion, NULL),
+      OPTION_NUMBER("k0", &s->k0, "default 1 - sin(phi)"),
+      OPTION_NUMBER("young", &s->young, NULL),
+      OPTION_NUMBER("poisson", &s->poisson, NULL),
+      OPTION_NUMBER("density", &s->density, NULL),
+      OPTION_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
       OPTION_HEADING("Grid"),
-      COMMON_NUMBER("h", &s->h, "default height/16"),
-      COMMON_INTEGER("ppc", &s->ppc, NULL),
-      COMMON_CHOICE("spline", &s->spline, NULL),
-      COMMON_NUMBER("flip-time", &s->flip_time, NULL),
+      OPTION_NUMBER("cell", &s->h, "default height/16"),
+      OPTION_INTEGER("ppc", &s->ppc, NULL),
+      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_CHOICE("spline", &s->spline, NULL),
+      OPTION_NUMBER("flip-time", &s->flip_time, NULL),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, WALL_SAMPLES),
       OPTION_OUT(&s->out),

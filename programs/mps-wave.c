@@ -48,7 +48,7 @@ static mps_status build_boundaries(const settings *s, simulation *sim) {
 static bool build_ground(app *a, const settings *s, simulation *sim) {
   const column_def def = {.width = s->width,
                           .height = s->height,
-                          .radius = s->radius,
+                          .radius = 0.5 * s->spacing,
                           .ground = &s->ground,
                           .sloped = s->sloped,
                           .slope = {s->slope[0], s->slope[1], s->slope[2]},

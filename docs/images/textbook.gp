@@ -33,10 +33,10 @@ set size noratio
 set key bottom right
 set terminal pngcairo size 1200,820 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-bearing.png'
-nq = folder('mps-footing_--model_druckerprager_--gravity_0')
-smooth = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--domain_2x0.8')
-rough = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--domain_3x1.2')
-thin = folder('mps-footing_--half-width_1_--domain_3x0.5')
+nq = folder('mps-footing_--law_druckerprager_--gravity_0')
+smooth = folder('mps-footing_--law_druckerprager_--cohesion_1Pa_--soil_2x0.8')
+rough = folder('mps-footing_--law_druckerprager_--cohesion_1Pa_--soil_3x1.2')
+thin = folder('mps-footing_--half-width_1_--soil_3x0.5')
 set multiplot layout 2,2
 set xlabel 'settlement (mm)'
 set title 'Surcharge, {/Symbol f} = 30°, h = 0.05 m'; set ylabel 'pressure over the surcharge'
@@ -54,7 +54,7 @@ set terminal pngcairo size 900,520 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-cones.png'
 set title 'Smooth cone of 60° in deep clay (Tresca), D/8, from a hole 4 D deep'
 set xlabel 'penetration over D'; set ylabel 'N_{kt}'; set key bottom right
-cone(ir) = folder('mps-penetrometer_--axisymmetric_--no-space_--law_tresca_--ir_'.ir.'_').'force.csv'
+cone(ir) = folder('mps-penetrometer_--axisymmetric_--law_tresca_--ir_'.ir.'_').'force.csv'
 lu(ir) = 3.4 + 1.6*log(ir)
 plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) every ::1 using (($1 - 0.4)/0.1):10 with lines lw 2 lc rgb word(green.' '.blue.' '.grey, k + 1) title 'Ir = '.word('50 100 200', k + 1), \
   lu(50) dt '--' lc rgb green notitle, lu(100) dt '--' lc rgb blue notitle, lu(200) dt '--' lc rgb grey title 'Lu et al. (2004)'
@@ -65,7 +65,7 @@ set output 'docs/images/textbook-sand.png'
 set multiplot layout 1,2
 set title 'Wall that leaves sand, {/Symbol y} = {/Symbol f}, ground below the toe'
 set xlabel 'path over height'; set ylabel 'K'; set key top right
-walls = 'out/verify/mps-wall_--base_0.5_--psi_30_--h_'
+walls = 'out/verify/mps-wall_--below-toe_0.5_--psi_30_--cell_'
 plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::2 using 1:3 with lines lc rgb grey title 'h = H/8', walls.'0.0625/pressure.csv' every ::2 using 1:3 with lines lc rgb green title 'h = H/16', walls.'0.03125/pressure.csv' every ::2 using 1:3 with lines lw 2 lc rgb blue title 'h = H/32', 1.0/3 dt '--' lc rgb red title 'Rankine'
 set title 'Cylinders of sand, run-out over time'
 set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; set key bottom right

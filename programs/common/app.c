@@ -78,6 +78,7 @@ bool app_start(app *a, const char *program, int64_t threads) {
   progress_start(&a->bar, program);
   char doubt[200];
   for (int k = 0; options_doubt(k, doubt, sizeof doubt); k++) note_warning(a, doubt);
+  for (int k = 0; options_noted(k); k++) note_warning(a, options_noted(k));
   if (*table_note()) note_warning(a, table_note());
   if (ranks_launched() == 1) return make_context(a, threads);
   progress_heed_launcher();

@@ -6,19 +6,23 @@
 
 #include <math.h>
 
-enum { COLUMNS = 5, WHY = 512 };
+enum { COLUMNS = 6, WHY = 512 };
 
 /* Ranges of ground: what is beyond them is of another unit or column. */
-static const table_def def = {.row = "layer",
-                              .column = {{"thickness", "m", "m", 0.0, 2e3, true},
-                                         {"vs", "m/s", "m/s", 10.0, 6e3, false},
-                                         {"vp", "m/s", "m/s", 15.0, 1.2e4, false},
-                                         {"unit weight", "N/m3", "kN/m3", 5e3, 5e4, false},
-                                         {"damping", "1", "ratio", 0.0, 0.5, false}},
-                              .count = COLUMNS,
-                              .most = LAYERS_MAX};
+static const table_def def = {
+    .row = "layer",
+    .column = {{"thickness", "m", "m", 0.0, 2e3, true, .endless = true},
+               {"vs", "m/s", "m/s", 10.0, 6e3, false},
+               {"vp", "m/s", "m/s", 15.0, 1.2e4, false},
+               {"unit weight", "N/m3", "kN/m3", 5e3, 5e4, .optional = true},
+               {"damping", "1", "ratio", 0.0, 0.5, false},
+               {"density", "kg/m3", "kg/m3", 500.0, 5e3, .optional = true}},
+    .others = LAYERS_OTHERS,
+    .count = COLUMNS,
+    .most = LAYERS_MAX};
 
 static const char *fault(const double *row) {
+  if (isnan(row[3]) == isnan(row[5])) return "one of unit_weight_kN_m3 and density_kg_m3 is wanted";
   /* lambda = rho (Vp^2 - 2 Vs^2) must not be negative. */
   return row[2] * row[2] >= 2.0 * row[1] * row[1] ? NULL : "vp_m_s must be >= sqrt(2) vs_m_s";
 }
@@ -35,9 +39,13 @@ bool layers_read(app *a, const char *path, layers *out) {
   if (*table_note()) app_warn(a, "%s", table_note());
   for (int64_t i = 0; i < out->count; i++) {
     const double *row = values + COLUMNS * i;
-    out->layer[i] = (layer){row[0], row[1], row[2], row[3], row[4]};
+    out->layer[i] =
+        (layer){row[0], row[1], row[2], isnan(row[3]) ? row[5] * LAYERS_GRAVITY : row[3], row[4]};
   }
-  return true;
+  out->below = (layer){0};
+  if (!isinf(out->layer[out->count - 1].thickness)) return true;
+  out->below = out->layer[--out->count];
+  return out->count > 0 || app_error(a, "%s: there is no layer above the half space", path);
 }
 
 double layers_thickness(const layers *ground) {

@@ -1,7 +1,8 @@
 /* layers.h - horizontal soil layers, from the ground surface down, and the file that lists them.
  *
- * One layer a line, by a header as table.h reads it:
- *   thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio
+ * One layer a line, by a header as table.h reads it. Each program reads the columns that it needs
+ * and passes over those that only others need (LAYERS_OTHERS), so that one file may serve several.
+ * Here: thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3 or density_kg_m3, damping_ratio.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_LAYERS_H
 #define EXAMPLES_LAYERS_H
@@ -15,6 +16,10 @@ typedef struct layer {
   double damping;     /* ratio h */
 } layer;
 
+#define LAYERS_OTHERS                                                                              \
+  "thickness|vs|vp|unit weight|density|damping|poisson|k0|phi|psi|cohesion|e0|emax|permeability|"  \
+  "porosity|modulus|law|reference strain|curvature|strength|relative density|blow count"
+
 #define LAYERS_MAX 200
 /* Unit weight to density with the paper's g: 14700 N/m3 is 1500 kg/m3. */
 #define LAYERS_GRAVITY 9.8
@@ -22,6 +27,7 @@ typedef struct layer {
 typedef struct layers {
   int64_t count;
   layer layer[LAYERS_MAX];
+  layer below; /* the half space, a last row of thickness inf; of thickness 0: there is none */
 } layers;
 
 /* Reads the file; errors are "path:line: reason". */

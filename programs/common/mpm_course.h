@@ -19,7 +19,7 @@ typedef struct mpm_course_options {
 #define MPM_COURSE_DEFAULTS                                                                        \
   { .every_checkpoint = NAN }
 #define MPM_COURSE_OPTIONS(o, most)                                                                \
-  COMMON_INTEGER_IN("frames", OPTION_FROM_TO(0.0, most), &(o)->frames, NULL),                      \
+  OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, most), &(o)->frames, NULL),                      \
       RESUME_OPTIONS(&(o)->checkpoint, &(o)->every_checkpoint, "default a tenth of the run",       \
                      &(o)->restart)
 

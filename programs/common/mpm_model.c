@@ -29,7 +29,7 @@ const char *mpm_model_refuse_stiffness(const option *table, int contact) {
 
 const char *mpm_model_too_large(double particles) {
   return particles <= 1e8 ? NULL
-                          : "more than 1e8 particles: take a coarser --h, or a smaller model";
+                          : "more than 1e8 particles: take a coarser --cell, or a smaller model";
 }
 
 static double time_of(const mpm_model *model) {
@@ -53,7 +53,8 @@ mps_status mpm_model_whole(mpm_model *m, mps_particles **whole) {
   *whole = m->fluid && m->a->rank > 0 ? NULL : m->particles; /* a fluid is whole on each rank */
   if (!m->a->domain || m->fluid) return MPS_OK;
   *whole = NULL;
-  const mps_status status = mps_domain_gather_fields(m->a->domain, m->particles, 0, NULL, &m->whole);
+  const mps_status status =
+      mps_domain_gather_fields(m->a->domain, m->particles, 0, NULL, &m->whole);
   if (status == MPS_OK) *whole = m->whole;
   return status;
 }

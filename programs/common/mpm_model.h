@@ -95,7 +95,7 @@ mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_
                              void *user);
 
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
-#define MPM_MODEL_CONTACT(value) COMMON_CHOICE("contact", value, NULL)
+#define MPM_MODEL_CONTACT(value) OPTION_CHOICE("contact", value, NULL)
 /* Why an option of penalty contact alone, --k or --xi, cannot be given; NULL where it can. */
 const char *mpm_model_refuse_stiffness(const option *table, int contact);
 

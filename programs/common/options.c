@@ -4,8 +4,8 @@
 
 #include "app.h"
 #include "ranks.h"
-#include "standard.h"
 #include "units.h"
+#include "vocabulary.h"
 
 #include <mps/base.h>
 
@@ -15,10 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40, MAX_ROWS = 64 };
+enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40, MAX_ROWS = 64, MAX_NOTES = 6 };
 
 /* Of options_parse, for options_read. A program reads its arguments once. */
 static option rows_read[MAX_ROWS];
+/* Of options_note. */
+static char noted[MAX_NOTES][200];
+static int notes;
 /* Where values are read that are not on the command line: "flume.yaml, line 7". */
 static const char *source;
 
@@ -125,7 +128,13 @@ static void print_option(const option *o) {
   char range[64] = "", standard[64], help[600], text[800];
   if (o->number || o->integer) describe_range(o, range, sizeof range);
   describe_default(o, standard, sizeof standard);
-  const char *join = !o->note ? "" : strncmp(o->note, "default", 7) == 0 ? "; " : ", ";
+  const char *note = o->note, *join = ", ";
+  if (!note)
+    join = "";
+  else if (strncmp(note, "of ", 3) == 0 && !strpbrk(o->help, " ,"))
+    join = " ";
+  else if (strncmp(note, "default", 7) == 0 || strchr(note, ':'))
+    join = "; ";
   snprintf(help, sizeof help, "%s%s%s", o->help, join, o->note ? o->note : "");
   if (range[0] || standard[0])
     snprintf(text, sizeof text, "%s (%s%s)", help, range, standard);
@@ -193,23 +202,30 @@ static int farthest(const char *name) { return (int)strlen(name) / 3; }
 static int refuse_unknown(const options_program *program, const char *name) {
   const char *nearest = NULL;
   int least = MAX_NAME;
-  const standard_former *former = standard_find_former(program->table, name);
-  if (former) {
-    complain("%s: %s%s is %s%s%s", place(program), dashes(), name, dashes(), former->now,
-             former->value ? former->value : "");
+  const vocabulary_other *other = vocabulary_find_other(program->table, name);
+  if (other) {
+    complain("%s: %s%s is %s%s%s", place(program), dashes(), name, dashes(), other->now,
+             other->value ? other->value : "");
     return USAGE;
   }
   for (const option *o = program->table; o->name || o->help; o++) {
     if (!o->name) continue;
-    const bool begins = strlen(name) > 1 && strncmp(name, o->name, strlen(name)) == 0;
-    const int d = begins ? 0 : distance(name, o->name);
+    const size_t typed = strlen(name), length = strlen(o->name);
+    const bool begins = typed > 1 && strncmp(name, o->name, typed) == 0;
+    const bool ends = length > 2 && typed > length && name[typed - length - 1] == '-' &&
+                      strcmp(name + typed - length, o->name) == 0; /* base-friction */
+    const int d = begins || ends ? 0 : distance(name, o->name);
     if (d > farthest(o->name) || d >= least) continue;
     least = d;
     nearest = o->name;
   }
+  const bool known = vocabulary_has(name);
+  const char *what = source ? "key " : "option --";
   if (nearest)
-    complain("%s: unknown %s%s, did you mean %s%s?", place(program), source ? "key " : "option --",
-             name, dashes(), nearest);
+    complain("%s: %s %s%s: did you mean %s%s?", place(program), known ? "there is no" : "unknown",
+             what, name, dashes(), nearest);
+  else if (known && !source)
+    complain("%s: there is no option --%s here, see %s --help", program->name, name, program->name);
   else if (source)
     complain("%s: unknown key %s: keys are the options of %s --help, and parts of the model",
              place(program), name, program->name);
@@ -348,7 +364,7 @@ bool options_doubt(int k, char *out, size_t size) {
   const option *o = rows_read;
   char value[48];
   for (; o->name || o->help; o++) {
-    const char *unit = o->bare ? standard_likelier_unit(o, *o->number) : NULL;
+    const char *unit = o->bare ? vocabulary_likelier_unit(o, *o->number) : NULL;
     if (!unit || k-- > 0) continue;
     snprintf(value, sizeof value, "%.6g", *o->number);
     snprintf(out, size, "--%s is %s %s: write %s%s if that is meant", o->name, value, o->unit,
@@ -356,6 +372,26 @@ bool options_doubt(int k, char *out, size_t size) {
     return true;
   }
   return false;
+}
+
+void options_note(const char *format, ...) {
+  va_list args;
+  if (notes == MAX_NOTES) return;
+  va_start(args, format);
+  vsnprintf(noted[notes++], sizeof noted[0], format, args);
+  va_end(args);
+}
+
+const char *options_noted(int k) { return k < notes ? noted[k] : NULL; }
+
+double options_divide(const char *name, double *part, const char *of, double whole, bool half) {
+  const double shift = half ? 0.5 : 0.0;
+  const double count = fmax(nearbyint(whole / *part - shift), 1.0) + shift, given = *part;
+  *part = whole / count;
+  if (fabs(given - *part) > 1e-5 * *part)
+    options_note("--%s is %.6g m, taken as %.6g m: %g in %s, %.6g m", name, given, *part, count, of,
+                 whole);
+  return count;
 }
 
 /* A word that belongs to no option; one that is the unit of the number before it is put there. */
@@ -378,6 +414,14 @@ static int refuse_word(const options_program *program, int i, char **argv) {
     complain("%s: unexpected argument \"%s\": write --%s %s", program->name, word, o->name, both);
   else
     complain("%s: unexpected argument \"%s\", see %s --help", program->name, word, program->name);
+  return USAGE;
+}
+
+static int refuse_twice(const options_program *program, const option *o, const char *value) {
+  if (value)
+    complain("%s: --%s is given twice: %s and %s", program->name, o->name, o->typed, value);
+  else
+    complain("%s: --%s is given twice", program->name, o->name);
   return USAGE;
 }
 
@@ -405,35 +449,40 @@ static int parse(const options_program *program, int argc, char **argv) {
     const char *value = argument[2 + length] == '=' ? argument + 3 + length : NULL;
     if (o->flag) {
       if (value) return refuse_value(program, o, value, "given without a value");
+      if (o->typed) return refuse_twice(program, o, NULL);
       *o->flag = o->given = true;
+      o->typed = "";
       continue;
     }
     if (!value && (i + 1 >= argc || strncmp(argv[i + 1], "--", 2) == 0)) {
       complain("%s: --%s needs a value: %s", program->name, name, o->unit ? o->unit : "a number");
       return USAGE;
     }
-    const int code = read_value(program, o, value ? value : argv[++i]);
+    if (!value) value = argv[++i];
+    if (o->typed) return refuse_twice(program, o, value);
+    o->typed = value;
+    const int code = read_value(program, o, value);
     if (code >= 0) return code;
   }
   return -1;
 }
 
 int options_parse(const options_program *program, int argc, char **argv) {
-  const char *name;
+  const char *name = "";
   ranks_hush();
   ranks_keep_options(argc, argv);
   for (option *o = program->table; o->name || o->help; o++)
     o->usual = o->number && o->count < 2 ? *o->number : 0.0;
-  if (!standard_complete(program->table, &name)) {
-    complain("%s: --%s is not in the table of options", program->name, name);
+  const char *fault = vocabulary_complete(program->table, &name);
+  if (fault) {
+    complain("%s: --%s is %s", program->name, name, fault);
     return USAGE;
   }
-  const int code = parse(program, argc, argv);
-  keep_rows(program);
-  return code;
+  return options_again(program, argc, argv);
 }
 
 int options_again(const options_program *program, int argc, char **argv) {
+  for (option *o = program->table; o->name || o->help; o++) o->typed = NULL;
   const int code = parse(program, argc, argv);
   keep_rows(program);
   return code;

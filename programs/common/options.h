@@ -3,14 +3,14 @@
  * A program lists its options with variables that hold the defaults:
  *   option table[] = {
  *     OPTION_HEADING("Ground"),
- *     COMMON_NUMBER("young", &young, "of the plate"),
- *     OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &tank, "to the far wall"),
+ *     OPTION_NUMBER("young", &young, "of the plate"),
+ *     OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &phi, NULL),
  *     {0}};
- * Rows COMMON_... take unit, range and help from the table of the options that mean the same in all
- * programs (standard.c). --name VALUE and --name=VALUE both work; of an option given twice the last
- * value counts. Numbers are read strictly, and always with a point; they are in the unit that
- * --help shows or have one of their own (units.h).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Kind, unit, range and meaning are those of the table of all options (vocabulary.c); a row may
+ * have another range, and adds words of its own or NULL. --name VALUE and --name=VALUE both work;
+ * an option given twice is an error. Numbers are read strictly, and always with a point; they are
+ * in the unit that --help shows or have one of their own (units.h). SPDX-License-Identifier:
+ * BSD-3-Clause */
 #ifndef EXAMPLES_OPTIONS_H
 #define EXAMPLES_OPTIONS_H
 
@@ -23,28 +23,6 @@ typedef struct option_range {
   bool open; /* `lower` itself is not allowed */
 } option_range;
 
-/* Of physical quantities: wide enough for any model of soil, structures or water, and narrow enough
- * that no computation with them overflows. */
-#define OPTION_LENGTH                                                                              \
-  { 1e-6, 1e6, false } /* m */
-#define OPTION_DURATION                                                                            \
-  { 1e-9, 1e6, false } /* s */
-#define OPTION_SPEED                                                                               \
-  { 1e-6, 1e5, false } /* m/s */
-#define OPTION_FREQUENCY                                                                           \
-  { 1e-4, 1e6, false } /* Hz */
-#define OPTION_ACCELERATION                                                                        \
-  { -1e5, 1e5, false } /* m/s2 */
-#define OPTION_GRAVITY                                                                             \
-  { 0.0, 1e4, false } /* m/s2 */
-#define OPTION_DENSITY                                                                             \
-  { 1e-3, 1e5, false } /* kg/m3 */
-#define OPTION_MODULUS                                                                             \
-  { 1e-3, 1e16, false } /* Pa */
-#define OPTION_STRENGTH                                                                            \
-  { 0.0, 1e11, false } /* Pa */
-#define OPTION_STIFFNESS                                                                           \
-  { 1e-3, 1e16, false } /* N/m */
 #define OPTION_FROM_TO(lower, upper)                                                               \
   { (lower), (upper), false }
 #define OPTION_ABOVE_TO(lower, upper)                                                              \
@@ -52,11 +30,10 @@ typedef struct option_range {
 
 /* One row; exactly one of the pointers is set, none for a heading. */
 typedef struct option {
-  const char *name; /* without the dashes */
-  const char *unit; /* unit, or kind of the value: FILE; of a choice: "S|P" */
-  const char *help;
+  const char *name;   /* without the dashes */
+  const char *unit;   /* unit, or kind of the value: FILE; of a choice: "S|P" */
+  const char *help;   /* of a heading; else written by options_parse */
   const char *note;   /* of the program, after the help; NULL: none */
-  bool common;        /* unit, help and range are those of standard.c where they are not given */
   option_range range; /* of numbers and integers */
   int count;          /* of numbers separated by commas; 0 and 1: one number */
   bool *flag;
@@ -66,39 +43,38 @@ typedef struct option {
   int *choice; /* index into `unit` */
   /* written by options_parse */
   bool given;
-  bool bare;    /* a number without a unit */
-  double usual; /* the default of a number */
+  const char *typed; /* on the command line; NULL: not there */
+  bool bare;         /* a number without a unit */
+  double usual;      /* the default of a number */
 } option;
 
 /* Rows of the table. */
 #define OPTION_HEADING(help_)                                                                      \
   { .help = (help_) }
-#define OPTION_FLAG(name_, value, help_)                                                           \
-  { .name = (name_), .flag = (value), .help = (help_) }
-#define OPTION_NUMBER(name_, unit_, range_, value, help_)                                          \
-  { .name = (name_), .unit = (unit_), .range = range_, .number = (value), .help = (help_) }
-#define OPTION_INTEGER(name_, unit_, range_, value, help_)                                         \
-  { .name = (name_), .unit = (unit_), .range = range_, .integer = (value), .help = (help_) }
-#define OPTION_TEXT(name_, unit_, value, help_)                                                    \
-  { .name = (name_), .unit = (unit_), .text = (value), .help = (help_) }
-#define OPTION_CHOICE(name_, choices, value, help_)                                                \
-  { .name = (name_), .unit = (choices), .choice = (value), .help = (help_) }
-/* Rows of the common table; `note_` (or NULL) follows its help. */
-#define COMMON_NUMBER(name_, value, note_)                                                         \
-  { .name = (name_), .common = true, .number = (value), .note = (note_) }
-#define COMMON_NUMBER_IN(name_, range_, value, note_)                                              \
-  { .name = (name_), .common = true, .range = range_, .number = (value), .note = (note_) }
-#define COMMON_INTEGER(name_, value, note_)                                                        \
-  { .name = (name_), .common = true, .integer = (value), .note = (note_) }
-#define COMMON_INTEGER_IN(name_, range_, value, note_)                                             \
-  { .name = (name_), .common = true, .range = range_, .integer = (value), .note = (note_) }
-#define COMMON_CHOICE(name_, value, note_)                                                         \
-  { .name = (name_), .common = true, .choice = (value), .note = (note_) }
-#define COMMON_TEXT(name_, value, note_)                                                           \
-  { .name = (name_), .common = true, .text = (value), .note = (note_) }
+#define OPTION_FLAG(name_, value, note_)                                                           \
+  { .name = (name_), .flag = (value), .note = (note_) }
+#define OPTION_NUMBER(name_, value, note_)                                                         \
+  { .name = (name_), .number = (value), .note = (note_) }
+#define OPTION_NUMBER_IN(name_, range_, value, note_)                                              \
+  { .name = (name_), .range = range_, .number = (value), .note = (note_) }
+#define OPTION_NUMBERS(name_, count_, value, note_)                                                \
+  { .name = (name_), .count = (count_), .number = (value), .note = (note_) }
+#define OPTION_INTEGER(name_, value, note_)                                                        \
+  { .name = (name_), .integer = (value), .note = (note_) }
+#define OPTION_INTEGER_IN(name_, range_, value, note_)                                             \
+  { .name = (name_), .range = range_, .integer = (value), .note = (note_) }
+#define OPTION_TEXT(name_, value, note_)                                                           \
+  { .name = (name_), .text = (value), .note = (note_) }
+#define OPTION_CHOICE(name_, value, note_)                                                         \
+  { .name = (name_), .choice = (value), .note = (note_) }
+/* Where the table of all leaves it to the program, or of some of the words there: "S|P", "WxH". */
+#define OPTION_TEXT_OF(name_, what_, value, note_)                                                 \
+  { .name = (name_), .unit = (what_), .text = (value), .note = (note_) }
+#define OPTION_CHOICE_OF(name_, words_, value, note_)                                              \
+  { .name = (name_), .unit = (words_), .choice = (value), .note = (note_) }
 /* Rows that every program has. */
-#define OPTION_THREADS(value) COMMON_INTEGER("threads", value, NULL)
-#define OPTION_OUT(value) COMMON_TEXT("out", value, NULL)
+#define OPTION_THREADS(value) OPTION_INTEGER("threads", value, NULL)
+#define OPTION_OUT(value) OPTION_TEXT("out", value, NULL)
 
 typedef struct options_program {
   const char *name;    /* "mps-wave" */
@@ -129,6 +105,14 @@ bool options_agree(const option *table, const char *record, char *why, size_t si
 /* "--young is 200 Pa: write 200kPa if that is meant": the k-th number of those read last that has
  * no unit and is far below what is usual, as one of another unit may be. False: there is none. */
 bool options_doubt(int k, char *out, size_t size);
+
+/* A warning that app_start prints and puts into summary.json: what was made of an option. */
+void options_note(const char *format, ...);
+/* The k-th of these; NULL: there are no more. */
+const char *options_noted(int k);
+/* Rounds *part to `whole` over the nearest whole number, or with `half` a half more than one, which
+ * it returns; where that is another length, notes it: `of` "--side". */
+double options_divide(const char *name, double *part, const char *of, double whole, bool half);
 
 /* One error line about a combination of options, as the parser's own. Where `reason` names options
  * that were not given, the line ends with their defaults and the values of the others. Returns 2.

@@ -23,8 +23,8 @@ typedef struct output {
   char bad[160]; /* the first cell that should have had a number, "": none */
 } output;
 
-/* A new file, in place of one that a killed program has left; it follows no link. Its descriptor, or
- * -1 and errno: EEXIST where the name is a link or anything else but a file. */
+/* A new file, in place of one that a killed program has left; it follows no link. Its descriptor,
+ * or -1 and errno: EEXIST where the name is a link or anything else but a file. */
 int output_exclusive(const char *path);
 
 /* Opens DIR/NAME for writing. False, with an error line, when that fails: `file` is then closed. */

@@ -19,7 +19,7 @@ extern const char *const record_units[];
 
 /* Reads the file, prints what it was read as, and warns where it names no unit or has gaps. A
  * failure is in the record of the context; a warning names the option NAME-unit, NAME-step or
- * NAME-column (`name` "input") where that would help and the program has it. */
+ * NAME-column (`name` "record") where that would help and the program has it. */
 mps_status record_read(app *a, const char *name, const char *path, const mps_signal_record_def *def,
                        mps_signal **out);
 /* Members record_format, _values, _step, _length, _peak, _unit of summary.json; nothing where the

@@ -21,11 +21,8 @@ typedef struct sand_voids {
   { SAND_E0, SAND_E_MAX }
 
 #define SAND_RANGE OPTION_FROM_TO(0.01, 20.0)
-#define SAND_E0_OPTION(voids)                                                                      \
-  OPTION_NUMBER("e0", "1", SAND_RANGE, &(voids)->e0,                                               \
-                "void ratio at the start, emax - Dr (emax - emin), for --emax")
-#define SAND_E_MAX_OPTION(voids)                                                                   \
-  OPTION_NUMBER("emax", "1", SAND_RANGE, &(voids)->e_max, "void ratio at which dilation ends")
+#define SAND_E0_OPTION(voids) OPTION_NUMBER("e0", &(voids)->e0, NULL)
+#define SAND_E_MAX_OPTION(voids) OPTION_NUMBER("emax", &(voids)->e_max, NULL)
 
 /* A reason why they are not consistent; NULL: good. */
 static inline const char *sand_check(const sand_voids *v) {

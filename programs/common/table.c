@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LINE = 1024, NAMES = 300 };
+enum { LINE = 1024, NAMES = 400, OTHER = -1 };
 static char note[700];
 
 typedef struct reader {
@@ -18,9 +18,11 @@ typedef struct reader {
   const table_def *def;
   double *values;
   int64_t *rows, line;
-  bool named;                   /* a header is read */
-  char comment[LINE];           /* the last one before the rows, which may be a header */
-  int place[TABLE_COLUMNS];     /* the column of the definition that each of the file is */
+  bool named;               /* a header is read */
+  bool ended;               /* a row without end is read */
+  int columns;              /* of the file */
+  char comment[LINE];       /* the last one before the rows, which may be a header */
+  int place[TABLE_COLUMNS]; /* the column of the definition that each of the file is, or OTHER */
   double factor[TABLE_COLUMNS]; /* to SI units, by columns of the file */
   char *why;
   size_t size;
@@ -68,6 +70,19 @@ static char simple(char c) {
 static const char *behind(const char *cell, const char *name) {
   while (*name && *cell && simple(*name) == simple(*cell)) name++, cell++;
   return *name ? NULL : cell;
+}
+
+/* A word "a" of "a|b" that begins the cell. */
+static bool is_other(const char *cell, const char *others) {
+  char name[40];
+  while (others && *others) {
+    const int length = (int)strcspn(others, "|");
+    snprintf(name, sizeof name, "%.*s", length, others);
+    const char *rest = behind(cell, name);
+    if (rest && (!*rest || strchr(" _,-([", *rest))) return true;
+    others += length + (others[length] == '|');
+  }
+  return false;
 }
 
 /* The unit that follows a name, "_kN_m3", " [kN/m3]", "": *factor to SI. */
@@ -129,6 +144,10 @@ static bool read_header(reader *r, char **cell, int count, const char **unknown)
       rest = behind(cell[i], def->column[k].name);
       if (rest && (!*rest || strchr(" _,-([", *rest))) found = k;
     }
+    if (found < 0 && i < TABLE_COLUMNS && is_other(cell[i], def->others)) {
+      r->place[i] = OTHER;
+      continue;
+    }
     if (found < 0) {
       *unknown = cell[i];
       return fail(r, "\"%.60s\" is not a column of a %s: %s", cell[i], def->row, names);
@@ -138,11 +157,14 @@ static bool read_header(reader *r, char **cell, int count, const char **unknown)
     if (i == TABLE_COLUMNS || given[found]) return fail(r, "a second column \"%.60s\"", cell[i]);
     given[found] = true;
     r->place[i] = found;
-    if (!read_unit(c, rest, &r->factor[i]))
+    if (c->words)
+      r->factor[i] = 1.0;
+    else if (!read_unit(c, rest, &r->factor[i]))
       return fail(r, "the unit of \"%.60s\" is none of %s, such as %s", cell[i], c->name, name);
   }
+  r->columns = count;
   for (int k = 0; k < def->count; k++)
-    if (!given[k]) {
+    if (!given[k] && !def->column[k].optional) {
       full_name(&def->column[k], name, sizeof name);
       return fail(r, "the header lacks %s: a %s has %s", name, def->row, names);
     }
@@ -158,14 +180,18 @@ static bool assume(reader *r) {
   r->named = true;
   r->why = why, r->size = sizeof why;
   const int count = split(r->comment, true, cell);
-  const bool header = count == def->count && read_header(r, cell, count, &unknown);
+  const bool header = count > 0 && read_header(r, cell, count, &unknown);
   r->why = all, r->size = size;
   if (header) return true;
+  table_names(def, names, sizeof names);
+  r->columns = def->count;
   for (int k = 0; k < def->count; k++) {
     r->place[k] = k;
-    if (!units_factor(def->column[k].unit, def->column[k].quantity, &r->factor[k])) return false;
+    if (def->column[k].optional)
+      return fail(r, "a header is missing: a %s has %s", def->row, names);
+    if (!units_factor(def->column[k].unit, def->column[k].quantity, &r->factor[k]))
+      return fail(r, "a unit is not known");
   }
-  table_names(def, names, sizeof names);
   snprintf(note, sizeof note, "%.200s has no header: its columns are taken as %s", r->path, names);
   return true;
 }
@@ -191,23 +217,47 @@ static bool check_range(reader *r, int k, double value, double factor, const cha
               c->lower, c->upper, pure ? "" : " ", unit);
 }
 
+/* A cell of column k, which is not empty. */
+static bool read_value(reader *r, int k, char *cell, double factor, double *out) {
+  const table_column *c = &r->def->column[k];
+  char text[40];
+  snprintf(text, sizeof text, "%.32s", cell);
+  const char *word = c->words;
+  for (*out = 0.0; word && *word; ++*out, word += strspn(word, "|")) {
+    const size_t length = strcspn(word, "|");
+    if (strlen(cell) == length && strncmp(word, cell, length) == 0) return true;
+    word += length;
+  }
+  if (c->words) return fail(r, "%s is %s, must be one of %s", c->name, text, c->words);
+  if (c->endless && strcmp(cell, "inf") == 0) {
+    *out = INFINITY;
+    return r->ended = true;
+  }
+  if (!read_cell(cell, out)) return fail(r, "\"%s\" is not a finite number", text);
+  *out *= factor;
+  return check_range(r, k, *out, factor, text);
+}
+
 static bool read_row(reader *r, char **cell, int count) {
   const table_def *def = r->def;
   char names[NAMES];
   table_names(def, names, sizeof names);
-  if (count != def->count)
-    return fail(r, "%s values, a %s has %d: %s", count > def->count ? "too many" : "too few",
-                def->row, def->count, names);
+  bool may_end = false; /* before the last column */
+  for (int i = count; i < r->columns; i++)
+    may_end = r->place[i] == OTHER || def->column[r->place[i]].optional;
+  if (count > r->columns || (count < r->columns && !may_end))
+    return fail(r, "%s values, a %s has %d: %s", count > r->columns ? "too many" : "too few",
+                def->row, r->columns, names);
+  if (r->ended) return fail(r, "a %s below one that is endless", def->row);
   if (*r->rows == def->most) return fail(r, "more than %lld %ss", (long long)def->most, def->row);
   double *row = r->values + *r->rows * def->count;
-  for (int i = 0; i < count; i++) {
+  for (int k = 0; k < def->count; k++) row[k] = NAN;
+  for (int i = 0; i < r->columns; i++) {
     const int k = r->place[i];
-    char text[40];
-    snprintf(text, sizeof text, "%.32s", cell[i]);
-    if (!*text) return fail(r, "%s is missing", def->column[k].name);
-    if (!read_cell(cell[i], &row[k])) return fail(r, "\"%s\" is not a finite number", text);
-    row[k] *= r->factor[i];
-    if (!check_range(r, k, row[k], r->factor[i], text)) return false;
+    const bool empty = i >= count || !*cell[i];
+    if (k == OTHER || (empty && def->column[k].optional)) continue;
+    if (empty) return fail(r, "%s is missing", def->column[k].name);
+    if (!read_value(r, k, cell[i], r->factor[i], &row[k])) return false;
   }
   const char *reason = def->fault ? def->fault(row) : NULL;
   if (reason) return fail(r, "%s", reason);
@@ -238,7 +288,7 @@ static bool read_line(reader *r, char *line) {
     r->named = true; /* a first line that does not begin with a number */
     return read_header(r, cell, count, &unknown);
   }
-  if (!r->named && !assume(r)) return fail(r, "a unit is not known");
+  if (!r->named && !assume(r)) return false;
   return read_row(r, cell, count);
 }
 

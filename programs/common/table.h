@@ -3,7 +3,8 @@
  * One row a line, numbers separated by commas, semicolons or blanks, '#' begins a comment. A header
  * line gives the columns in any order, each with a unit of its quantity: "thickness_m, vs_m_s",
  * "Vs (ft/s); thickness [ft]". Behind semicolons a comma is a decimal sign. Without a header the
- * columns are those of the definition, in its order and units, and a warning says so.
+ * columns are those of the definition, in its order and units, and a warning says so; where columns
+ * are optional there must be one.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_TABLE_H
 #define EXAMPLES_TABLE_H
@@ -12,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TABLE_COLUMNS = 8 };
+enum { TABLE_COLUMNS = 24 };
 
 typedef struct table_column {
   const char *name;     /* "unit weight" */
@@ -20,6 +21,9 @@ typedef struct table_column {
   const char *unit;     /* without a header, or of a header that names none: "kN/m3" */
   double lower, upper;  /* in SI units, angles in degrees */
   bool open;            /* `lower` itself is not allowed */
+  bool optional;        /* the column or its cell may be missing: NaN */
+  bool endless;         /* of the last row it may be inf */
+  const char *words;    /* of a column of words: "a|b", the value is the index; else NULL */
 } table_column;
 
 typedef struct table_def {
@@ -28,6 +32,7 @@ typedef struct table_def {
   int count;
   int64_t most;                            /* rows */
   const char *(*fault)(const double *row); /* why values do not go together; NULL: none */
+  const char *others; /* "a|b": columns that are passed over, of other programs; NULL: none */
 } table_def;
 
 /* Reads the file: `count` values a row in SI units and in the order of the definition, room for

@@ -12,6 +12,7 @@
  * So loads add up in x, and a load that grows is a sum of short pieces within each of which x grows
  * evenly (of terzaghi one piece is exact). u = q - s'; the settlement is the mean of x over H times
  * 1/M', 1 and lambda/(1 + e0). SPDX-License-Identifier: BSD-3-Clause */
+#include "common/layers.h"
 #include "common/table.h"
 #include "common/units.h"
 #include "consolidation.h"
@@ -94,6 +95,7 @@ static const char *read_layers(simulation *sim) {
                                            {"permeability", "m/s", "m/s", 0.0, 1.0, true},
                                            {"modulus", "Pa", "Pa", 1e3, 1e13, false}},
                                 .count = 3,
+                                .others = LAYERS_OTHERS,
                                 .most = STRATA_MOST};
   static char why[600];
   double rows[3 * STRATA_MOST];
@@ -107,8 +109,10 @@ static const char *read_layers(simulation *sim) {
   return NULL;
 }
 
-/* All layers are whole cells. */
-static bool fits(const strata *g, double cells) {
+/* All layers are whole cells, and the radius of a drain. */
+static bool fits(const strata *g, const settings *s, double cells) {
+  const double drain = s->kase == BARRON ? cells / s->ratio : 1.0;
+  if (!(drain > 0.5) || fabs(drain - nearbyint(drain)) > 1e-9) return false;
   double depth = 0.0;
   for (int i = 0; i + 1 < g->count; i++) {
     depth += g->layer[i].thickness * cells;
@@ -117,14 +121,23 @@ static bool fits(const strata *g, double cells) {
   return true;
 }
 
-static const char *choose_cells(simulation *sim) {
+const char *column_choose_cells(simulation *sim) {
   settings *s = &sim->s;
-  const bool chosen = isnan(s->cells);
-  if (chosen) s->cells = 20;
-  while (chosen && s->cells < MOST_CELLS && !fits(&sim->ground, s->cells)) s->cells++;
-  return fits(&sim->ground, s->cells)
-             ? NULL
-             : "--cells must divide the height so that every layer of --layers is whole cells";
+  const bool given = !isnan(s->cell);
+  const double usual = s->kase == STRIP ? 4.0 : s->kase == MANDEL ? 10.0 : 20.0;
+  const double wanted = nearbyint(given ? fmin(1.0 / s->cell, MOST_CELLS) : usual);
+  for (double k = 0.0; k <= MOST_CELLS; k++) {
+    const double less = given ? wanted - k : 0.0, more = wanted + k;
+    const bool fine = more <= MOST_CELLS && fits(&sim->ground, s, more);
+    if (!fine && !(less >= 2.0 && fits(&sim->ground, s, less))) continue;
+    s->cells = fine ? more : less;
+    if (given && fabs(s->cell * s->cells - 1.0) > 1e-5)
+      options_note("--cell is %.6g m, taken as %.6g m: %g in the model's 1 m", s->cell,
+                   1.0 / s->cells, s->cells);
+    return NULL;
+  }
+  return s->layers ? "--layers must be such that whole cells, at most 256 in all, fill each"
+                   : "--drain-ratio must be such that whole cells fill the drain's radius";
 }
 
 /* Ascending loads with commas between them. */
@@ -149,7 +162,7 @@ static const char *read_loads(simulation *sim) {
 }
 
 const char *column_settle(simulation *sim, const option *table) {
-  static const char *const own[] = {"drained", "layers", "ramp", "loads"};
+  static const char *const own[] = {"drainage", "layers", "load-ramp", "loads"};
   settings *s = &sim->s;
   sim->steps = 1;
   sim->ground.count = 1;
@@ -158,13 +171,12 @@ const char *column_settle(simulation *sim, const option *table) {
   sim->ground.drained[1] = s->drained != DRAINED_TOP;
   for (size_t k = 0; k < sizeof own / sizeof *own && !is_column(s); k++)
     if (options_given(table, own[k]))
-      return "--drained, --layers, --ramp and --loads are for --case terzaghi, large and mcc";
+      return "--drainage, --layers, --load-ramp and --loads are for --case terzaghi, large and mcc";
   if (s->layers && s->kase != TERZAGHI) return "--layers is for --case terzaghi alone";
   if (s->layers && options_given(table, "young"))
     return "--young is not for --layers, which have their own moduli";
   if (s->loads && options_given(table, "load")) return "--load and --loads exclude each other";
   const char *why = s->layers ? read_layers(sim) : NULL;
-  if (!why && s->layers) why = choose_cells(sim);
   if (!why && s->loads) why = read_loads(sim);
   if (s->layers && !options_given(table, "scheme")) s->scheme = IMPLICIT;
   return why;
@@ -174,7 +186,7 @@ const char *column_finish_settings(simulation *sim) {
   const settings *s = &sim->s;
   if (!is_column(s)) return NULL;
   if (!s->loads) sim->load[1] = s->load;
-  if (s->ramp > sim->time[sim->times - 1]) return "--ramp must be at most the last of --times";
+  if (s->ramp > sim->time[sim->times - 1]) return "--load-ramp must be at most the last of --times";
   if (sim->times * sim->steps > MOST_TIMES)
     return "--times and --loads: together at most 64 profiles, times by loads";
   strata_solve(&sim->ground);

@@ -18,7 +18,8 @@ enum { MOST_TIMES = 64, MOST_STEPS = 12, MOST_POINTS = 1024, MOST_CELLS = 256 };
 typedef struct settings {
   int kase, scheme, solver, drained;
   int64_t threads;
-  double cells;             /* along H; of the strip along B */
+  double courant;
+  double cell, cells;       /* m, NaN: by the case; along H, of the strip along B */
   double nu, young, load;   /* Pa; load: u0 */
   double ratio;             /* of the radius a of Barron's cylinder to that of its drain */
   double M, lambda, kappa;  /* of Cam-Clay */
@@ -75,6 +76,8 @@ static inline double reference_load(const simulation *sim, int step) {
 
 /* column.c: before and after the other settings are completed; why they are not consistent. */
 const char *column_settle(simulation *sim, const option *table);
+/* Chooses cells: the nearest number to --cell, or from the usual one on, that fits. */
+const char *column_choose_cells(simulation *sim);
 const char *column_finish_settings(simulation *sim);
 /* The layer at `depth` over H. */
 const stratum *column_layer(const simulation *sim, double depth);

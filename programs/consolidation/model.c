@@ -23,7 +23,6 @@
 #define DENSITY 2000.0 /* kg/m3, of grains and water */
 #define WATER 1000.0
 #define STRIP_WIDTHS 10 /* half widths B of the ground, each way */
-#define COURANT 0.7
 #define FASTEST 0.99e-3 /* m/s: the inertia of the water, which is left out, counts above */
 
 enum { PLATE_POINTS = 2000 };
@@ -34,8 +33,8 @@ static const char *read_times(simulation *sim, const option *table) {
   const char *text = sim->s.times;
   char number[64];
   if (sim->s.kase == STRIP) {
-    if (options_given(table, "times") || options_given(table, "duration"))
-      return "--times and --duration are not for --case strip, which is undrained";
+    if (options_given(table, "times") || options_given(table, "time-unit"))
+      return "--times and --time-unit are not for --case strip, which is undrained";
     sim->time[0] = 0.0;
     sim->times = 1;
     return NULL;
@@ -70,15 +69,6 @@ static const char *check_clay(const settings *s, const option *table) {
     return "--young is not for --case mcc, whose stiffness follows --kappa and the pressure";
   if (s->kase == MCC && !(s->kappa < s->lambda)) return "--kappa must be below --lambda";
   return NULL;
-}
-
-static const char *check_drain(const settings *s, const option *table) {
-  const double whole = s->cells / s->ratio;
-  if (s->kase != BARRON)
-    return options_given(table, "ratio") ? "--ratio is for --case barron alone" : NULL;
-  return fabs(whole - round(whole)) > 1e-9 || !(whole >= 1.0)
-             ? "--cells must be a multiple of --ratio: the drain's radius in whole cells"
-             : NULL;
 }
 
 static double softest(const simulation *sim) {
@@ -117,9 +107,9 @@ const char *consolidation_settle(simulation *sim, const option *table) {
   sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
   unused = column_settle(sim, table);
   if (unused) return unused;
-  if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
-  if (s->cells != floor(s->cells)) return "--cells must be a whole number";
-  unused = check_drain(s, table);
+  if (s->kase != BARRON && options_given(table, "drain-ratio"))
+    return "--drain-ratio is for --case barron alone";
+  unused = column_choose_cells(sim);
   if (unused) return unused;
   if (s->solver != 0 && s->scheme != IMPLICIT)
     return "--solver multigrid and direct are for --scheme implicit, whose pressures are solved "
@@ -406,7 +396,7 @@ static mps_mpm_def solver_of(const settings *s) {
   def.geometry = s->kase == CRYER || s->kase == BARRON ? MPS_MPM_GEOMETRY_AXISYMMETRIC
                                                        : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = cell_of(s);
-  def.courant = s->scheme == IMPLICIT ? 0.5 : COURANT;
+  def.courant = !isnan(s->courant) ? s->courant : s->scheme == IMPLICIT ? 0.5 : 0.7;
   def.lower[0] = def.lower[1] = 0.0;
   if (is_column(s)) def.upper[0] = def.cell;
   if (s->kase == BARRON) {

@@ -52,9 +52,10 @@ static comparison compare_exact(const simulation *sim) {
   const double usual = consolidation_duration(sim);
   comparison c = compare_with("the exact solution", 0.0, 0.0);
   compare_require(&c, s->stiffness >= STIFFEST,
-                  "it is of water that hardly gives way, and --stiffness is %g", s->stiffness);
+                  "it is of water that hardly gives way, and --water-stiffness is %g",
+                  s->stiffness);
   compare_require(&c, s->kase == STRIP || s->duration >= FAST * usual,
-                  "--duration is %.3g s, %.2g of the default: inertia counts", s->duration,
+                  "--time-unit is %.3g s, %.2g of the default: inertia counts", s->duration,
                   s->duration / usual);
   return c;
 }

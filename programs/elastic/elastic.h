@@ -46,17 +46,15 @@ const char *elastic_method_name(const elastic_settings *s);
 
 /* Rows of an option table. */
 #define ELASTIC_MATERIAL(s)                                                                        \
-  COMMON_NUMBER_IN("young", OPTION_FROM_TO(1e-6, 1e16), &(s)->young, NULL),                        \
-      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, NULL),              \
-      COMMON_CHOICE("state", &(s)->state, NULL)
+  OPTION_NUMBER_IN("young", OPTION_FROM_TO(1e-6, 1e16), &(s)->young, NULL),                        \
+      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, NULL),              \
+      OPTION_CHOICE("state", &(s)->state, NULL)
 #define ELASTIC_METHOD(s)                                                                          \
   OPTION_HEADING("Method"),                                                                        \
-      OPTION_CHOICE("method", "conservative|published", &(s)->method, "discretisation"),           \
-      OPTION_NUMBER("re", "spacings", OPTION_ABOVE_TO(1.0, 4.0), &(s)->radius_ratio,               \
-                    "radius of influence; default 1.5 (conservative), 3 (published)"),             \
-      OPTION_NUMBER("alpha", "1", OPTION_FROM_TO(0.03, 100.0), &(s)->alpha,                        \
-                    "stabilisation (conservative)"),                                               \
-      OPTION_CHOICE("n", "local|constant", &(s)->divisor, "number density in R and D (published)")
+      OPTION_CHOICE_OF("method", "conservative|published", &(s)->method, "discretisation"),        \
+      OPTION_NUMBER("influence", &(s)->radius_ratio, NULL),                                        \
+      OPTION_NUMBER("stabilisation", &(s)->alpha, NULL),                                           \
+      OPTION_CHOICE_OF("n", "local|constant", &(s)->divisor, NULL)
 
 /* Results at a particle: position, displacement, stress xx, yy, xy, von Mises stress. */
 typedef struct elastic_point {

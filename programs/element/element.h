@@ -34,8 +34,8 @@ typedef struct settings {
   const char *path_file; /* NULL: `path` */
   double strain, rate;   /* 1, 1/s */
   int64_t steps, cycles, threads;
-  double p0, k0;                      /* Pa, 1: the first stress */
-  double young, poisson, nu;          /* nu: another name of poisson; NaN: not given */
+  double p0, k0; /* Pa, 1: the first stress */
+  double young, poisson;
   double cohesion, phi, psi, tension; /* Pa, degrees, degrees, Pa */
   int cone;
   double yield, hardening;                          /* Pa; NaN: sqrt(3) cohesion */

@@ -15,7 +15,6 @@ static const struct {
   const char *option, *laws;
 } uses[] = {{"young", "ENVTDM  SQ"},
             {"poisson", "ENVTDM CSQ"},
-            {"nu", "ENVTDM CSQ"},
             {"cohesion", "  VTDM   Q"},
             {"phi", "    DM   Q"},
             {"psi", "    DM   Q"},
@@ -76,14 +75,11 @@ const char *element_settle(settings *s, const option *table) {
   const char *unused = check_uses(s, table);
   if (unused) return unused;
   const bool starts = s->law != NEO_HOOKEAN && s->law != NEWTONIAN;
-  if (!isnan(s->nu) && options_given(table, "poisson"))
-    return "--nu and --poisson exclude each other";
   if (options_given(table, "yield") && options_given(table, "cohesion"))
     return "--yield and --cohesion exclude each other";
   if (s->path_file && (options_given(table, "path") || options_given(table, "strain") ||
                        options_given(table, "steps")))
     return "--path-file excludes --path, --strain and --steps, which stand in the file";
-  if (!isnan(s->nu)) s->poisson = s->nu;
   if (isnan(s->poisson)) s->poisson = s->law == CAM_CLAY ? 0.25 : 0.3;
   if (isnan(s->e0) && s->law == CAM_CLAY) s->e0 = 1.4;
   if (!starts) s->p0 = 0.0;

@@ -55,7 +55,7 @@ static int check_times(const options_program *program, const flume *m) {
   if (!isnan(s->window[0]) && !(s->window[0] < s->window[1]))
     return flume_refuse(program, m, "--window must be two times, the first before the second");
   if (s->waves == FLUME_FILE && !s->file)
-    return flume_refuse(program, m, "--waves file needs --file");
+    return flume_refuse(program, m, "--waves file needs --levels");
   if (s->waves == FLUME_FOCUSED && (isnan(s->focus[0]) || isnan(s->focus[1])))
     return flume_refuse(program, m, "--waves focused needs --focus X,T");
   if (s->waves == FLUME_FILE && !options_given(m->table, "period"))
@@ -89,7 +89,7 @@ static int check_wall(const options_program *program, const flume *m) {
   const flume_shapes *p = &m->shape;
   const bool simple = s->wall == FLUME_CAISSON || s->wall == FLUME_SLOPE;
   if (simple && s->crest < s->spacing)
-    return flume_refuse(program, m, "--crest must be at least --spacing");
+    return flume_refuse(program, m, "--freeboard must be at least --spacing");
   if (simple && s->width < s->spacing)
     return flume_refuse(program, m, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && (s->wall != FLUME_OPEN_END || flume_is_open(m)))

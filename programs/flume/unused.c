@@ -32,12 +32,12 @@ int flume_check_unused(const options_program *program, const flume *m) {
       {"seed", "--waves jonswap or pm", sea},
       {"random", "--waves jonswap or pm", sea},
       {"focus", "--waves focused", s->waves == FLUME_FOCUSED},
-      {"file-column", "--waves file", s->waves == FLUME_FILE},
-      {"file", "--waves file", s->waves == FLUME_FILE},
+      {"levels-column", "--waves file", s->waves == FLUME_FILE},
+      {"levels", "--waves file", s->waves == FLUME_FILE},
       {"form", "--absorb active", s->absorb == FLUME_ACTIVE},
       {"zone", "--absorb zone", s->absorb == FLUME_ZONE},
       {"zone-rate", "--absorb zone", s->absorb == FLUME_ZONE},
-      {"crest", "--wall caisson or slope", simple},
+      {"freeboard", "--wall caisson or slope", simple},
       {"width", "--wall caisson or slope", simple},
       {"slope", "--wall slope", s->wall == FLUME_SLOPE},
       {"wall-density", "--wall caisson or a caisson in --model", caisson},
@@ -48,8 +48,8 @@ int flume_check_unused(const options_program *program, const flume *m) {
        m->text && (flume_has_structure(m) || flume_has_body(m))},
       {"porosity", "--rock, or rock in --model", rock},
       {"stone", "--rock, or rock in --model", rock},
-      {"alpha", "--rock, or rock in --model", rock},
-      {"beta", "--rock, or rock in --model", rock},
+      {"rock-alpha", "--rock, or rock in --model", rock},
+      {"rock-beta", "--rock, or rock in --model", rock},
   };
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
     if (!list[k].used && options_given(m->table, list[k].option))

@@ -47,7 +47,7 @@ static mps_status read_file(app *a, flume *m, mps_waves_def *def, double **room)
   double start, end;
   record.column = s->column, record.format = MPS_SIGNAL_RECORD_FORMAT_CSV;
   record.quantity = MPS_SIGNAL_QUANTITY_DISPLACEMENT;
-  const mps_status status = record_read(a, "file", s->file, &record, &signal);
+  const mps_status status = record_read(a, "levels", s->file, &record, &signal);
   if (status != MPS_OK) return status;
   mps_signal_span(signal, &start, &end);
   def->samples = (int64_t)fmin(fmax(ceil(POINTS * (end - start) / s->period), 16.0), 2e6);

@@ -37,10 +37,10 @@ static const char *check_eccentricity(const settings *s) {
   if (s->eccentricity == 0.0) return NULL;
   if (s->model == DRUCKER_PRAGER || s->shape == CIRCLE || s->top > 0.0 || s->gradient > 0.0 ||
       footing_is_thin(s))
-    return "--eccentricity is for a strip on even, deep ground of --model vonmises";
+    return "--eccentricity is for a strip on even, deep ground of --law vonmises";
   if (s->settled) return "--eccentricity and --quasi-static exclude each other";
   if (s->eccentricity > s->half_width - 2.0 * s->h * (1.0 - 1e-9))
-    return "--eccentricity must be at least 2 cells of --h less than --half-width";
+    return "--eccentricity must be at least 2 cells of --cell less than --half-width";
   return NULL;
 }
 
@@ -48,12 +48,12 @@ const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
   double *const sides[] = {&s->width, &s->depth};
   if (!options_lengths(s->domain, "m", 2, sides))
-    return "--domain must be two lengths in m, WxH, such as 5x2";
+    return "--soil must be two lengths in m, WxH, such as 5x2";
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "e0") ||
        options_given(table, "emax") || options_given(table, "cone")))
-    return "--phi, --psi, --e0, --emax and --cone are for --model druckerprager";
-  if (cone && s->shape == CIRCLE) return "--shape circle is for --model vonmises";
+    return "--phi, --psi, --e0, --emax and --cone are for --law druckerprager";
+  if (cone && s->shape == CIRCLE) return "--shape circle is for --law vonmises";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
   const double cells = (footing_is_whole(s) ? 2.0 : 1.0) * s->width * s->depth / (s->h * s->h);
@@ -61,23 +61,24 @@ const char *footing_settle(settings *s, const option *table) {
   if (large) return large;
   const char *eccentric = check_eccentricity(s);
   if (eccentric) return eccentric;
-  if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
-  if (!s->settled && options_given(table, "tolerance")) return "--tolerance is for --quasi-static";
+  if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --cell";
+  if (!s->settled && options_given(table, "rest-tolerance"))
+    return "--rest-tolerance is for --quasi-static";
   const bool grows = s->gradient > 0.0, layer = !cone && s->shape == STRIP && !grows;
   if (grows && (cone || s->shape == CIRCLE))
-    return "--strength-gradient is for --model vonmises and --shape strip";
+    return "--strength-gradient is for --law vonmises and --shape strip";
   if (grows && s->top > 0.0) return "--strength-gradient and --top exclude each other";
   if (s->width < 3.0 * s->half_width || (!layer && footing_is_thin(s)))
-    return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
+    return "--soil must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
            "the ground moves when it fails; a strip on cohesive ground may have a thinner layer";
-  if (s->depth < s->h * (4.0 - 1e-9)) return "--domain must be at least 4 cells of --h deep";
-  if (!cone && options_given(table, "surcharge")) return "--surcharge is for --model druckerprager";
+  if (s->depth < s->h * (4.0 - 1e-9)) return "--soil must be at least 4 cells of --cell deep";
+  if (!cone && options_given(table, "surcharge")) return "--surcharge is for --law druckerprager";
   if ((s->top > 0.0) != (s->top_cohesion > 0.0)) return "--top and --top-cohesion need one another";
-  if (cone && s->top > 0.0) return "--top and --top-cohesion are for --model vonmises";
+  if (cone && s->top > 0.0) return "--top and --top-cohesion are for --law vonmises";
   if (ranks_launched() > 1 && (s->top > 0.0 || s->surcharge > 0.0))
     return "--top and --surcharge are for one process";
   if (s->top > s->depth - s->h)
-    return "--top must leave at least a cell of --h of the ground below";
+    return "--top must leave at least a cell of --cell of the ground below";
   if (isnan(s->rate)) s->rate = (s->settled ? 1.5e-3 : 0.5e-3) * (cone ? 1.0 : faster(s));
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -88,7 +89,7 @@ const char *footing_settle(settings *s, const option *table) {
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
   if (s->section > s->width || s->section < (footing_is_whole(s) ? -s->width : 0.0))
     return "--section must be in the ground, whose left side is 0, or of an eccentric load the "
-           "width of --domain to the left";
+           "width of --soil to the left";
   return NULL;
 }
 
@@ -288,6 +289,7 @@ mps_status footing_build(mps_context *context, void *user) {
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = s->shape == CIRCLE ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
   def.flip_time = s->flip_time;

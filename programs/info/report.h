@@ -24,8 +24,8 @@ void report_text(report *r, const char *title, const char *text);
 void report_number(report *r, const char *title, double value, const char *unit);
 void report_integer(report *r, const char *title, int64_t value);
 
-/* Rows under a title, or an object of JSON: each has a name and a text, which is a number of JSON where it
- * reads as one, and null where it is "nan". */
+/* Rows under a title, or an object of JSON: each has a name and a text, which is a number of JSON
+ * where it reads as one, and null where it is "nan". */
 void report_list(report *r, const char *title);
 void report_row(report *r, const char *name, const char *text);
 void report_list_end(report *r);

@@ -37,9 +37,11 @@ static double radius_below(const pen_settings *s) {
 
 static const char *check_tip(const pen_settings *s) {
   if ((s->tip == PEN_STL) != (s->mesh != NULL)) return "--tip stl and --mesh belong together";
-  if (s->tip == PEN_STL && s->axisymmetric) return "--axisymmetric is for --tip cone and sphere";
-  if (s->no_space && !s->axisymmetric) return "--no-space is for --axisymmetric";
-  if (s->diameter < s->h * (4.0 - 1e-9)) return "--diameter must be at least 4 cells of --h";
+  if (s->tip == PEN_STL && (s->axisymmetric || s->both))
+    return "--axisymmetric and --also-axisymmetric are for --tip cone and sphere";
+  if (s->axisymmetric && s->both)
+    return "--axisymmetric and --also-axisymmetric exclude each other";
+  if (s->diameter < s->h * (4.0 - 1e-9)) return "--diameter must be at least 4 cells of --cell";
   return NULL;
 }
 
@@ -55,16 +57,17 @@ const char *pen_check(penetrometer *p, const option *table) {
   if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   const char *reason = check_tip(s);
   if (reason) return reason;
+  s->width = s->breadth = 6.0 * s->diameter, s->height = 4.0 * s->diameter;
   double *const sides[] = {&s->width, &s->breadth, &s->height};
-  if (!options_lengths(s->soil, NULL, 3, sides))
-    return "--soil must be three lengths in diameters, WxWxD, such as 6x6x5";
-  if (fmin(s->width, s->breadth) * s->diameter < 2.0 * radius_below(s) + 8.0 * s->h)
-    return "--soil must be at least 8 cells of --h wider than what is pushed in";
-  if (s->depth > s->height * s->diameter - 4.0 * s->h)
-    return "--depth must end 4 cells of --h above the bottom of the soil";
-  const double cells = s->width * s->breadth * s->height * pow(s->diameter / s->h, 3.0);
+  if (s->soil && !options_lengths(s->soil, "m", 3, sides))
+    return "--soil must be three lengths in m, WxWxH, such as 0.6x0.6x0.4";
+  if (fmin(s->width, s->breadth) < 2.0 * radius_below(s) + (8.0 - 1e-9) * s->h)
+    return "--soil must be at least 8 cells of --cell wider than what is pushed in";
+  if (s->depth > s->height - (4.0 - 1e-9) * s->h)
+    return "--depth must end 4 cells of --cell above the bottom of the soil";
+  const double cells = s->width * s->breadth * s->height / (s->h * s->h * s->h);
   const char *large = mpm_model_too_large(cells * (double)s->ppc);
-  if (large && !s->no_space) return large;
+  if (large && !s->axisymmetric) return large;
   const double edge = nearbyint(cbrt((double)s->ppc));
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -73,13 +76,13 @@ const char *pen_check(penetrometer *p, const option *table) {
   reason = pen_check_soil(p, table);
   if (reason) return reason;
   if (s->alpha > 0.0 && s->contact == MPS_CONTACT_METHOD_PENALTY)
-    return "--alpha asks for --contact impulse";
-  if (s->alpha > 0.0 && s->cohesion == 0.0) return "--alpha asks for a --cohesion > 0";
+    return "--adhesion asks for --contact impulse";
+  if (s->alpha > 0.0 && s->cohesion == 0.0) return "--adhesion asks for a --cohesion > 0";
   p->stride = fmin(0.2 * s->h, (s->depth - s->start) / 200.0);
   p->hold = pen_vertical(p, s->start) > 0.0 ? ramp_of(p) : 0.0;
   p->t_end = p->hold + pen_path(p) / s->rate + 0.5 * ramp_of(p);
-  p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
-  p->run[0].geometry = s->no_space ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
+  p->runs = s->both ? 2 : 1;
+  p->run[0].geometry = s->axisymmetric ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
   p->run[1].geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   return NULL;
 }
@@ -89,8 +92,8 @@ const char *pen_check(penetrometer *p, const option *table) {
 /* Whole cells; in axisymmetry a cylinder with the section of the box. */
 static void find_size(const penetrometer *p, pen_run *r) {
   const pen_settings *s = &p->s;
-  const double in_diameters[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
-  for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(in_diameters[c] * s->diameter / s->h - 1e-6);
+  const double asked[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
+  for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(asked[c] / s->h - 1e-6);
   r->factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
   if (r->geometry == MPS_MPM_GEOMETRY_SPACE) return;
   r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
@@ -189,12 +192,12 @@ static mps_status check_mesh(const penetrometer *p, pen_run *r) {
   if (status != MPS_OK) return status;
   if (across < 3.9 * p->s.h)
     snprintf(r->m.why, sizeof r->m.why,
-             "the mesh is %.3g m wide with --scale %g, must be at least 4 cells of --h: %g m",
+             "the mesh is %.3g m wide with --scale %g, must be at least 4 cells of --cell: %g m",
              across, p->s.scale, 4.0 * p->s.h);
   else if (wide > -2.0 * p->s.h)
     snprintf(r->m.why, sizeof r->m.why,
              "the mesh is %.3g m wide with --scale %g, the soil of %g m x %g m must be at least 4 "
-             "cells of --h wider",
+             "cells of --cell wider",
              across, p->s.scale, 2.0 * r->size[0], 2.0 * r->size[1]);
   else if (fabs(below) > p->s.h)
     snprintf(r->m.why, sizeof r->m.why,

@@ -16,7 +16,7 @@
 
 enum { PEN_CONE, PEN_SPHERE, PEN_STL };                             /* --tip */
 enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC, PEN_TRESCA, PEN_CAM_CLAY }; /* --law */
-enum { PEN_QUARTER, PEN_WHOLE };                                    /* --model */
+enum { PEN_QUARTER, PEN_WHOLE };                                    /* --symmetry */
 enum { PEN_ROLLERS, PEN_FREE };                                     /* --sides */
 enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
 
@@ -32,7 +32,7 @@ typedef struct pen_settings {
   double alpha;                            /* of the cohesion; NaN: no bound */
   double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
-  double width, breadth, height;           /* what `soil` says */
+  double width, breadth, height;           /* m, what `soil` says */
   double e_max;                            /* of sand */
   double cohesion, phi, psi;               /* Pa, degrees */
   double young, poisson, density, gravity; /* Pa, 1, kg/m3, m/s2; NaN: by the law */
@@ -40,7 +40,7 @@ typedef struct pen_settings {
   double M, lambda, kappa, e0, ocr;        /* of Cam-Clay; e0 of sand too */
   double permeability;                     /* m/s; NaN: undrained */
   double h, courant, flip_time;            /* m, 1, s; NaN: by law and speed */
-  bool axisymmetric, no_space;
+  bool axisymmetric, both;                 /* in place of space; after it */
   int64_t ppc, threads;
   mpm_course_options course;
   const char *out;

@@ -23,14 +23,14 @@ static double strength_of(const pen_settings *s) {
 /* Options of one kind of soil alone. */
 static const char *check_uses(const pen_settings *s, const option *table) {
   static const char *const clay[] = {"M", "lambda", "kappa", "ocr", "permeability"};
-  static const char *const unused[] = {"cohesion", "young", "alpha", "k0", "gravity"};
+  static const char *const unused[] = {"cohesion", "young", "adhesion", "k0", "gravity"};
   const bool mcc = s->law == PEN_CAM_CLAY;
   for (size_t k = 0; k < sizeof clay / sizeof *clay && !mcc; k++)
     if (options_given(table, clay[k]))
       return "--M, --lambda, --kappa, --ocr and --permeability are for --law mcc";
   for (size_t k = 0; k < sizeof unused / sizeof *unused && mcc; k++)
     if (options_given(table, unused[k]))
-      return "--cohesion, --young, --alpha, --k0 and --gravity are not for --law mcc, whose "
+      return "--cohesion, --young, --adhesion, --k0 and --gravity are not for --law mcc, whose "
              "strength "
              "and stiffness follow --surcharge and --ocr in ground without weight";
   if (s->law != PEN_SAND && (options_given(table, "phi") || options_given(table, "psi")))
@@ -52,7 +52,7 @@ static const char *check_start(const penetrometer *p) {
   if (s->start > 0.0 && !(s->start >= pen_shoulder(p)))
     return "--start must be at least the height of the cone, (D/2)/tan(angle/2)";
   if (s->start > 0.0 && !(s->depth - s->start >= 2.0 * s->h))
-    return "--depth must be at least 2 cells of --h below --start";
+    return "--depth must be at least 2 cells of --cell below --start";
   if (s->surcharge > 0.0 && !(s->start > 0.0))
     return "--surcharge asks for --start, with which the shaft holds the ground beside it open";
   if (s->sides == PEN_FREE && !(s->start > 0.0))
@@ -77,7 +77,7 @@ static const char *complete(pen_settings *s, const option *table) {
   if (isnan(s->k0)) s->k0 = s->poisson / (1.0 - s->poisson);
   if (s->sides == PEN_FREE && s->gravity > 0.0)
     return "--sides free is for ground without stress: --gravity must be 0";
-  const double vertical = s->surcharge + s->density * s->gravity * s->height * s->diameter;
+  const double vertical = s->surcharge + s->density * s->gravity * s->height;
   if (undrained && fabs(1.0 - s->k0) * vertical > 2.0 * strength_of(s))
     return "--k0 and the stress at the bottom, --surcharge + density g depth, are beyond the "
            "strength "

@@ -34,15 +34,16 @@ const char *pile_check(pile_settings *s) {
   if (!options_lengths(s->soil, "m", 2, sides))
     return "--soil must be two lengths in m, WxH, such as 0.4x3";
   if (!whole_cells(s->width, s->h) || !whole_cells(s->height, s->h))
-    return "--soil must be whole cells of --h wide and high";
+    return "--soil must be whole cells of --cell wide and high";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->wall < s->h * (2.0 - 1e-9))
-    return "--wall must be at least 2 cells of --h by --contact penalty: particles on both its "
+    return "--wall-thickness must be at least 2 cells of --cell by --contact penalty: particles on "
+           "both its "
            "sides would share nodes";
-  if (s->inner_diameter < 4.0 * s->h) return "--inner-diameter must be at least 4 cells of --h";
+  if (s->inner_diameter < 4.0 * s->h) return "--inner-diameter must be at least 4 cells of --cell";
   if (0.5 * s->inner_diameter + s->wall > s->width - 4.0 * s->h)
-    return "--soil must be at least 4 cells of --h wider than the pile's radius";
+    return "--soil must be at least 4 cells of --cell wider than the pile's radius";
   if (s->depth > s->height - 4.0 * s->h)
-    return "--depth must end 4 cells of --h above the bottom of the soil";
+    return "--depth must end 4 cells of --cell above the bottom of the soil";
   const char *large = mpm_model_too_large(s->width * s->height / (s->h * s->h) * (double)s->ppc);
   if (large) return large;
   const double modulus =

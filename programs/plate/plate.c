@@ -40,8 +40,7 @@ static bool make_particles(plate *p) {
   const plate_def *d = p->def;
   mps_particles_def set = mps_particles_defaults();
   plate_def copy = *d;
-  p->spacing = d->hole ? d->radius / ((double)d->cells + 0.5) : d->side / (double)d->cells;
-  set.spacing = p->spacing;
+  set.spacing = p->spacing = d->spacing;
   if (d->hole)
     set.origin[0] = set.origin[1] = -0.5 * p->spacing;
   else

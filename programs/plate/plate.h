@@ -8,9 +8,9 @@
 
 typedef struct plate_def {
   bool hole;
-  int64_t cells; /* along a side; with a hole: along its radius, which is (cells + 1/2) spacings */
-  double side;   /* m; with a hole: of the quarter */
-  double radius; /* m, of the hole */
+  double spacing, across; /* m; particles along a side, or spacings along the radius of the hole */
+  double side;            /* m; with a hole: of the quarter */
+  double radius;          /* m, of the hole */
   double young, poisson;
   double tension; /* Pa */
   bool plane_strain;

@@ -108,7 +108,7 @@ static bool draw_line(const plate *p, const char *directory) {
                 "concentration %.3f from the ligament, theory 3}\"\n"
                 "set xlabel 'y (m)'\nset ylabel '{/Symbol s}_x (Pa)'\nset xrange [%.9g:%.9g]\n"
                 "set key top right\n",
-                (double)p->def->cells + 0.5, p->concentration, p->def->radius,
+                p->def->across, p->concentration, p->def->radius,
                 fmin(3.0 * p->def->radius, p->def->side));
   else
     output_text(

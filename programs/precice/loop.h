@@ -8,9 +8,8 @@
 
 /* Options that name a participant and its mesh, of a side's definition (common/options.h). */
 #define LOOP_OPTIONS(def)                                                                          \
-  OPTION_TEXT("config", "FILE", &(def).config, "preCICE's configuration"),                         \
-      OPTION_TEXT("participant", "NAME", &(def).name, "name of this participant in it;"),          \
-      OPTION_TEXT("mesh", "NAME", &(def).mesh, "name of its mesh;")
+  OPTION_TEXT("config", &(def).config, NULL), OPTION_TEXT("participant", &(def).name, NULL),       \
+      OPTION_TEXT("coupling-mesh", &(def).mesh, NULL)
 
 enum { LOOP_DATA = 2 }; /* vectors that a side reads, and writes, at most */
 

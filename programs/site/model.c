@@ -84,8 +84,8 @@ static mps_status make_laws(mps_context *context, simulation *sim) {
     status = site_make_law(context, &sim->ground.layer[i], &sim->law[i]);
     if (status == MPS_OK) status = site_make_law(context, &elastic, &sim->elastic[i]);
     if (status != MPS_OK)
-      site_refuse(&sim->m, "%.150s:%lld: %.200s", sim->s.layers,
-                  (long long)sim->ground.layer[i].line, mps_context_error(context)->message);
+      site_refuse(&sim->m, "%.150s:%lld: %.200s", sim->s.layers, (long long)i + 1,
+                  mps_context_error(context)->message);
   }
   if (status == MPS_OK) { /* of the model, which destroys it */
     sim->m.material = sim->elastic[0];
@@ -199,17 +199,18 @@ static bool choose_cells(simulation *sim) {
   if (isnan(h)) h = slowest / (SITE_PER_WAVE * s->highest);
   const double cells = fmax(ceil(sim->height / h - 1e-9), 2.0);
   if (cells > SITE_ROWS / 2 - SITE_CELLS)
-    return site_refuse(&sim->m,
-                       "%g cells of %g m over the layers, must be at most %d: give --h or a lower "
-                       "--max-frequency",
-                       cells, h, SITE_ROWS / 2 - SITE_CELLS);
+    return site_refuse(
+        &sim->m,
+        "%g cells of %g m over the layers, must be at most %d: give --cell or a lower "
+        "--max-frequency",
+        cells, h, SITE_ROWS / 2 - SITE_CELLS);
   h = sim->height / cells;
   for (int64_t i = 0; i < g->count - g->has_half_space; i++)
     if (g->layer[i].thickness < h * (1.0 - 1e-9))
       return site_refuse(&sim->m,
-                         "%s:%lld: thickness is %g m, must be at least a cell, %g m: give a "
-                         "smaller --h",
-                         s->layers, (long long)g->layer[i].line, g->layer[i].thickness, h);
+                         "%s: layer %lld: thickness is %g m, must be at least a cell, %g m: give a "
+                         "smaller --cell",
+                         s->layers, (long long)i + 1, g->layer[i].thickness, h);
   sim->cell = h;
   sim->spacing = 0.5 * h;
   sim->below = s->base == SITE_COMPLIANT ? SITE_CELLS * h : 0.0;
@@ -276,6 +277,7 @@ mps_status site_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_laws(context, sim);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = sim->cell;
+  def.courant = sim->s.courant;
   def.gravity[1] = -SITE_GRAVITY;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = sim->width;
   def.flip_time = sim->flip_time;

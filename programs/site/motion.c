@@ -21,10 +21,10 @@ enum { LEAST_SAMPLES = 4 };
 static mps_status make_sine(mps_context *context, const settings *s, mps_signal **out) {
   enum { PER_CYCLE = 200, MOST = 200 * 1002 + 1 };
   static double t[MOST], a[MOST];
-  const int64_t count = PER_CYCLE * ((int64_t)s->cycles + 2) + 1;
+  const int64_t count = PER_CYCLE * (s->cycles + 2) + 1;
   for (int64_t k = 0; k < count; k++) {
     const double cycle = (double)k / PER_CYCLE;
-    const double share = fmin(1.0, fmin(cycle, s->cycles + 2.0 - cycle));
+    const double share = fmin(1.0, fmin(cycle, (double)s->cycles + 2.0 - cycle));
     t[k] = cycle / s->frequency;
     a[k] = s->amplitude * share * share * (3.0 - 2.0 * share) * sin(2.0 * PI * cycle);
   }
@@ -79,8 +79,8 @@ static double find_peak(const simulation *sim) {
   int64_t looks = 20000;
   if (mps_signal_get_record(sim->motion, &r) == MPS_OK && r.count > 1) looks = 2 * (r.count - 1);
   for (int64_t k = 0; k <= looks; k++)
-    peak = fmax(peak, fabs(mps_signal_acceleration(
-                          sim->motion, sim->record_end * (double)k / (double)looks)));
+    peak = fmax(peak, fabs(mps_signal_acceleration(sim->motion,
+                                                   sim->record_end * (double)k / (double)looks)));
   return peak;
 }
 

@@ -9,7 +9,7 @@
 static const char *check_motion(const settings *s, const option *table) {
   static const char *const record[] = {"record-unit", "record-scale", "baseline", "record-step",
                                        "record-column"};
-  static const char *const pulse[] = {"frequency", "amplitude"};
+  static const char *const pulse[] = {"frequency", "acceleration"};
   const bool sine = strcmp(s->record, "sine") == 0;
   const bool file = !sine && strcmp(s->record, "ricker") != 0;
   for (int k = 0; k < 5; k++)
@@ -18,13 +18,12 @@ static const char *check_motion(const settings *s, const option *table) {
              "--record FILE";
   for (int k = 0; k < 2; k++)
     if (file && options_given(table, pulse[k]))
-      return "--frequency and --amplitude are for --record ricker and sine";
+      return "--frequency and --acceleration are for --record ricker and sine";
   if (!sine && options_given(table, "cycles")) return "--cycles is for --record sine";
-  if (s->amplitude == 0.0) return "--amplitude must not be 0 m/s2";
+  if (s->amplitude == 0.0) return "--acceleration must not be 0 m/s2";
   if (!file && s->frequency > s->highest)
     return "--frequency must be at most --max-frequency, which the cells are made for";
   if (s->scale == 0.0) return "--record-scale must not be 0";
-  if (s->cycles != floor(s->cycles)) return "--cycles must be a whole number";
   return NULL;
 }
 

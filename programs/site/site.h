@@ -19,7 +19,7 @@ enum { SITE_PERIODS = 100, SITE_FREQUENCIES = 1000, SITE_PER_WAVE = 20 };
 #define SITE_GRAVITY 9.81 /* m/s2 */
 #define SITE_WATER 1000.0 /* kg/m3 */
 
-/* Numbers of a layer, in the order of the table of ground.c; NaN: not given. */
+/* A layer, in the order of the table of ground.c; NaN: not given. */
 typedef struct site_layer {
   double thickness, density; /* m, kg/m3 */
   double vs, poisson;        /* m/s, 1 */
@@ -30,8 +30,8 @@ typedef struct site_layer {
   double e0, e_max;
   double relative_density, blow_count;
   int64_t law;
-  int64_t line; /* of the file */
 } site_layer;
+enum { SITE_COLUMNS = 18 }; /* these */
 
 typedef struct site_ground {
   int64_t count; /* with the half space, the last one where there is one */
@@ -43,7 +43,9 @@ typedef struct settings {
   const char *layers, *record, *out;
   const char *column;                           /* of a record; NULL: the only one */
   int unit, baseline, base, volumetric, spline; /* spline: degree - 2 */
-  double scale, step, frequency, amplitude, cycles;
+  double scale, step, frequency, amplitude;
+  int64_t cycles;
+  double courant;
   double h, highest, flip_time; /* m, Hz, s */
   double sample, duration;      /* s */
   double damping;               /* 1/s, viscous */

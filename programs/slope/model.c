@@ -114,6 +114,7 @@ mps_status slope_build_trial(simulation *sim) {
   if (status == MPS_OK) status = make_law(sim);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.gravity[1] = -s->gravity;
   def.lower[0] = def.lower[1] = 0.0;

@@ -42,13 +42,13 @@ static double next_factor(const simulation *sim) {
 }
 
 /* History of the run for a restart. */
-/* The line of --water-table stands in a file, and must be that of the start. */
+/* The line of --water-level stands in a file, and must be that of the start. */
 static bool pass_water(simulation *sim, resume_bytes *b) {
   const settings *s = &sim->s;
   if (s->points == 0) return true;
   const bool same = resume_same(b, &s->points, sizeof s->points) &&
                     resume_same(b, s->line, 2 * (size_t)s->points * sizeof *s->line);
-  if (mpm_course_same(&sim->course, b, same, "the line of --water-table has")) return true;
+  if (mpm_course_same(&sim->course, b, same, "the line of --water-level has")) return true;
   sim->now = 0;
   return false;
 }

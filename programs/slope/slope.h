@@ -17,11 +17,12 @@ enum { FLOW_NONE, FLOW_ALONG };
 typedef struct settings {
   double height, slope, base, crest, toe; /* m; slope: horizontal per vertical */
   sand_voids voids;
-  double phi, psi, cohesion;                 /* degrees, degrees, Pa */
-  double gradient;                           /* Pa/m, growth of the cohesion below the crest */
-  double residual_phi, residual_cohesion;    /* NaN: as phi and cohesion */
-  double slip;                               /* m */
-  double young, poisson, density, gravity;   /* Pa, -, kg/m3, m/s2 */
+  double phi, psi, cohesion;               /* degrees, degrees, Pa */
+  double gradient;                         /* Pa/m, growth of the cohesion below the crest */
+  double residual_phi, residual_cohesion;  /* NaN: as phi and cohesion */
+  double slip;                             /* m */
+  double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
+  double courant;
   double factor, tolerance, fails, falls, h; /* NaN: it is sought; -, of H, (H/g)^1/2, m */
   double moist, ru;                          /* kg/m3 above the table; pressure over weight */
   double table, drawdown; /* m above the toe: the water table, and the pool before; NaN: none */

@@ -149,12 +149,12 @@ static const char *read_line(settings *s) {
       .most = SLOPE_POINTS};
   static char why[600];
   if (!table_read(s->table_text, &def, s->line, &s->points, why, sizeof why)) return why;
-  if (s->points < 2) return "--water-table: a line has at least two points";
+  if (s->points < 2) return "--water-level: a line has at least two points";
   for (int64_t k = 1; k < s->points; k++) {
     const double *a = s->line + 2 * (k - 1), *b = a + 2;
-    if (!(b[0] > a[0])) return "--water-table: the x of its points must ascend";
+    if (!(b[0] > a[0])) return "--water-level: the x of its points must ascend";
     if (hangs(s, a, b))
-      return "--water-table: above the ground it must be level, the water of a pool";
+      return "--water-level: above the ground it must be level, the water of a pool";
   }
   return NULL;
 }
@@ -169,19 +169,19 @@ const char *slope_settle_water(settings *s, const option *table) {
       if (why) return why;
     }
   }
-  if (fabs(s->table) > 1e6) return "--water-table must be in [-1e6, 1e6] m";
-  if (s->ru > 0.0 && s->table_text) return "--ru and --water-table exclude each other";
+  if (fabs(s->table) > 1e6) return "--water-level must be in [-1e6, 1e6] m";
+  if (s->ru > 0.0 && s->table_text) return "--ru and --water-level exclude each other";
   if (s->points == 0 && options_given(table, "seepage"))
-    return "--seepage is for a --water-table that is a line";
+    return "--seepage is for a --water-level that is a line";
   if (!isnan(s->drawdown) && (s->points > 0 || !s->table_text))
-    return "--drawdown is to a --water-table that is a level";
+    return "--drawdown is to a --water-level that is a level";
   if (!isnan(s->drawdown) && !(s->drawdown > s->table))
-    return "--drawdown must be above --water-table, to which the pool has fallen";
+    return "--drawdown must be above --water-level, to which the pool has fallen";
   if (s->ru > 0.0 && options_given(table, "moist-density"))
-    return "--moist-density is for ground above a --water-table";
+    return "--moist-density is for ground above a --water-level";
   if (s->runout && slope_is_wet(s))
     return "--runout excludes water: its pressures are those of a slope in place";
   if (s->table_text && !(s->density > WATER))
-    return "--density must be above 1000 kg/m3, that of water, with --water-table";
+    return "--density must be above 1000 kg/m3, that of water, with --water-level";
   return s->moist > s->density ? "--moist-density must be at most --density" : NULL;
 }

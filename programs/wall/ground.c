@@ -5,6 +5,7 @@
  * both sides and does not pass below the toe: effective stresses carry the weight less the
  * buoyancy, phi and cohesion are effective, and the pressure of the water on the wall comes
  * besides. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/layers.h"
 #include "common/table.h"
 #include "wall.h"
 
@@ -57,12 +58,13 @@ static const char *fault(const double *row) {
 
 static const char *read_layers(settings *s) {
   static const table_def def = {.row = "layer",
-                                .column = {{"thickness", "m", "m", 0.0, 1e4, true},
+                                .column = {{"thickness", "m", "m", 0.0, 1e4, true, .endless = true},
                                            {"phi", "degrees", "degrees", 0.0, 50.0, false},
                                            {"psi", "degrees", "degrees", 0.0, 50.0, false},
                                            {"cohesion", "Pa", "Pa", 0.0, 1e9, false},
                                            {"density", "kg/m3", "kg/m3", 500.0, 5000.0, false}},
                                 .count = 5,
+                                .others = LAYERS_OTHERS,
                                 .most = WALL_LAYERS,
                                 .fault = fault};
   static char why[600];

@@ -157,6 +157,7 @@ mps_status wall_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_wall(context, sim);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.courant = s->courant;
   def.spline = s->spline + 2;
   def.flip_time = s->flip_time;
   def.gravity[1] = -s->gravity;

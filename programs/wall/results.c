@@ -92,8 +92,9 @@ static comparison find_theory(const simulation *sim, double across) {
       "Coulomb's plane wedge is far above the force of a rough wall in the passive case");
   compare_require(&c, smooth || most_cohesion(s) == 0.0,
                   "the coefficient is that of ground without cohesion");
-  compare_require(&c, smooth || s->base > 0.0,
-                  "on the smooth bed of --base 0 the ground at the toe slides along with the wall");
+  compare_require(
+      &c, smooth || s->base > 0.0,
+      "on the smooth bed of --below-toe 0 the ground at the toe slides along with the wall");
   compare_require(&c, s->motion != TURNS_ABOUT_TOP,
                   "the wall turns about its top, where the ground arches: the theory is of ground "
                   "that yields everywhere");
@@ -285,7 +286,7 @@ static bool draw_ground(app *a, const simulation *sim) {
 
 static void print(const settings *s, const pressure *p) {
   if (isnan(p->across)) {
-    printf("no earth pressure: the wall has not moved as far as --path, %g m\n", s->path);
+    printf("no earth pressure: the wall has not moved as far as --travel, %g m\n", s->path);
     return;
   }
   if (isnan(p->height)) {

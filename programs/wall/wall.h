@@ -25,7 +25,8 @@ typedef struct settings {
   sand_voids voids;
   double phi, psi, cohesion, k0;           /* degrees, degrees, Pa, - */
   double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
-  double friction, corner, path, rate, h;  /* -, cells, m, m/s, m */
+  double courant;
+  double friction, corner, path, rate, h; /* -, cells, m, m/s, m */
   double surcharge, sheet; /* Pa on the ground behind; m of the wall below the ground in front */
   double water;            /* m, depth of the water table below the surface; NaN: none */
   double heaviest;         /* kg/m3 of the layers */

@@ -61,7 +61,7 @@ bool field_write(app *a, const settings *s, const field *f, mps_particles *whole
   /* that of the section at equal scales, with room for names of axes and title */
   const int high = (int)fmin(fmax(910.0 * 1.05 * s->height / s->width, 200.0), 900.0) + 170;
   if (!write_table(a, s, f, whole) || !plot_open(&g, a, s->out, "peaks", 1200, high)) return false;
-  const double half = 1.01 * s->radius; /* wide enough to leave no seams */
+  const double half = 0.505 * s->spacing; /* wide enough to leave no seams */
   char input[48] = ", recorded motion";
   if (s->ricker) snprintf(input, sizeof input, " of %.3g m/s^2", s->amplitude);
   output_text(&g,

@@ -37,7 +37,7 @@ static void write_title(output *f, const settings *s, const results *x) {
   output_text(f,
               "\\n{/*0.85 %lld particles, R = %g m, %s, {/Symbol D}t = %.4g s, %s base}\" "
               "offset 0,0.3\n",
-              (long long)x->particles, s->radius, names[s->integrator], x->dt,
+              (long long)x->particles, 0.5 * s->spacing, names[s->integrator], x->dt,
               s->base == BASE_RIGID ? "rigid" : "viscous");
 }
 

@@ -24,17 +24,17 @@ static void describe(const settings *s, char *text) {
   const struct {
     const char *name;
     double value;
-  } options[] = {{"radius", s->radius},
+  } options[] = {{"spacing", s->spacing},
                  {"width", s->width},
                  {"height", s->height},
                  {"wave", s->wave},
                  {"f1", s->f1},
                  {"f2", s->f2},
-                 {"ricker-frequency", s->frequency},
-                 {"ricker-time", s->peak_time},
-                 {"amplitude", s->amplitude},
-                 {"input-scale", s->scale},
-                 {"input-unit", s->unit},
+                 {"frequency", s->frequency},
+                 {"peak-time", s->peak_time},
+                 {"acceleration", s->amplitude},
+                 {"record-scale", s->scale},
+                 {"record-unit", s->unit},
                  {"baseline", s->baseline},
                  {"base", s->base},
                  {"base-vs", s->half_space.vs},
@@ -45,9 +45,9 @@ static void describe(const settings *s, char *text) {
                  {"rotation", s->rotation},
                  {"torque", s->torque},
                  {"receivers", (double)s->receivers},
-                 {"slope", s->slope[0]},
-                 {"slope", s->slope[1]},
-                 {"slope", s->slope[2]}};
+                 {"incline", s->slope[0]},
+                 {"incline", s->slope[1]},
+                 {"incline", s->slope[2]}};
   for (int64_t k = 0; k < s->ground.count; k++) { /* by --layers, or the options named here */
     const layer *l = &s->ground.layer[k];
     add(text, s->layers_file ? "layers" : "height", l->thickness);
@@ -59,7 +59,7 @@ static void describe(const settings *s, char *text) {
   for (size_t k = 0; k < sizeof options / sizeof *options; k++)
     add(text, options[k].name, options[k].value);
   const size_t at = strlen(text);
-  snprintf(text + at, TEXT - at, "input %s\n", s->input);
+  snprintf(text + at, TEXT - at, "record %s\n", s->input);
 }
 
 /* Names the first line that differs. */

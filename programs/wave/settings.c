@@ -11,7 +11,7 @@
 #include <string.h>
 
 static const settings defaults = {
-    .radius = 0.5,
+    .spacing = 1.0,
     .width = 10.0,
     .height = 100.0,
     .vs = 100.0,
@@ -56,11 +56,11 @@ static int check_ground(const options_program *program, settings *s) {
              sqrt(2.0) * s->vs);
     return options_refuse(program, text);
   }
-  s->sloped = options_given(program->table, "slope");
+  s->sloped = options_given(program->table, "incline");
   const double *p = s->slope;
   if (s->sloped && !(p[0] < p[1] && p[1] < s->width)) {
     snprintf(text, sizeof text,
-             "--slope begins at %g m and ends at %g m, must be X1 < X2 < --width "
+             "--incline begins at %g m and ends at %g m, must be X1 < X2 < --width "
              "%g m",
              p[0], p[1], s->width);
     return options_refuse(program, text);
@@ -71,15 +71,15 @@ static int check_ground(const options_program *program, settings *s) {
 static int check_rest(const options_program *program, settings *s) {
   const option *table = program->table;
   char text[256];
-  static const char *const record[] = {"input-scale", "input-unit", "baseline", "input-step",
-                                       "input-column"};
-  static const char *const pulse[] = {"ricker-frequency", "ricker-time", "amplitude"};
+  static const char *const record[] = {"record-scale", "record-unit", "baseline", "record-step",
+                                       "record-column"};
+  static const char *const pulse[] = {"frequency", "peak-time", "acceleration"};
   s->ricker = strcmp(s->input, "ricker") == 0;
   for (int i = 0; i < (s->ricker ? 5 : 3); i++) {
     const char *name = s->ricker ? record[i] : pulse[i];
     if (!options_given(table, name)) continue;
     snprintf(text, sizeof text, "--%s is for %s only", name,
-             s->ricker ? "--input FILE" : "--input ricker");
+             s->ricker ? "--record FILE" : "--record ricker");
     return options_refuse(program, text);
   }
   static const char *const viscous[] = {"base-vs", "base-vp", "base-unit-weight"};
@@ -92,7 +92,7 @@ static int check_rest(const options_program *program, settings *s) {
     return options_refuse(program, "--dt and --courant exclude each other");
   if (options_given(table, "courant")) s->dt = NAN;
   if (s->sloped && s->sides == SIDES_PERIODIC)
-    return options_refuse(program, "--slope and --sides periodic exclude each other");
+    return options_refuse(program, "--incline and --sides periodic exclude each other");
   return -1;
 }
 
@@ -102,72 +102,52 @@ int settings_parse(settings *s, int argc, char **argv) {
   *s = defaults;
   option table[] = {
       OPTION_HEADING("Ground"),
-      COMMON_NUMBER("radius", &s->radius, NULL),
-      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width,
-                    "width of the model, rounded to whole particles"),
-      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->height,
-                    "height of the model, rounded likewise; with --layers it may be left out"),
-      COMMON_NUMBER("vs", &s->vs, NULL),
-      COMMON_NUMBER("vp", &s->vp, NULL),
-      COMMON_NUMBER("unit-weight", &s->unit_weight, NULL),
-      COMMON_NUMBER("damping", &s->damping, NULL),
-      COMMON_NUMBER("f1", &s->f1, NULL),
-      COMMON_NUMBER("f2", &s->f2, NULL),
-      OPTION_TEXT("layers", "FILE", &s->layers_file,
-                  "horizontal layers from the surface down, CSV whose header has, in any order and "
-                  "unit, thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio"),
-      {.name = "slope",
-       .unit = "m",
-       .range = OPTION_LENGTH,
-       .count = 3,
-       .number = s->slope,
-       .help = "a slope X1,X2,H2: the surface falls from the height at x = X1 to the height H2 at "
-               "x = X2; "
-               "--sides freefield suits it best"},
+      OPTION_NUMBER("spacing", &s->spacing, NULL),
+      OPTION_NUMBER("width", &s->width, "of the model, rounded to whole particles"),
+      OPTION_NUMBER("height", &s->height,
+                    "of the model, rounded to whole particles; with --layers it may be left out"),
+      OPTION_NUMBER("vs", &s->vs, NULL),
+      OPTION_NUMBER("vp", &s->vp, NULL),
+      OPTION_NUMBER("unit-weight", &s->unit_weight, NULL),
+      OPTION_NUMBER("damping", &s->damping, NULL),
+      OPTION_NUMBER("f1", &s->f1, NULL),
+      OPTION_NUMBER("f2", &s->f2, NULL),
+      OPTION_TEXT("layers", &s->layers_file,
+                  "thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3 or density_kg_m3, damping_ratio; "
+                  "a last one of thickness inf is the half space"),
+      OPTION_NUMBERS("incline", 3, s->slope, NULL),
       OPTION_HEADING("Input motion"),
-      COMMON_CHOICE("wave", &s->wave, NULL),
-      OPTION_TEXT("input", "ricker|FILE", &s->input,
-                  "Ricker pulse, or a recorded acceleration: " RECORD_FILES),
-      OPTION_NUMBER("ricker-frequency", "Hz", OPTION_FREQUENCY, &s->frequency,
-                    "central frequency fc of the pulse"),
-      OPTION_NUMBER("ricker-time", "s", OPTION_FROM_TO(0.0, 1e6), &s->peak_time,
-                    "time tp of its peak"),
-      OPTION_NUMBER("amplitude", "m/s2", OPTION_ACCELERATION, &s->amplitude,
-                    "its peak acceleration"),
-      OPTION_NUMBER("input-scale", "1", OPTION_FROM_TO(-1e6, 1e6), &s->scale, "factor on a record"),
-      OPTION_CHOICE("input-unit", RECORD_UNITS, &s->unit,
-                    "unit of a record; file: what it says, m/s2 where it names none"),
-      OPTION_NUMBER("input-step", "s", OPTION_DURATION, &s->step,
-                    "between the values of a record without times; default by its header"),
-      OPTION_TEXT("input-column", "NAME", &s->column, "of a record with several in its header"),
-      OPTION_CHOICE("baseline", "linear|none|mean|quadratic|cubic", &s->baseline,
-                    "baseline correction of a record"),
+      OPTION_CHOICE("wave", &s->wave, NULL),
+      OPTION_TEXT_OF("record", "ricker|FILE", &s->input, NULL),
+      OPTION_NUMBER("frequency", &s->frequency, NULL),
+      OPTION_NUMBER("peak-time", &s->peak_time, NULL),
+      OPTION_NUMBER("acceleration", &s->amplitude, NULL),
+      OPTION_NUMBER("record-scale", &s->scale, NULL),
+      OPTION_CHOICE("record-unit", &s->unit, NULL),
+      OPTION_NUMBER("record-step", &s->step, NULL),
+      OPTION_TEXT("record-column", &s->column, NULL),
+      OPTION_CHOICE("baseline", &s->baseline, NULL),
       OPTION_HEADING("Boundaries"),
-      OPTION_CHOICE("base", "rigid|viscous", &s->base,
-                    "rigid: the base moves as the input (E+F); viscous: there is a half space "
-                    "below, the input is the incoming wave (E)"),
-      OPTION_NUMBER("base-vs", "m/s", OPTION_FROM_TO(0.1, 1e5), &s->half_space.vs,
-                    "Vs of the half space; default that of the lowest layer"),
-      OPTION_NUMBER("base-vp", "m/s", OPTION_FROM_TO(0.1, 1e5), &s->half_space.vp,
-                    "Vp of the half space; default that of the lowest layer"),
-      OPTION_NUMBER("base-unit-weight", "N/m3", OPTION_FROM_TO(1.0, 1e6),
-                    &s->half_space.unit_weight,
-                    "unit weight of the half space; default that of the lowest layer"),
-      OPTION_CHOICE("sides", "roller|periodic|freefield", &s->sides,
-                    "rollers along the wave's motion, a model repeated sideways, or free-field "
-                    "columns with dashpots"),
+      OPTION_CHOICE_OF("base", "rigid|viscous", &s->base,
+                       "rigid: the base moves as the record (E+F); viscous: there is a half space "
+                       "below, the record is the incoming wave (E)"),
+      OPTION_NUMBER("base-vs", &s->half_space.vs, NULL),
+      OPTION_NUMBER("base-vp", &s->half_space.vp, NULL),
+      OPTION_NUMBER("base-unit-weight", &s->half_space.unit_weight, NULL),
+      OPTION_CHOICE_OF("sides", "roller|periodic|freefield", &s->sides,
+                       "rollers along the wave's motion, a model repeated sideways, or free-field "
+                       "columns with dashpots; freefield suits --incline best"),
       OPTION_HEADING("Method"),
-      COMMON_CHOICE("integrator", &s->integrator, NULL),
-      COMMON_CHOICE("rotation", &s->rotation, NULL),
-      COMMON_CHOICE("torque", &s->torque, NULL),
-      COMMON_NUMBER("dt", &s->dt, NULL),
-      COMMON_NUMBER("courant", &s->courant, "instead of --dt"),
-      COMMON_NUMBER("duration", &s->duration,
+      OPTION_CHOICE("integrator", &s->integrator, NULL),
+      OPTION_CHOICE("rotation", &s->rotation, NULL),
+      OPTION_CHOICE("torque", &s->torque, NULL),
+      OPTION_NUMBER("dt", &s->dt, NULL),
+      OPTION_NUMBER("courant", &s->courant, "instead of --dt"),
+      OPTION_NUMBER("duration", &s->duration,
                     "default 2.5 s, of a record its length and two travel times"),
       OPTION_HEADING("Running and results"),
-      OPTION_INTEGER("receivers", "N", OPTION_FROM_TO(2.0, 1000.0), &s->receivers,
-                     "receivers along the middle column, surface and base included"),
-      COMMON_INTEGER("frames", &s->frames, NULL),
+      OPTION_INTEGER("receivers", &s->receivers, NULL),
+      OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
                      "default a tenth of the run; the end of the run writes one too", &s->restart),
       OPTION_THREADS(&s->threads),
@@ -185,14 +165,14 @@ int settings_parse(settings *s, int argc, char **argv) {
 
 /* The height is known now. */
 static bool check_size(app *a, const settings *s) {
-  const double rows = s->height / (2.0 * s->radius), columns = s->width / (2.0 * s->radius);
+  const double rows = s->height / s->spacing, columns = s->width / s->spacing;
   if (!(rows >= 1.5 && columns >= 0.5 && rows * columns < 1e8))
     return app_error(a,
-                     "--radius is %g m, must give at least 1 column of 2 particles in %g m x %g "
+                     "--spacing is %g m, must give at least 1 column of 2 particles in %g m x %g "
                      "m, and fewer than 1e8",
-                     s->radius, s->width, s->height);
+                     s->spacing, s->width, s->height);
   if (s->sloped && !(s->slope[2] < s->height))
-    return app_error(a, "--slope falls to H2 = %g m, must be below the height %g m", s->slope[2],
+    return app_error(a, "--incline falls to H2 = %g m, must be below the height %g m", s->slope[2],
                      s->height);
   return true;
 }
@@ -204,22 +184,26 @@ bool settings_ground(app *a, settings *s) {
     g->layer[0] = (layer){s->height, s->vs, s->vp, s->unit_weight, s->damping};
   } else {
     if (!layers_read(a, s->layers_file, g)) return false;
-    const double sum = layers_thickness(g), spacing = 2.0 * s->radius;
+    const double sum = layers_thickness(g), spacing = s->spacing;
     const int64_t thin = layers_thin(g, spacing);
     if (thin >= 0)
       app_warn(a,
                "layer %lld of %s is %g m thick, thinner than the particles, %g m: the row or rows "
-               "that it lies in have the mean stiffness; --radius %g or less resolves it",
+               "that it lies in have the mean stiffness; --spacing %g or less resolves it",
                (long long)thin + 1, s->layers_file, g->layer[thin].thickness, spacing,
                0.25 * g->layer[thin].thickness);
     if (isnan(s->height)) s->height = sum;
-    if (fabs(sum - s->height) > s->radius)
+    if (fabs(sum - s->height) > 0.5 * s->spacing)
       return app_error(a,
                        "%s: the layers are %g m thick, the model is %g m high (--height): they "
                        "must agree within %g m",
-                       s->layers_file, sum, s->height, s->radius);
+                       s->layers_file, sum, s->height, 0.5 * s->spacing);
   }
-  const layer *lowest = &g->layer[g->count - 1];
+  const bool half_space = g->below.thickness > 0.0;
+  if (half_space && s->base == BASE_RIGID)
+    return app_error(a, "%s: a half space, of thickness inf, which --base rigid does not have",
+                     s->layers_file);
+  const layer *lowest = half_space ? &g->below : &g->layer[g->count - 1];
   if (isnan(s->half_space.vs)) s->half_space.vs = lowest->vs;
   if (isnan(s->half_space.vp)) s->half_space.vp = lowest->vp;
   if (isnan(s->half_space.unit_weight)) s->half_space.unit_weight = lowest->unit_weight;
@@ -235,7 +219,7 @@ bool settings_signal(app *a, const settings *s, mps_signal **out) {
   def.scale = s->scale;
   def.unit = record_units[s->unit];
   def.step = s->step, def.column = s->column;
-  return app_check(a, record_read(a, "input", s->input, &def, out));
+  return app_check(a, record_read(a, "record", s->input, &def, out));
 }
 
 mps_dynamics_def settings_dynamics(const settings *s, double width) {

@@ -11,7 +11,7 @@ enum { SIDES_ROLLER = 0, SIDES_PERIODIC = 1, SIDES_FREEFIELD = 2 };
 
 typedef struct settings {
   /* ground */
-  double radius, width, height, vs, vp, unit_weight, damping, f1, f2;
+  double spacing, width, height, vs, vp, unit_weight, damping, f1, f2;
   const char *layers_file;
   double slope[3];
   /* input */

@@ -34,8 +34,8 @@ ends() {
 }
 ends mps-tank force.csv --spacing 0.01 0.02 --duration 0.02 --frames 0
 # shellcheck disable=SC2086
-ends mps-pile load.csv --h 0.04 0.05 $pile --depth 0.01 --rate 0.5
-[ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --nx 33 17 --ny 9
+ends mps-pile load.csv --cell 0.04 0.05 $pile --depth 0.01 --rate 0.5
+[ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --length 3.7 1.9 --spacing 0.22222222
 
 # signals SIGNAL: sends it to the last rank and waits for the run, which must not end well.
 signals() {
@@ -62,4 +62,4 @@ stops() {
 }
 stops mps-tank --spacing 0.01 --duration 1000 --sample 0.01 --every-checkpoint 0.01 --frames 0
 # shellcheck disable=SC2086
-stops mps-pile $pile --h 0.04 --depth 0.06 --rate 1e-4 --every-checkpoint 0.01
+stops mps-pile $pile --cell 0.04 --depth 0.06 --rate 1e-4 --every-checkpoint 0.01

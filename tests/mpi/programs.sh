@@ -16,7 +16,7 @@ on() {
   timeout 1200 $mpirun -n "$ranks" "$@"
 }
 # The same files from 3 ranks as without mpirun; of the frames tests/vtk/same-frames sees that VTK reads them.
-model="--radius 0.5 --width 40 --height 30 --slope 15,25,15 --sides freefield --courant 0.5"
+model="--spacing 1 --width 40 --height 30 --incline 15,25,15 --sides freefield --courant 0.5"
 files="receivers.csv slope.csv peaks.csv summary.json wave.vtkhdf"
 # shellcheck disable=SC2086
 "$wave" $model --duration 0.1 --frames 2 --out "$work/alone" >"$work/alone.out"
@@ -37,19 +37,19 @@ code=0
 [ $code -eq 0 ] || [ $code -eq 77 ] || fail "frames"
 
 # Options: one line.
-on 2 "$wave" --raduis 1 2>"$work/log" && fail "an unknown option was taken"
-one mps-wave "did you mean --radius"
+on 2 "$wave" --freqency 1 2>"$work/log" && fail "an unknown option was taken"
+one mps-wave "did you mean --frequency"
 [ "$(on 2 "$wave" --help | grep -c "^Usage")" -eq 1 ] || fail "--help of two ranks"
 
 # A step above the limit; divergence; no directory; a file that rank 0 cannot put in its place: the same error on all.
-on 3 "$wave" --radius 1 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" && fail "a step above the limit"
+on 3 "$wave" --spacing 2 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" && fail "a step above the limit"
 one mps-wave "try --dt"
-on 3 "$wave" --radius 1 --integrator euler --dt 2ms --out "$work/d" >/dev/null 2>"$work/log" && fail "divergence"
+on 3 "$wave" --spacing 2 --integrator euler --dt 2ms --out "$work/d" >/dev/null 2>"$work/log" && fail "divergence"
 [ "$(grep -c "unstable: at t = .*the most that was put in" "$work/log")" -eq 1 ] || fail "divergence: $(cat "$work/log")"
-on 2 "$wave" --radius 1 --out /dev/full/x >/dev/null 2>"$work/log" && fail "no directory"
+on 2 "$wave" --spacing 2 --out /dev/full/x >/dev/null 2>"$work/log" && fail "no directory"
 one mps-wave "Not a directory"
 mkdir -p "$work/f/receivers.csv"
-on 2 "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null 2>"$work/log" && fail "a directory"
+on 2 "$wave" --spacing 2 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null 2>"$work/log" && fail "a directory"
 one mps-wave "receivers.csv: Is a directory"
 
 # Ctrl-C, as mpirun passes it on: one line, the results so far, and the state.

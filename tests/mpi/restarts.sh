@@ -31,10 +31,10 @@ cut() {
     rm -r "$work/$name-on"
   done
 }
-cut dam "--every-checkpoint 0.02" mps-dam-break --h 0.005715 --duration 0.1 --frames 0
+cut dam "--every-checkpoint 0.02" mps-dam-break --cell 0.005715 --duration 0.1 --frames 0
 cut water "--every-checkpoint 0.005" mps-dam-break --method mps --duration 0.02 --frames 0
-cut footing "" mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
-cut tank "--every-checkpoint 0.02" mps-tank --case still --scheme classical --spacing 0.01 \
+cut footing "" mps-footing --cell 0.25 --soil 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
+cut tank "--every-checkpoint 0.02" mps-tank --case still --method classical --spacing 0.01 \
   --duration 0.06 --sample 0.01 --frames 0
 if [ -x "$programs/mps-seawall" ]; then
   cut seawall "--every-checkpoint 0.005" mps-seawall --duration 0.02 --frames 0

@@ -26,24 +26,24 @@ if [ "${STUDY:-no}" = yes ]; then # of 380 cases, dealt to the ranks
   same study mps-stability --study --method linear --duration 0.1
   exit 0
 fi
-same collapse mps-column-collapse --aspect 1 --width 0.02 --h 0.005 --ppc 4
-same dam mps-dam-break --h 0.005715 --duration 0.1 --frames 4
-same box mps-sliding-box --h 0.02
-same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
-same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
-same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
+same collapse mps-column-collapse --aspect 1 --width 0.02 --cell 0.005 --ppc 4
+same dam mps-dam-break --cell 0.005715 --duration 0.1 --frames 4
+same box mps-sliding-box --cell 0.02
+same free_disc mps-rolling-disc --cell 0.02 --body disc --duration 0.1
+same footing mps-footing --cell 0.25 --soil 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
+same cone mps-penetrometer --cell 0.05 --diameter 0.2 --soil 0.8x0.8x0.4 --depth 0.1 --rate 2 --ppc 1
 # A hole, a surcharge and a state of the ground that a rank without particles does not know; implicit pressures.
-same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 6x6x6 --h 0.025 --surcharge 100kPa --rate 8 --ppc 1 \
+same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 0.6x0.6x0.6 --cell 0.025 --surcharge 100kPa --rate 8 --ppc 1 \
   --permeability 1e-4
 # Water in the pores: explicit pressures, and implicit ones.
-same layer mps-consolidation --cells 8 --times 0.01
-same mandel mps-consolidation --case mandel --cells 16 --scheme implicit --times 0.002,0.01
+same layer mps-consolidation --cell 0.125 --times 0.01
+same mandel mps-consolidation --case mandel --cell 0.0625 --scheme implicit --times 0.002,0.01
 # Layers of other laws and permeabilities, of which a rank may have none; water in a slope.
 data=$(dirname "$0")/../programs/data
 same layers mps-consolidation --layers "$data/consolidation_layers.csv" --times 0.002
-same slope mps-slope --h 1 --factor 1 --falls 0.3 --water-table 0 --drawdown 10
-same backfill mps-wall --h 0.1 --path 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa
-pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
+same slope mps-slope --cell 1 --factor 1 --falls 0.3 --water-level 0 --drawdown 10
+same backfill mps-wall --cell 0.1 --travel 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa
+pile="--soil 0.6x0.6 --cell 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
 # shellcheck disable=SC2086
 same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.06
 # The last checkpoint of the 3 ranks goes on with 2, and without mpirun, to the same results.
@@ -55,7 +55,7 @@ for start in "timeout 1200 $mpirun -n 2" ""; do
   done
   rm -r "$work/on"
 done
-same limit mps-stability --radius 1.6
+same limit mps-stability --spacing 3.2
 # Water, of two blocks and more, which ranks share; its checkpoint goes on as the pile's does.
 tank="--spacing 0.01 --duration 0.06 --sample 0.01 --frames 3 --gauge 0.4"
 # shellcheck disable=SC2086
@@ -74,7 +74,7 @@ same water mps-dam-break --method mps --duration 0.02 --frames 2
 same rock mps-flume --spacing 0.02 --length 5 --duration 0.03 --frames 1 --wall slope --rock 4.8,0,5,0.08,5.16,0.08,5,0 \
   --stone 2cm
 # Water passes a crest, and returns.
-same storm mps-flume --spacing 0.05 --waves jonswap --height 0.16 --wall caisson --crest 0.05 --length 2 --duration 7 \
+same storm mps-flume --spacing 0.05 --waves jonswap --height 0.16 --wall caisson --freeboard 0.05 --length 2 --duration 7 \
   --frames 0
 if [ -x "$programs/mps-seawall" ]; then
   same seawall mps-seawall --duration 0.02 --frames 0
@@ -106,9 +106,9 @@ has "$work/log" "--solver is for --method mps only"
 
 # Implicit elasticity comes as close as its tolerance: the deflection of every particle to 1e-8.
 if [ -x "$programs/mps-cantilever" ]; then
-  "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-1" >/dev/null
+  "$programs/mps-cantilever" --spacing 0.0606060606 --length 3.909090909 --out "$work/beam-1" >/dev/null
   # shellcheck disable=SC2086
-  timeout 1200 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
+  timeout 1200 $mpirun -n 2 "$programs/mps-cantilever" --spacing 0.0606060606 --length 3.909090909 --out "$work/beam-2" >"$work/beam"
   has "$work/beam" "iterations of 2 ranks"
   [ "$(ls "$work/beam-1")" = "$(ls "$work/beam-2")" ] || fail "files of the beam"
   paste -d, "$work/beam-1/deflection.csv" "$work/beam-2/deflection.csv" | awk -F, '

@@ -3,7 +3,7 @@
 # against what sand and clay must do. On coarse grids: docs/verification/wls-mpm/column-collapse.md has finer ones.
 . "$(dirname "$0")/checks.sh"
 
-dam="$1/mps-dam-break --h 0.003571875 --threads 1"
+dam="$1/mps-dam-break --cell 0.003571875 --threads 1"
 $dam --duration 0.19 --out "$work/dam" >"$work/log"
 in_range "$work/dam/summary.json" front_error_rms_clock 0.01 0.08
 in_range "$work/dam/summary.json" front_clock_shift 0.1 0.4
@@ -26,7 +26,7 @@ in_range "$work/impact/summary.json" impact_mean 0.5014 0.5886
 in_range "$work/impact/summary.json" impact_rise 2.4 2.7
 in_range "$work/impact/summary.json" impact_second_time 6 6.8
 # Of a thin jet the first maximum must not be a collision (Buchner .69, water at rest .8).
-"$1/mps-dam-break" --method mps --impact --h 0.04 --threads 1 --frames 0 --out "$work/jet" >"$work/log"
+"$1/mps-dam-break" --method mps --impact --spacing 0.04 --threads 1 --frames 0 --out "$work/jet" >"$work/log"
 in_range "$work/jet/summary.json" impact_mean 0.5014 0.5886
 in_range "$work/jet/summary.json" impact_first 0.3 1
 in_range "$work/jet/summary.json" impact_second_time 6 6.8
@@ -34,14 +34,14 @@ picture "$work/impact/pressure.png" 1000x520 1f4e8c
 head -n 1 "$work/dam/front.csv" | grep -q '^t_s,T,Z,Z_experiment,tau,H,H_experiment,' ||
   fail "header of front.csv"
 # Water at rest stays so, and its pressure is that of its depth.
-$dam --rest --spline 2 --out "$work/rest" >"$work/log"
+$dam --still --spline 2 --out "$work/rest" >"$work/log"
 in_range "$work/rest/summary.json" pressure_error 0 0.03
 in_range "$work/rest/summary.json" kinetic_max 0 1e-5
 in_range "$work/rest/summary.json" height_end 0.998 1.002
-grep -q '^pressure against rho g depth: RMS' "$work/log" || fail "last line of --rest"
+grep -q '^pressure against rho g depth: RMS' "$work/log" || fail "last line of --still"
 
 # Sand: run-out near the law, the top of the slope lower than the column, no dilation.
-column="$1/mps-column-collapse --h 0.01 --ppc 4 --threads 1"
+column="$1/mps-column-collapse --cell 0.01 --ppc 4 --threads 1"
 $column --aspect 3 --out "$work/sand" >"$work/log"
 in_range "$work/sand/summary.json" runout_law 3.9521 3.9522
 in_range "$work/sand/summary.json" runout_error -0.3 0.1
@@ -50,7 +50,7 @@ in_range "$work/sand/summary.json" time_at_rest 0.3 0.9
 in_range "$work/sand/summary.json" mass_error -1e-12 1e-12
 in_range "$work/sand/summary.json" volume_ratio_max 0.99 1.01
 # A slippery bed lets it run further; clay of twice the strength that it needs stands.
-$column --aspect 1 --bed-friction 0.2 --frames 1 --out "$work/slip" >/dev/null
+$column --aspect 1 --friction 0.2 --frames 1 --out "$work/slip" >/dev/null
 in_range "$work/slip/summary.json" runout 1.4 2.4
 # It rests before its time: the one frame is that of the end.
 if [ -e "$1/mps-info" ]; then
@@ -83,7 +83,7 @@ picture "$work/three/columns.png" 0x0 f3e3bd c98f4a 5b2c12
 # By either method, on from a checkpoint: the results of the run that never stopped.
 [ -f "$work/moving/water.vtkhdf" ] || exit 0 # built without HDF5
 for method in mps mpm; do
-  again="$1/mps-dam-break --method $method --h 0.01143 --threads 1 --frames 5"
+  again="$1/mps-dam-break --method $method --cell 0.01143 --threads 1 --frames 5"
   $again --out "$work/whole" >"$work/log"
   $again --restart "$work/whole/checkpoint.h5" --out "$work/on" >"$work/log"
   for file in front.csv particles.csv summary.json; do

@@ -16,39 +16,39 @@ run() {
   "$programs/mps-consolidation" --case "$case" --threads 1 --out "$work/$case" "$@" >"$work/log"
 }
 programs=$1
-run terzaghi --cells 10 --stiffness 50 --times 0.1,0.5 --nu 0.3
+run terzaghi --cell 0.1 --water-stiffness 50 --times 0.1,0.5 --poisson 0.3
 within terzaghi 0.015 0.02
 [ "$(head -1 "$work/terzaghi/profile.csv")" = "T,depth/H,u/u0,exact" ] || fail "columns of profile.csv"
-run large --cells 20 --stiffness 50 --times 0.2 --load 300kPa
+run large --cell 0.05 --water-stiffness 50 --times 0.2 --load 300kPa
 within large 0.03 0.02
-run mandel --cells 5 --stiffness 50 --times 0.05,0.2
+run mandel --cell 0.2 --water-stiffness 50 --times 0.05,0.2
 within mandel 0.03 0
-run cryer --cells 8 --stiffness 20 --times 0.05,0.1 --nu 0
+run cryer --cell 0.125 --water-stiffness 20 --times 0.05,0.1 --poisson 0
 within cryer 0.1 0.1
-run mcc --cells 8 --stiffness 20 --times 0.2,0.5
+run mcc --cell 0.125 --water-stiffness 20 --times 0.2,0.5
 within mcc 0.05 0.02
 [ "$(value mcc left_kg)" != "$(value mcc drained_kg)" ] || fail "mcc: left_kg is drained_kg"
-run mcc --scheme implicit --cells 20 --times 0.1,0.2
+run mcc --scheme implicit --cell 0.05 --times 0.1,0.2
 within mcc 0.03 0.02
-run terzaghi --scheme implicit --cells 20
+run terzaghi --scheme implicit --cell 0.05
 within terzaghi 0.012 0.02
-run mandel --scheme implicit --cells 5 --stiffness 50 --times 0.05,0.2
+run mandel --scheme implicit --cell 0.2 --water-stiffness 50 --times 0.05,0.2
 within mandel 0.03 0
-run barron --cells 10 --times 0.2,1
+run barron --cell 0.1 --times 0.2,1
 within barron 0.03 0
 awk -v u="$(value barron degree)" -v e="$(value barron degree_equal_strain)" -v f="$(value barron plate_force)" 'BEGIN {
   exit !(u > 0.97 * e && u < 1.03 * e && f > 0.98 && f < 1.02) }' || fail "barron: degree and force of the plate"
 # Both sides drained, two layers, a load that grows, and steps of an oedometer.
-run terzaghi --scheme implicit --drained both --times 0.05,0.2
+run terzaghi --scheme implicit --drainage both --times 0.05,0.2
 within terzaghi 0.015 0.02
-run terzaghi --drained bottom --cells 10 --stiffness 50 --times 0.3
+run terzaghi --drainage bottom --cell 0.1 --water-stiffness 50 --times 0.3
 within terzaghi 0.02 0.02
 run terzaghi --layers "$(dirname "$0")/data/consolidation_layers.csv" --times 0.1,0.5
 within terzaghi 0.015 0.02
 in_range "$work/terzaghi/summary.json" height 5 5
 in_range "$work/terzaghi/summary.json" U 0.69 0.73 # by finite differences 0.7144
 in_range "$work/terzaghi/summary.json" t 1.53e7 1.57e7 # s: 0.5 H^2/c_v, c_v = 2.174e-9 3.636e6/9806.65 m2/s
-run terzaghi --scheme implicit --ramp 0.2 --times 0.1,0.2,0.5
+run terzaghi --scheme implicit --load-ramp 0.2 --times 0.1,0.2,0.5
 within terzaghi 0.015 0.02
 run mcc --scheme implicit --loads 100kPa,300kPa --times 0.2,2
 within mcc 0.03 0.01
@@ -62,10 +62,10 @@ refused --M 1
 refused --case mcc --young 1MPa
 refused --case mcc --kappa 0.3
 refused --case mcc --load 1e8
-refused --ratio 4
-refused --case barron --cells 12
-run strip --cells 2
+refused --drain-ratio 4
+refused --case barron --cell 0.08333333333
+run strip --cell 0.5
 within strip 0.03 0
-run strip --cells 2 --scheme implicit
+run strip --cell 0.5 --scheme implicit
 within strip 0.03 0
 exit 0

@@ -31,7 +31,7 @@ awk -F, 'NR == 2 { a = $4 - 0.79; b = $5 - 3.6; c = $6 + 1.26; d = $7 + 0.657 }
 
 # A clamped wall is stiffer than (11): its reference is finite elements. Nearly incompressible, the
 # method may be 2 % off, where bilinear elements lock (-46 %).
-"$1/mps-cantilever" --wall clamp --length 8 --method published --re 2.1 --out "$work/clamp" >/dev/null
+"$1/mps-cantilever" --support clamp --length 8 --method published --influence 2.1 --out "$work/clamp" >/dev/null
 in_range "$work/clamp/summary.json" tip_error -0.02 0.02
 "$1/mps-cantilever" --poisson 0.4999 --state strain --out "$work/wet" >/dev/null
 in_range "$work/wet/summary.json" tip_error -0.02 0.02
@@ -53,10 +53,10 @@ picture "$work/beam/convergence.png" 900x600 c0392b 2980b9 16a085 7f8c8d
 picture "$work/hole/stress.png" 0x0
 
 # Displacements that are no small ones are warned of, but not those of the paper's E = 1 Pa.
-"$1/mps-cantilever" --young 10kPa --load 1000 --out "$work/soft" >/dev/null 2>"$work/warned"
+"$1/mps-cantilever" --young 10kPa --end-load 1000 --out "$work/soft" >/dev/null 2>"$work/warned"
 grep -q "warning: the displacement of -3.* m is more than 0.05 of the length of 3.66667 m" "$work/warned" || fail "a soft beam: $(cat "$work/warned")"
 grep '"warnings"' "$work/soft/summary.json" | grep -q "small ones" || fail "summary.json has no warning"
 "$1/mps-cantilever" --out "$work/paper" >/dev/null 2>"$work/warned"
 [ ! -s "$work/warned" ] || fail "the defaults are warned of"
-"$1/mps-plate" --young 1MPa --tension 100kPa --out "$work/soft" >/dev/null 2>"$work/warned"
+"$1/mps-plate" --young 1MPa --edge-stress 100kPa --out "$work/soft" >/dev/null 2>"$work/warned"
 grep -q "warning: the displacement of 0.1 m is more than" "$work/warned" || fail "a soft plate: $(cat "$work/warned")"

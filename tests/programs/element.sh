@@ -4,8 +4,8 @@
 . "$(dirname "$0")/checks.sh"
 run() { name=$1; shift; "$element" "$@" --out "$work/$name" >"$work/log" || fail "$*"; }
 element=$1/mps-element
-stiff="--law mcc --M 1.2 --lambda 0.10 --kappa 0.02 --nu 0.2 --e0 0.8 --p0 50kPa --ocr 4"
-soft="--law mcc --M 0.92 --lambda 0.205 --kappa 0.044 --nu 0.25 --e0 1.4 --p0 100kPa --ocr 1"
+stiff="--law mcc --M 1.2 --lambda 0.10 --kappa 0.02 --poisson 0.2 --e0 0.8 --p0 50kPa --ocr 4"
+soft="--law mcc --M 0.92 --lambda 0.205 --kappa 0.044 --poisson 0.25 --e0 1.4 --p0 100kPa --ocr 1"
 
 run cu $stiff --path cu --strain 0.2
 is "$work/cu/path.csv" p -1 87055 87
@@ -36,7 +36,7 @@ has "$work/closed/summary.json" "there are no pores left"
 
 # Loops of the small-strain law: half of G0 is left at the reference strain, the damping of Masing's
 # hyperbola there is 0.1448; a sixth of G0 and 0.3437 at five times it.
-small="--law smallstrain --shear-modulus 50MPa --nu 0.25 --reference-strain 1e-3 --path cyclic --steps 4000"
+small="--law smallstrain --shear-modulus 50MPa --poisson 0.25 --reference-strain 1e-3 --path cyclic --steps 4000"
 run loop $small --strain 1e-3 --cycles 3
 in_range "$work/loop/summary.json" secant_modulus 24.7e6 25.3e6
 in_range "$work/loop/summary.json" damping_ratio 0.136 0.154
@@ -107,7 +107,7 @@ in_range "$work/extension-mohr/summary.json" q_limit 76688 76690
 # Oedometer without dilation: horizontal stress at its least, a third of 450 kPa, at the end of loading;
 # back to 160 kPa it falls by nu/(1 - nu) 290 kPa.
 printf 'exx,eyy,szz,steps\n0,0,-300e3,500\n0,0,290e3,500\n' >"$work/unload.csv"
-run unload --law mohrcoulomb --phi 30 --p0 100kPa --k0 0.5 --nu 0.15 --path-file "$work/unload.csv"
+run unload --law mohrcoulomb --phi 30 --p0 100kPa --k0 0.5 --poisson 0.15 --path-file "$work/unload.csv"
 is "$work/unload/path.csv" sxx 501 -150000 50
 is "$work/unload/path.csv" sxx -1 -98824 50
 run mohr --law mohrcoulomb --phi 30 --psi 10 --path cd --strain 0.2

@@ -4,13 +4,13 @@
 wave=$1/mps-wave
 
 status=0
-"$wave" --radius 1 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" || status=$?
+"$wave" --spacing 2 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "a step above the limit: exit code $status"
 has "$work/log" "--dt is 0.02 s, must be at most the linear stability limit, "
 [ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than an error: $(cat "$work/log")"
 # Euler's motion grows at any step: beyond what the pulse puts in, or beyond all bounds.
 status=0
-"$wave" --radius 1 --integrator euler --dt 2ms --out "$work/d" >/dev/null 2>"$work/log" || status=$?
+"$wave" --spacing 2 --integrator euler --dt 2ms --out "$work/d" >/dev/null 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "divergence: exit code $status"
 has "$work/log" "warning: Euler without damping"
 [ "$(grep -v "warning: Euler" "$work/log" | grep -c "unstable: at t = .*the most that was put in.*--integrator verlet")" -eq 1 ] ||
@@ -23,7 +23,7 @@ has "$work/d/summary.json" '"surface_peak": null'
 mkdir "$work/f"
 echo "older" >"$work/f/receivers.csv"
 status=0
-(ulimit -f 8 && "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f") >/dev/null 2>"$work/log" || status=$?
+(ulimit -f 8 && "$wave" --spacing 2 --duration 0.3 --courant 0.5 --out "$work/f") >/dev/null 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "full disk: exit code $status"
 has "$work/log" "receivers.csv: File too large"
 has "$work/f/receivers.csv" "older"
@@ -31,11 +31,11 @@ status=0
 "$wave" --help >/dev/full 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "--help to a full disk: exit code $status"
 status=0
-"$1/mps-stability" --radius 1.6 --method linear --out "$work/s" >/dev/full 2>"$work/log" || status=$?
+"$1/mps-stability" --spacing 3.2 --method linear --out "$work/s" >/dev/full 2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "output to a full disk: exit code $status"
 
 # A picture on a full disk: the table is there, no empty picture is left or announced.
-disc="$1/mps-rolling-disc --h 0.025 --duration 0.05 --threads 1"
+disc="$1/mps-rolling-disc --cell 0.025 --duration 0.05 --threads 1"
 if command -v gnuplot >/dev/null; then
   status=0
   (ulimit -f 16 && $disc --out "$work/p") >"$work/out" 2>"$work/log" || status=$?
@@ -61,7 +61,7 @@ for blocks in 1 2 4 8 16; do
 done
 # Checkpoints that cannot be written are told of once, in a run of several models too.
 status=0
-(ulimit -f 16 && "$1/mps-column-collapse" --compare --h 0.025 --falls 0.2 --threads 1 --out "$work/c") >"$work/out" \
+(ulimit -f 16 && "$1/mps-column-collapse" --compare --cell 0.025 --falls 0.2 --threads 1 --out "$work/c") >"$work/out" \
   2>"$work/log" || status=$?
 [ "$status" -eq 1 ] || fail "no checkpoints: exit code $status: $(cat "$work/log")"
 [ "$(grep -c "no checkpoint is written" "$work/log")" -eq 1 ] || fail "lines: $(cat "$work/log")"

@@ -26,7 +26,7 @@ picture "$work/a/levels.png" 0x0
 picture "$work/a/water.png" 0x0
 
 # A sea towards a caisson: rows of all tables, a discharge.
-sea="--spacing 0.04 --threads 1 --waves jonswap --height 0.16 --wall caisson --crest 0.08 --length 3"
+sea="--spacing 0.04 --threads 1 --waves jonswap --height 0.16 --wall caisson --freeboard 0.08 --length 3"
 "$1/mps-flume" $sea --duration 16 --frames 3 --out "$work/b" >"$work/log"
 s=$work/b/summary.json
 in_range "$s" Hm0_incident 0.08 0.2
@@ -78,14 +78,14 @@ has "$work/log" "second harmonic over the first"
   --out "$work/focus" >"$work/log" 2>&1
 awk 'BEGIN { print "time (s),WG1 (mm)"; for (k = 0; k <= 400; k++) printf "%g,%g\n", 0.05 * k, 40 * cos(4.5 * 0.05 * k) }' \
   >"$work/record.csv"
-"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --period 1.4 --length 3 --duration 2 --frames 0 \
+"$1/mps-flume" $coarse --waves file --levels "$work/record.csv" --period 1.4 --length 3 --duration 2 --frames 0 \
   --out "$work/file" >"$work/log" 2>&1
 
 has "$work/log" "record.csv: CSV, 401 values, step 0.05 s, length 20 s, peak 0.04 m (40 mm)"
 in_range "$work/file/summary.json" record_peak 0.04 0.04
 in_range "$work/file/summary.json" stroke 0.01 0.06
 ! grep -q "the record" "$work/log" || fail "a warning of a record that the maker makes"
-"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --period 0.5 --length 0.5 --duration 0.1 --frames 0 \
+"$1/mps-flume" $coarse --waves file --levels "$work/record.csv" --period 0.5 --length 0.5 --duration 0.1 --frames 0 \
   --out "$work/file" >"$work/log" 2>&1
 has "$work/log" "the record has Hm0 0.11"
 
@@ -99,7 +99,7 @@ has "$work/log" "0.36 m (1.8 Hm0), are above the breaking height 0.27 m"
 has "$work/log" "the focus at 4 s is too early: the waves of the peak need 5"
 
 # Waves through a block of rock: the gauges before and behind it are analysed apart. Energy is lost.
-"$1/mps-flume" $coarse --height 0.05 --period 1.5 --length 6 --rock 3,0,3.4,0,3.4,0.8,3,0.8 --stone 2cm --beta 0 \
+"$1/mps-flume" $coarse --height 0.05 --period 1.5 --length 6 --rock 3,0,3.4,0,3.4,0.8,3,0.8 --stone 2cm --rock-beta 0 \
   --gauge 1,1.25,1.75,2.25,3.2,4,4.25,4.75 --duration 16 --frames 0 --out "$work/block" >"$work/log" 2>&1
 s=$work/block/summary.json
 in_range "$s" reflection 0.40 0.65
@@ -110,11 +110,11 @@ has "$s" '"loss_per_wavelength": null'
 has "$s" '"harmonic_bound": null'
 
 # On from a checkpoint: the results of the run that never stopped.
-run="$sea --crest 0.05 --duration 12 --frames 0"
+run="$sea --freeboard 0.05 --duration 12 --frames 0"
 "$1/mps-flume" $run --out "$work/c" >"$work/log" 2>&1
 books "$work/c/discharge.csv"
 in_range "$work/c/summary.json" volume_returned 0.006 0.1
-"$1/mps-flume" $sea --crest 0.05 --duration 8 --frames 0 --passed leaves --out "$work/leaves" >"$work/log" 2>&1
+"$1/mps-flume" $sea --freeboard 0.05 --duration 8 --frames 0 --passed leaves --out "$work/leaves" >"$work/log" 2>&1
 books "$work/leaves/discharge.csv"
 in_range "$work/leaves/summary.json" volume 0.003 0.1
 in_range "$work/leaves/summary.json" volume_returned 0 0

@@ -79,7 +79,7 @@ refuse() { # TEXT MODEL
   has "$work/log" "$1"
 }
 refuse "bad.yaml, line 2: height is -1 m, must be in" 'depth: 0.4\nheight: -1\n'
-refuse "bad.yaml, line 1: unknown key hight, did you mean height?" 'hight: 0.1\n'
+refuse "bad.yaml, line 1: unknown key hight: did you mean height?" 'hight: 0.1\n'
 refuse "bad.yaml, line 2: --porosity is not used: it needs --rock" 'waves: regular\nporosity: 0.4\n'
 refuse "bad.yaml, line 2: --gauge must be at most 16 lengths" 'depth: 0.4\ngauge: [1, x]\n'
 refuse "bad.yaml, line 1: --depth must be at least 5 times --spacing" 'depth: 0.2\nspacing: 0.05\n'

@@ -5,12 +5,12 @@
 . "$(dirname "$0")/checks.sh"
 
 for h in 0.1 0.05; do
-  "$1/mps-footing" --h $h --domain 3x2 --rate 5mm/s --out "$work/$h" >/dev/null
+  "$1/mps-footing" --cell $h --soil 3x2 --rate 5mm/s --out "$work/$h" >/dev/null
 done
 in_range "$work/0.1/summary.json" q_over_c 5.14 5.40
 in_range "$work/0.05/summary.json" q_over_c 5.14 5.245
 # A smooth circle, ten cells a radius: within 2 % of 5.69 (Shield).
-"$1/mps-footing" --shape circle --h 0.05 --domain 3x2 --rate 1mm/s --out "$work/circle" >/dev/null
+"$1/mps-footing" --shape circle --cell 0.05 --soil 3x2 --rate 1mm/s --out "$work/circle" >/dev/null
 in_range "$work/circle/summary.json" q_over_c 5.576 5.804
 
 # extrapolated DIRECTORY KEY: from h = 0.1 and 0.05 in DIRECTORY, within 3 % of q_exact.
@@ -24,7 +24,7 @@ extrapolated "$work" q_over_c
 
 for mu in 0 0.6; do
   for h in 0.1 0.05; do
-    "$1/mps-footing" --model druckerprager --friction $mu --h $h --domain 5x2 --rate 5mm/s \
+    "$1/mps-footing" --law druckerprager --friction $mu --cell $h --soil 5x2 --rate 5mm/s \
       --out "$work/$mu/$h" >/dev/null
   done
   extrapolated "$work/$mu" q_over_c_undeformed

@@ -4,7 +4,7 @@
 for program in mps-wave mps-stability; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
   tr -s '[:space:]' ' ' <"$work/help" >"$work/flat"
-  for text in "Usage: $program" "--radius [m]" "default 0.5 m)" "[m/s]" "--wave S|P" \
+  for text in "Usage: $program" "--spacing [m]" "default 1 m)" "[m/s]" "--wave S|P" \
     "(default verlet)" "--out DIR" "--threads N"; do
     has "$work/flat" "$text"
   done
@@ -15,14 +15,14 @@ done
 has "$work/help" "--study"
 for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--h [m]" "[N/m]" "(default" "--out DIR" "--threads N"; do
+  for text in "Usage: $program" "--cell [m]" "[N/m]" "(default" "--out DIR" "--threads N"; do
     has "$work/help" "$text"
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
 for program in mps-dam-break mps-column-collapse; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--h [m]" "(default" "--out DIR" "--threads N"; do
+  for text in "Usage: $program" "--cell [m]" "(default" "--out DIR" "--threads N"; do
     has "$work/help" "$text"
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
@@ -34,7 +34,7 @@ done
 # An option with its choices is one word, which completions read: it is not broken.
 [ "$(awk 'length > 100 && NF > 2' "$work/help" | wc -l)" -eq 0 ] || fail "mps-element: long lines"
 "$1/mps-penetrometer" --help >"$work/help" || fail "mps-penetrometer --help"
-for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--h [m]" "(default" "--out DIR"; do
+for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--cell [m]" "(default" "--out DIR"; do
   has "$work/help" "$text"
 done
 [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-penetrometer: long lines"

@@ -2,7 +2,7 @@
 # info.sh DIRECTORY: mps-info shows what a run wrote, as text and as JSON, and refuses other and damaged files.
 . "$(dirname "$0")/checks.sh"
 run=$work/run
-"$1/mps-column-collapse" --h 0.02 --falls 0.3 --frames 3 --threads 1 --out "$run" >/dev/null 2>&1 ||
+"$1/mps-column-collapse" --cell 0.02 --falls 0.3 --frames 3 --threads 1 --out "$run" >/dev/null 2>&1 ||
   fail "mps-column-collapse"
 
 "$1/mps-info" "$run/checkpoint.h5" "$run/column.vtkhdf" >"$work/text" || fail "mps-info"

@@ -58,21 +58,21 @@ wrote() {
   done
 }
 
-interrupt box 0.5 mps-sliding-box --h 0.0025
+interrupt box 0.5 mps-sliding-box --cell 0.0025
 wrote box forces.csv summary.json
-interrupt disc 0.5 mps-rolling-disc --h 0.002
+interrupt disc 0.5 mps-rolling-disc --cell 0.002
 wrote disc motion.csv summary.json
 has "$work/disc/summary.json" '"x_error_05": null'
 interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
-interrupt slope 1 mps-slope --h 0.5
+interrupt slope 1 mps-slope --cell 0.5
 wrote slope motion.csv particles.csv summary.json
-printf 'thickness=20m density=1900 vs=150\n' >"$work/layers"
+printf 'thickness_m, density_kg_m3, vs_m_s\n20, 1900, 150\n' >"$work/layers"
 interrupt site 1 mps-site-response --layers "$work/layers" --base rigid --duration 1000
 wrote site surface.csv spectrum.csv amplification.csv profile.csv summary.json
 interrupt wall 1 mps-wall --pressure passive
 wrote wall pressure.csv particles.csv summary.json
-interrupt layer 1 mps-consolidation --cells 40 --times 0.0001,0.0002,0.0003,10
+interrupt layer 1 mps-consolidation --cell 0.025 --times 0.0001,0.0002,0.0003,10
 wrote layer profile.csv times.csv summary.json
 interrupt pile 1 mps-pile --soil 0.4x2
 wrote pile load.csv summary.json
@@ -84,9 +84,9 @@ has "$work/out" "before its end"
 for key in runout runout_error runout_98 runout_thick height time_at_rest; do
   has "$work/collapse/summary.json" "\"$key\": null"
 done
-interrupt cone 2 mps-penetrometer --soil 3x3x3
+interrupt cone 2 mps-penetrometer --soil 0.3x0.3x0.3
 wrote cone force.csv section.csv summary.json
-interrupt wave 0.5 mps-wave --radius 1 --duration 3000
+interrupt wave 0.5 mps-wave --spacing 2 --duration 3000
 wrote wave receivers.csv summary.json
 
 interrupt tank 1 mps-tank --duration 100
@@ -120,7 +120,7 @@ has "$work/log" "mps-tank: "
 
 # Above the ground there is nothing to scale the axes of a picture by.
 program=mps-penetrometer
-"$programs/"$program --soil 4x4x2 --h 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
+"$programs/"$program --soil 0.4x0.4x0.2 --cell 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
   --threads 1 --out "$work/air" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/air.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
@@ -142,10 +142,10 @@ early() {
   shift 2
   for key; do has "$work/early/summary.json" "\"$key\": null"; done
 }
-early 0.3 "mps-pile --h 0.0005" # being built
+early 0.3 "mps-pile --cell 0.0005" # being built
 early 0.3 "mps-tank --spacing 0.0005"
-early 0.3 "mps-wave --radius 0.02"
-early 0.5 "mps-stability --radius 0.1" dt_linear dt_stepping steps
+early 0.3 "mps-wave --spacing 0.04"
+early 0.5 "mps-stability --spacing 0.2" dt_linear dt_stepping steps
 
 # The study: the cells of the cases that were not run are empty.
 "$programs/mps-stability" --study --method stepping --threads 1 --out "$work/study" >"$work/out" \
@@ -162,9 +162,9 @@ has "$work/study/summary.json" '"outcome": "interrupted"'
 
 # No hook reaches into a factorisation.
 [ -x "$programs/mps-cantilever" ] || exit 0
-early 1 "mps-cantilever --nx 801 --ny 401" tip tip_error unknowns
-early 1 "mps-plate --cells 500" end_displacement particles
-program="mps-cantilever --nx 401 --ny 51 --convergence"
+early 1 "mps-cantilever --spacing 0.004987531172 --length 3.992518703" tip tip_error unknowns
+early 1 "mps-plate --spacing 0.002" end_displacement particles
+program="mps-cantilever --spacing 0.03921568627 --length 15.70588235 --convergence"
 "$programs/"$program --threads 1 --out "$work/beam" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/beam/shape.gp" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done

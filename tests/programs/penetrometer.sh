@@ -3,9 +3,9 @@
 # sum, a mesh, a whole model. Finer: docs/verification/wls-mpm/penetration.md.
 . "$(dirname "$0")/checks.sh"
 # On four cells a radius of 0.6 of them is a third of the tip's: its edges stay sharp.
-coarse="--h 0.025 --soil 3x3x2.5 --rate 1 --threads 1 --corner 0"
+coarse="--cell 0.025 --soil 0.3x0.3x0.25 --rate 1 --threads 1 --corner 0"
 
-"$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --axisymmetric --out "$work/a" >"$work/log"
+"$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --also-axisymmetric --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the tip: 0"
 s=$work/a/summary.json
 in_range "$s" particles_inside 0 0
@@ -34,9 +34,9 @@ cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another 
 # 1.135 times on a smooth floor, 1.159 on a rough one (Dimitriadis et al., 2002); the sides are as near
 # again, and on five cells the sphere is half a cell larger, 1.05. The whole model is four quarters
 # within what the sweeps over the contacts leave: rollers are mirrors.
-sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --h 0.1 --soil 1.6x1.6x1 --depth 0.05"
+sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --cell 0.1 --soil 1.6x1.6x1 --depth 0.05"
 "$1/mps-penetrometer" $sphere --threads 1 --out "$work/q" >/dev/null
-"$1/mps-penetrometer" $sphere --threads 3 --model whole --out "$work/w" >/dev/null
+"$1/mps-penetrometer" $sphere --threads 3 --symmetry whole --out "$work/w" >/dev/null
 has "$work/q/summary.json" '"force_hertz": null' # such a box is no half space
 has "$work/q/summary.json" '"force_hertz_reason": "the '
 # 4/3 E/(1 - nu^2) sqrt(R) d^1.5, E = 2.8 MPa, of d from 0.04 to 0.05 m
@@ -48,7 +48,7 @@ in_range "$work/w/summary.json" force_total \
 
 # A blunt cone on D/8: edges are rounded, and q is within a tenth of what finer grids point at, 8.7 c
 # (verification); with sharp ones 10.8.
-blunt="--axisymmetric --no-space --soil 6x6x5 --depth 0.2 --angle 120 --threads 1"
+blunt="--axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120 --threads 1"
 "$1/mps-penetrometer" $blunt --out "$work/blunt" >/dev/null
 in_range "$work/blunt/summary.json" n_factor 8.7 9.2
 in_range "$work/blunt/summary.json" particles_inside 0 0
@@ -63,9 +63,9 @@ cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give
 # In clay far from the surface, from a hole that the cone fills: more than the cavity of a smooth cone, 4/3 (1 + ln Ir),
 # and less than that of a rough one under a tip that is a cell wider, (1 + 1/4)^2 (4/3 (1 + ln Ir) + sqrt(3)); stiffer clay
 # bears more.
-deep="--axisymmetric --no-space --h 0.025 --corner 0 --rate 1 --threads 1"
+deep="--axisymmetric --cell 0.025 --corner 0 --rate 1 --threads 1"
 for ir in 50 200; do
-  "$1/mps-penetrometer" $deep --soil 8x8x6 --start 0.25 --depth 0.35 --sides free --law tresca --ir $ir --out "$work/$ir" >"$work/log"
+  "$1/mps-penetrometer" $deep --soil 0.8x0.8x0.6 --start 0.25 --depth 0.35 --sides free --law tresca --ir $ir --out "$work/$ir" >"$work/log"
   has "$work/log" "net cone factor N_kt"
   in_range "$work/$ir/summary.json" rigidity_index "$ir" "$ir.01"
   in_range "$work/$ir/summary.json" n_kt "$(awk "BEGIN { print 4 / 3 * (1 + log($ir)) }")" \
@@ -76,17 +76,17 @@ in_range "$work/200/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p
 
 # Ground under 10 su, the same in all directions, presses the tip before that moves, at most over a cell more and with twice
 # the cavity's 2 su (1 + ln Ir)/3 of ground that settles around it.
-"$1/mps-penetrometer" $deep --soil 6x6x4.5 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
+"$1/mps-penetrometer" $deep --soil 0.6x0.6x0.45 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
 in_range "$work/s/summary.json" q_at_rest 100e3 222e3
 in_range "$work/s/summary.json" vertical_stress 99999 100001
 in_range "$work/s/summary.json" particles_inside 0 0
 
 # A path of a few steps has all frames that were asked for.
-"$1/mps-penetrometer" --soil 2x2x2 --depth 0.002 --frames 4 --threads 1 --out "$work/short" >/dev/null
+"$1/mps-penetrometer" --soil 0.2x0.2x0.2 --depth 0.002 --frames 4 --threads 1 --out "$work/short" >/dev/null
 [ "$(grep -c '<Time' "$work/short/penetration.xdmf")" -eq 4 ] || fail "a short path lacks frames"
 
 # Cam-Clay with water in its pores: su of the law, (M/2) p (pc/(2 p))^Lambda after K0 = 0.748 for 100 kPa.
-"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 5x5x4 --start 0.2 --depth 0.26 --out "$work/mcc" >"$work/log"
+"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 0.5x0.5x0.4 --start 0.2 --depth 0.26 --out "$work/mcc" >"$work/log"
 has "$work/log" "net cone factor N_kt"
 su=$(awk 'BEGIN { K = 0.74797; M = 0.92; p = 1e5 * (1 + 2 * K) / 3; q = 1e5 * (1 - K); pc = p + q * q / (M * M * p)
   print M / 2 * p * exp((1 - 0.044 / 0.205) * log(pc / (2 * p))) }')
@@ -97,7 +97,7 @@ in_range "$work/mcc/summary.json" volume_ratio_max 1 1.03
 in_range "$work/mcc/summary.json" particles_inside 0 0
 
 # Drained, as vD/c_v is well below 1, it bears more than undrained, at pressures that are implicit.
-"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 5x5x4 --start 0.2 --depth 0.26 --permeability 1e-3 \
+"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 0.5x0.5x0.4 --start 0.2 --depth 0.26 --permeability 1e-3 \
   --out "$work/drained" >/dev/null 2>&1
 in_range "$work/drained/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/mcc/summary.json")" 60
 
@@ -116,7 +116,7 @@ if ! grep -q "MPS_EMBREE" "$work/log"; then
   in_range "$work/m/summary.json" particles_inside 0 0
   in_range "$work/m/summary.json" n_factor 3.27 13.2
   # of other sizes: too small for the cells, larger than the soil
-  for try in "1e-6:at least 4 cells of --h" "0.01:the soil of 0.3 m x 0.3 m must be"; do
+  for try in "1e-6:at least 4 cells of --cell" "0.01:the soil of 0.3 m x 0.3 m must be"; do
     status=0
     "$1/mps-penetrometer" $coarse --tip stl --mesh "$work/mesh.stl" --scale "${try%%:*}" \
       --depth 0.08 --out "$work/m" >/dev/null 2>"$work/log" || status=$?

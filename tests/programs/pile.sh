@@ -2,7 +2,7 @@
 # pile.sh DIRECTORY: mps-pile on a coarse grid: what must hold on any, and what it writes. The paper's
 # size: docs/verification/wls-mpm/pile.md.
 . "$(dirname "$0")/checks.sh"
-coarse="--h 0.02 --wall 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --rate 0.5"
+coarse="--cell 0.02 --wall-thickness 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --rate 0.5"
 
 "$1/mps-pile" $coarse --rest 0.3 --threads 1 --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the wall: 0"

@@ -26,7 +26,7 @@ in_range flap/summary.json tip_largest_m 3.42e-3 3.6e-3
 in_range flap/summary.json tip_largest_time_s .55 .59
 
 # names that the configuration lacks are refused before the other participant is waited for
-for wrong in "--data Nothing" "--displacement Nothing" "--mesh Other" "--participant Nobody"; do
+for wrong in "--data Nothing" "--displacement Nothing" "--coupling-mesh Other" "--participant Nobody"; do
   status=0
   timeout 1200 "$program" --config config.xml $wrong --out none >wrong.log 2>&1 || status=$?
   [ $status -ne 0 ] && [ $status -ne 124 ] || fail "$wrong: exit code $status"

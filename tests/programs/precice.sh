@@ -15,6 +15,6 @@ status=0
 [ $status -eq 2 ] || fail "--bending 2 has exit code $status"
 has "$work/log" "--bending is 2"
 status=0
-"$1" --mesh Other --spacing 25mm --out "$work/none" 2>"$work/log" >/dev/null || status=$?
+"$1" --coupling-mesh Other --spacing 25mm --out "$work/none" 2>"$work/log" >/dev/null || status=$?
 [ $status -eq 1 ] || fail "another mesh has exit code $status"
 has "$work/log" "mesh 'Other' of the coupling has 0 dimensions, the body has 2"

@@ -5,7 +5,7 @@
 . "$(dirname "$0")/checks.sh"
 value() { sed -n "s/^ *\"$1\": \([^,]*\),*$/\1/p" "$work/$ratio/summary.json"; }
 for ratio in 0.8 0.9 1 1.1 1.2; do
-  "$1/mps-tank" --case resonance --ratio $ratio --threads 1 --frames 0 --out "$work/$ratio" >"$work/log"
+  "$1/mps-tank" --case resonance --frequency-ratio $ratio --threads 1 --frames 0 --out "$work/$ratio" >"$work/log"
   exact=$(value deflection_exact)
   phase=$(value phase_exact)
   in_range "$work/$ratio/summary.json" deflection "$(awk "BEGIN { print 0.95 * $exact }")" \

@@ -18,22 +18,22 @@ again() { # PROGRAM EVERY OPTION...: EVERY (s) is so long that the last checkpoi
     cmp "$file" "$on/$(basename "$file")" || fail "another $(basename "$file") after a restart, $program"
   done
 }
-again mps-sliding-box 0.7 --h 0.1 --young 5kPa --density 10
-again mps-rolling-disc 8ms --h 0.025 --duration 20ms
-again mps-column-collapse 12ms --width 0.1 --h 0.025 --falls 0.2 --compare
-again mps-penetrometer 3ms --soil 4x4x2 --h 0.025 --depth 1cm --rate 2 --ppc 1 --axisymmetric
-again mps-consolidation 1 --cells 5 --stiffness 10 --times 0.05,0.1,0.2
-again mps-consolidation 0.2 --cells 5 --stiffness 10 --layers "$(dirname "$0")/data/consolidation_layers.csv" --drained both \
+again mps-sliding-box 0.7 --cell 0.1 --young 5kPa --density 10
+again mps-rolling-disc 8ms --cell 0.025 --duration 20ms
+again mps-column-collapse 12ms --width 0.1 --cell 0.025 --falls 0.2 --compare
+again mps-penetrometer 3ms --soil 0.4x0.4x0.2 --cell 0.025 --depth 1cm --rate 2 --ppc 1 --also-axisymmetric
+again mps-consolidation 1 --cell 0.2 --water-stiffness 10 --times 0.05,0.1,0.2
+again mps-consolidation 0.2 --cell 0.2 --water-stiffness 10 --layers "$(dirname "$0")/data/consolidation_layers.csv" --drainage both \
   --times 0.01,0.02,0.04
-again mps-consolidation 0.7 --cells 5 --stiffness 10 --case mcc --scheme implicit --loads 100kPa,200kPa --ramp 0.02 \
+again mps-consolidation 0.7 --cell 0.2 --water-stiffness 10 --case mcc --scheme implicit --loads 100kPa,200kPa --load-ramp 0.02 \
   --times 0.03,0.1
-again mps-slope 1.1 --h 2 --falls 3 --tolerance 0.5
-again mps-slope 1.1 --h 2 --falls 3 --tolerance 0.5 --water-table 0 --drawdown 8
-printf 'thickness=4m density=1.9t/m3 vs=100 law=cyclicsand phi=33deg relative-density=0.4\nhalfspace density=2t/m3 vs=300\n' \
+again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5
+again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5 --water-level 0 --drawdown 8
+printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density\n4, 1900, 100, cyclicsand, 33, 0.4\ninf, 2000, 300\n' \
   >"$work/layers"
 again mps-site-response 0.7 --layers "$work/layers" --permeability 1e-4 --frequency 4 --max-frequency 5 --loop 2 --duration 1
-again mps-wall 0.05 --h 0.2 --base 0.4 --path 2mm --friction 0.3
-again mps-wall 0.05 --h 0.125 --path 2mm --layers "$(dirname "$0")/data/wall_layers.csv" --water-table 0.4
+again mps-wall 0.05 --cell 0.2 --below-toe 0.4 --travel 2mm --friction 0.3
+again mps-wall 0.05 --cell 0.125 --travel 2mm --layers "$(dirname "$0")/data/wall_layers.csv" --water-table 0.4
 # Files that have changed since the checkpoint.
 changed() { # PROGRAM EVERY FILE EDIT OPTION...: FILE is changed by sed EDIT
   program=$1 every=$2 file=$3 edit=$4
@@ -47,9 +47,9 @@ changed() { # PROGRAM EVERY FILE EDIT OPTION...: FILE is changed by sed EDIT
   grep -q "changed since the checkpoint" "$work/log" || fail "no word of the file: $(cat "$work/log")"
 }
 cp "$(dirname "$0")/data/wall_layers.csv" "$work/wall.csv"
-changed mps-wall 0.05 "$work/wall.csv" s/1900/1901/ --h 0.125 --path 2mm --layers "$work/wall.csv"
+changed mps-wall 0.05 "$work/wall.csv" s/1900/1901/ --cell 0.125 --travel 2mm --layers "$work/wall.csv"
 cp "$(dirname "$0")/data/consolidation_layers.csv" "$work/column.csv"
-changed mps-consolidation 0.2 "$work/column.csv" s/1e-/2e-/ --cells 5 --stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
+changed mps-consolidation 0.2 "$work/column.csv" s/1e-/2e-/ --cell 0.2 --water-stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
 printf '0,8\n15,0\n' >"$work/line.csv"
-changed mps-slope 1.1 "$work/line.csv" s/15,0/15,1/ --h 2 --falls 3 --tolerance 0.5 --water-table "$work/line.csv"
-again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s
+changed mps-slope 1.1 "$work/line.csv" s/15,0/15,1/ --cell 2 --falls 3 --factor-tolerance 0.5 --water-level "$work/line.csv"
+again mps-footing 8ms --cell 0.25 --soil 3x1 --settlement 1mm --rate 100mm/s

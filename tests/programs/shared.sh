@@ -52,7 +52,7 @@ done
 # The lock ends with the process, also when that is killed.
 kill -KILL "$pid"
 wait "$pid" 2>/dev/null || true
-$dam --base 0.05 --h 0.01 --duration 0.02 --out "$work/nohup" >"$work/out2" 2>"$work/log2" || fail "after the first was killed: $(cat "$work/log2")"
+$dam --width 0.05 --cell 0.01 --duration 0.02 --out "$work/nohup" >"$work/out2" 2>"$work/log2" || fail "after the first was killed: $(cat "$work/log2")"
 [ -s "$work/nohup/front.csv" ] || fail "no front.csv"
 
 # What a killed program has left is replaced; a link in its place is not followed, and is an error.
@@ -60,13 +60,13 @@ rm -r "$work/nohup"
 mkdir "$work/nohup"
 echo "kept" >"$work/mine"
 echo "left" >"$work/nohup/front.csv.part"
-$dam --base 0.05 --h 0.01 --duration 0.02 --out "$work/nohup" >/dev/null 2>"$work/log2" || fail "a file that was left: $(cat "$work/log2")"
+$dam --width 0.05 --cell 0.01 --duration 0.02 --out "$work/nohup" >/dev/null 2>"$work/log2" || fail "a file that was left: $(cat "$work/log2")"
 [ ! -e "$work/nohup/front.csv.part" ] || fail "front.csv.part is left"
 for name in front.csv front.png; do
   [ $name = front.csv ] || command -v gnuplot >/dev/null || continue
   ln -s "$work/mine" "$work/nohup/$name.part"
   status=0
-  $dam --base 0.05 --h 0.01 --duration 0.02 --out "$work/nohup" >/dev/null 2>"$work/log2" || status=$?
+  $dam --width 0.05 --cell 0.01 --duration 0.02 --out "$work/nohup" >/dev/null 2>"$work/log2" || status=$?
   [ "$status" -eq 1 ] || fail "a link: exit code $status"
   has "$work/log2" "$name.part: something that is no file has this name"
   has "$work/mine" "kept"

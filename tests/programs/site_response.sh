@@ -7,7 +7,7 @@
 program=$1/mps-site-response
 
 # A layer of 12 m and 120 m/s on a half space of four times its impedance.
-printf 'thickness=12m density=1.8t/m3 vs=120m/s # soft\nhalfspace density=1800 vs=480\n' >"$work/soft"
+printf 'thickness_m, density_kg_m3, vs_m_s\n12, 1800, 120\ninf, 1800, 480\n' >"$work/soft"
 "$program" --layers "$work/soft" --frequency 4 --duration 10 --threads 1 --out "$work/wave" >"$work/log" || exit 1
 in_range "$work/wave/summary.json" amplification_error 0 0.05
 in_range "$work/wave/summary.json" settlement -1e-6 1e-6 # the base carries the weight
@@ -20,20 +20,20 @@ awk -F, 'NR > 1 { x = 6.283185307 * $1 * 12 / 120; c = cos(x) ^ 2; exact = 1 / s
 picture "$work/wave/surface.png" 1100x900
 picture "$work/wave/profile.png" 1100x700
 # On a rigid base the surface of a layer that is shaken far below its frequency moves as 1/cos(kH).
-printf 'thickness=12m density=1800 vs=120\n' >"$work/bare"
+printf 'thickness_m, density_kg_m3, vs_m_s\n12, 1800, 120\n' >"$work/bare"
 "$program" --layers "$work/bare" --base rigid --record sine --frequency 0.5 --cycles 4 --max-frequency 5 --threads 1 \
   --out "$work/rigid" >"$work/log" || exit 1
 in_range "$work/rigid/summary.json" peak_acceleration 1.045 1.065 # 1/cos(0.1 pi) = 1.0515
 
 # Spectra of 25 cycles of 2 Hz near resonance: 1/sqrt((1 - r^2)^2 + (2 h r)^2), r = T/0.5 s, h = 0.05.
-"$program" --layers "$work/bare" --base rigid --record sine --frequency 2 --cycles 25 --amplitude 0.5 --max-frequency 2 \
+"$program" --layers "$work/bare" --base rigid --record sine --frequency 2 --cycles 25 --acceleration 0.5 --max-frequency 2 \
   --threads 1 --out "$work/sine" >"$work/log" || exit 1
 awk -F, 'NR > 1 && $1 > 0.48 && $1 < 0.51 { r = 2 * $1; exact = 0.5 / sqrt((1 - r * r) ^ 2 + (0.1 * r) ^ 2)
   print "period " $1 ": " $3 " of " exact; count++; if (($3 / exact - 1) ^ 2 > 0.02 ^ 2) wrong = 1 }
   END { exit wrong || count < 2 }' "$work/sine/spectrum.csv" || fail "response spectrum of a sine"
 
 # Soil by Hardin and Drnevich: G0 = 40.5 MPa, gamma_r = 0.05 %.
-printf 'thickness=10m density=1800 vs=150 law=smallstrain reference-strain=5e-4\nhalfspace density=2200 vs=600\n' \
+printf 'thickness_m, density_kg_m3, vs_m_s, law, reference_strain\n10, 1800, 150, smallstrain, 0.0005\ninf, 2200, 600\n' \
   >"$work/soil"
 "$program" --layers "$work/soil" --record sine --frequency 2 --cycles 5 --loop 8 --threads 1 --out "$work/soil.d" \
   >"$work/log" || exit 1
@@ -54,20 +54,19 @@ awk -F, -v G=40.5e6 -v r=5e-4 '
 picture "$work/soil.d/loop.png" 700x600
 
 # Saturated loose sand liquefies; shaken a fiftieth as strongly it stays below the threshold strain of 0.01 %.
-printf 'thickness=5m density=1.9t/m3 vs=120m/s law=cyclicsand phi=33deg relative-density=40%% k0=0.5\n' |
-  sed 's/40%/0.4/' >"$work/sand"
+printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density, k0\n5, 1900, 120, cyclicsand, 33, 0.4, 0.5\n' >"$work/sand"
 sand="--layers $work/sand --base rigid --record sine --frequency 2 --cycles 6 --max-frequency 4 --threads 1"
-"$program" $sand --permeability 0.1mm/s --amplitude 1 --loop 2.5 --duration 5 --out "$work/wet" >"$work/log" || exit 1
+"$program" $sand --permeability 0.1mm/s --acceleration 1 --loop 2.5 --duration 5 --out "$work/wet" >"$work/log" || exit 1
 in_range "$work/wet/summary.json" ru 0.95 1.3
 in_range "$work/wet/summary.json" settlement -1e-2 1e-2 # less than k t = 0.5 mm of water can leave: uncertain, and said
 grep -q '"settlement_reason": "liquefied sand' "$work/wet/summary.json" || fail "no word of the settlement of liquefied sand"
-"$program" $sand --undrained --amplitude 0.02 --out "$work/weak" >"$work/log" || exit 1
+"$program" $sand --undrained --acceleration 0.02 --out "$work/weak" >"$work/log" || exit 1
 in_range "$work/weak/summary.json" ru -0.02 0.02
 
 # Undrained ground on two grids.
-printf 'thickness=10m density=2t/m3 vs=200 poisson=0.3\nhalfspace density=2.2t/m3 vs=600\n' >"$work/full"
+printf 'thickness_m, density_kg_m3, vs_m_s, poisson\n10, 2000, 200, 0.3\ninf, 2200, 600\n' >"$work/full"
 for h in 1 0.5; do
-  "$program" --layers "$work/full" --undrained --record sine --amplitude 0.1 --cycles 1 --h $h --duration 1.2 --threads 1 \
+  "$program" --layers "$work/full" --undrained --record sine --acceleration 0.1 --cycles 1 --cell $h --duration 1.2 --threads 1 \
     --out "$work/full.$h" >"$work/log" || exit 1
 done
 peak=$(sed -n 's/.*"peak_acceleration": *\([0-9.e-]*\).*/\1/p' "$work/full.1/summary.json" | head -n 1)
@@ -117,23 +116,34 @@ wrong() { # TEXT LINE...
   has "$work/log" "$text"
   [ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than one line: $(cat "$work/log")"
 }
-good="thickness=5m density=1800 vs=100"
-wrong "wrong:1: thickness=0m, must be above 0" "thickness=0m density=1800 vs=100"
-wrong 'wrong:2: elastic has no "coesion", only thickness' "$good" "$good coesion=3"
-wrong "density=nan is not a finite number" "thickness=5m density=nan vs=100"
-wrong "density=18kN/m3 has another unit" "thickness=5m density=18kN/m3 vs=100"
-wrong "elastic lacks density" "thickness=5m vs=100"
-wrong "law=sand is not one of" "$good law=sand"
-wrong "thickness is given twice" "$good thickness=5m"
-wrong "law is given twice" "$good law=elastic law=mohrcoulomb phi=30"
-wrong "is no name=value" "5 1800 100"
-wrong "must be 0.7041 to 1.42: give k0" "$good law=mohrcoulomb phi=10"
-wrong "needs one of relative-density and blow-count" "$good law=cyclicsand phi=30"
-wrong "needs a strength" "$good law=smallstrain reference-strain=1e-3 curvature=0.9"
-wrong "must be at least a cell" "thickness=10cm density=1800 vs=100" "$good"
-wrong "a half space, which --base rigid does not have" "$good" "halfspace density=2200 vs=600"
+head="thickness_m, density_kg_m3, vs_m_s"
+all="$head, law, phi_degrees, reference_strain, curvature, permeability_m_s"
+good="5, 1800, 100"
+wrong "wrong:2: thickness_m is 0, must be above 0" "$head" "0, 1800, 100"
+wrong 'wrong:1: "coesion" is not a column of a layer: thickness_m' "$head, coesion" "$good, 3"
+wrong '"nan" is not a finite number' "$head" "5, nan, 100"
+wrong 'the unit of "density_kN_m3" is none of density, such as density_kg_m3' "thickness_m, density_kN_m3, vs_m_s" "$good"
+wrong "the header lacks density_kg_m3" "thickness_m, vs_m_s" "5, 100"
+wrong "density is missing" "$head" "5, , 100"
+wrong "law is sand, must be one of elastic|smallstrain" "$all" "$good, sand"
+wrong 'a second column "thickness_m"' "$head, thickness_m" "$good, 5"
+wrong "too many values" "$head" "$good, 3"
+wrong "wrong:1: a header is missing" "$good"
+wrong "must be 0.7041 to 1.42" "$all" "$good, mohrcoulomb, 10"
+wrong "mohrcoulomb lacks phi" "$all" "$good, mohrcoulomb"
+wrong "elastic has no phi" "$all" "$good, , 10"
+wrong "needs one of relative_density and blow_count" "$all" "$good, cyclicsand, 30"
+wrong "needs a strength" "$all" "$good, smallstrain, , 1e-3, 0.9"
+wrong "must be at least a cell" "$head" "0.1, 1800, 100" "$good"
+wrong "a half space, of thickness inf, which --base rigid does not have" "$head" "$good" "inf, 2200, 600"
+wrong "wrong:3: a layer below one that is endless" "$head" "inf, 2200, 600" "$good"
+wrong "no layer above the half space" "$head" "inf, 2200, 600"
 wrong "no layer in the file" "# nothing"
-wrong "no permeability, which other layers have" "$good permeability=1e-5" "$good"
+wrong "layer 2: no permeability, which other layers have" "$all" "$good, , , , , 1e-5" "$good"
+# One file serves several programs: columns of others are passed over.
+printf '%s\n' "$head, vp_m_s, damping_ratio, modulus_Pa" "12, 1800, 120, 240, 0.02, 1e6" >"$work/many"
+"$program" --layers "$work/many" --base rigid --max-frequency 4 --duration 0.1 --threads 1 --out "$work/many.d" >"$work/log" || exit 1
+"$1/mps-wave" --layers "$work/many" --duration 0.01 --threads 1 --out "$work/many.w" >"$work/log" || exit 1
 record() { # TEXT LINE...
   text=$1
   shift

@@ -7,18 +7,18 @@
 
 value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$1/summary.json"; }
 
-"$1/mps-slope" --h 1 --tolerance 0.03 --threads 1 --out "$work/slope" >"$work/log" || exit 1
+"$1/mps-slope" --cell 1 --factor-tolerance 0.03 --threads 1 --out "$work/slope" >"$work/log" || exit 1
 in_range "$work/slope/summary.json" factor_of_safety 1.34 1.47
 [ "$(awk -F, '$7 == 1' "$work/slope/trials.csv" | wc -l)" -ge 1 ] || fail "no trial failed"
 picture "$work/slope/slope.png" 1100x0
 picture "$work/slope/motion.png" 1000x640
 # Twice the cohesion and tan(phi) have twice the factor: the strength of the trials is the same.
-"$1/mps-slope" --h 1 --phi 36.0524 --cohesion 19620 --factor 2.7 --threads 1 --out "$work/twice" >"$work/log"
+"$1/mps-slope" --cell 1 --phi 36.0524 --cohesion 19620 --factor 2.7 --threads 1 --out "$work/twice" >"$work/log"
 has "$work/log" "the slope stands"
-"$1/mps-slope" --h 1 --phi 36.0524 --cohesion 19620 --factor 3.0 --threads 1 --out "$work/twice" >"$work/log"
+"$1/mps-slope" --cell 1 --phi 36.0524 --cohesion 19620 --factor 3.0 --threads 1 --out "$work/twice" >"$work/log"
 has "$work/log" "the slope fails"
 # Clay whose strength grows from nothing at the crest: slip circles have 4.106 k/gamma = 1.256, an upper bound.
-grows="--h 1 --slope 1 --phi 0 --strength-gradient 6kPa/m --young 1GPa --threads 1"
+grows="--cell 1 --slope 1 --phi 0 --strength-gradient 6kPa/m --young 1GPa --threads 1"
 "$1/mps-slope" $grows --factor 1.19 --out "$work/grows" >"$work/log"
 has "$work/log" "the slope stands"
 "$1/mps-slope" $grows --factor 1.33 --out "$work/grows" >"$work/log"
@@ -27,27 +27,27 @@ has "$work/log" "the slope fails"
 water() { # STANDS FAILS OPTION...
   stands=$1 fails=$2
   shift 2
-  "$programs/mps-slope" --h 1 --factor "$stands" --threads 1 --out "$work/wet" "$@" >"$work/log"
+  "$programs/mps-slope" --cell 1 --factor "$stands" --threads 1 --out "$work/wet" "$@" >"$work/log"
   has "$work/log" "the slope stands"
-  "$programs/mps-slope" --h 1 --factor "$fails" --threads 1 --out "$work/wet" "$@" >"$work/log"
+  "$programs/mps-slope" --cell 1 --factor "$fails" --threads 1 --out "$work/wet" "$@" >"$work/log"
   has "$work/log" "the slope fails"
 }
 programs=$1
 water 1.06 1.19 --ru 0.25
 in_range "$work/wet/summary.json" slip_circles 1.112 1.122
-water 1.75 2.0 --water-table 10
+water 1.75 2.0 --water-level 10
 in_range "$work/wet/summary.json" slip_circles 1.83 1.85
-water 0.80 0.90 --water-table 0 --drawdown 10
-water 1.3 1.5 --slope 4 --phi 35 --cohesion 1Pa --water-table "$(dirname "$0")/data/water_line.csv" --seepage along
+water 0.80 0.90 --water-level 0 --drawdown 10
+water 1.3 1.5 --slope 4 --phi 35 --cohesion 1Pa --water-level "$(dirname "$0")/data/water_line.csv" --seepage along
 for kind in 15kPa 4kPa; do
-  "$1/mps-slope" --runout --phi 0 --cohesion 15kPa --residual-cohesion "$kind" --h 1 --falls 12 --threads 1 \
+  "$1/mps-slope" --runout --phi 0 --cohesion 15kPa --residual-cohesion "$kind" --cell 1 --falls 12 --threads 1 \
     --out "$work/$kind" >"$work/log" || exit 1
 done
 awk -v hard="$(value "$work/15kPa" runout)" -v soft="$(value "$work/4kPa" runout)" \
   'BEGIN { exit !(soft > hard + 2 && hard >= 0) }' || fail "the run-out of a strength that softens"
 # Soft deep clay moves by most of a hundredth of the height before it is in equilibrium; ten times stiffer it does not.
 for young in 100MPa 1GPa; do
-  "$1/mps-slope" --base 10 --phi 0 --cohesion 39240 --h 2 --tolerance 0.3 --young "$young" --threads 1 \
+  "$1/mps-slope" --below-toe 10 --phi 0 --cohesion 39240 --cell 2 --factor-tolerance 0.3 --young "$young" --threads 1 \
     --out "$work/$young" >"$work/$young.log" 2>&1 || exit 1
 done
 has "$work/100MPa.log" "take a stiffer --young"

@@ -5,13 +5,13 @@ stability=$1/mps-stability
 
 # The spin mode: omega = sqrt(24) Vs / D, so dt = 2 / omega = 4.082e-3 s on an endless lattice; the
 # paper's column ran with 4.1e-3 s and diverged with 4.2e-3 s.
-"$stability" --radius 0.5 --vs 100 --vp 200 --out "$work/one" >"$work/log"
+"$stability" --spacing 1 --vs 100 --vp 200 --out "$work/one" >"$work/log"
 in_range "$work/one/summary.json" dt_linear 4.08e-3 4.13e-3
 in_range "$work/one/summary.json" dt_stepping 4.05e-3 4.15e-3
 tail -n 1 "$work/log" | grep -q "critical dt: .*linear theory, .*time stepping" || fail "last line"
 
 # R = 1.6 m: 3 x 31 particles.
-"$stability" --radius 1.6 --damping 0.048 --method linear --out "$work/two" >/dev/null
+"$stability" --spacing 3.2 --damping 0.048 --method linear --out "$work/two" >/dev/null
 in_range "$work/two/summary.json" particles 93 93
 has "$work/two/summary.json" '"dt_stepping": null'
 

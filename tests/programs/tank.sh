@@ -18,7 +18,7 @@ in_range "$work/sloshing/summary.json" period_exact 1.01335 1.01337
 in_range "$work/sloshing/summary.json" period 1.0083 1.0184
 in_range "$work/sloshing/summary.json" decay -0.03 0.03
 # The classical scheme runs; of its force only the mean is right.
-"$1/mps-tank" --case still --scheme classical --threads 1 --frames 0 --out "$work/classical" >"$work/log"
+"$1/mps-tank" --case still --method classical --threads 1 --frames 0 --out "$work/classical" >"$work/log"
 in_range "$work/classical/summary.json" force_mean 397 486
 # Coupled: frequencies with the added mass of potential flow, the plate's rest under water and own weight.
 coupled() { "$1/mps-tank" --threads 1 --frames 0 --out "$work/$2" --case "$2" --duration "$3" >"$work/log"; }

@@ -20,9 +20,9 @@
  * not where its unit is written, nor where the program's own default is as small. */
 TEST(a_number_of_another_unit_is_doubted) {
   double young = 1e7, density = 1800.0, cohesion = 0.5;
-  option table[] = {COMMON_NUMBER("young", &young, NULL),
-                    COMMON_NUMBER("density", &density, NULL),
-                    COMMON_NUMBER("cohesion", &cohesion, NULL),
+  option table[] = {OPTION_NUMBER("young", &young, NULL),
+                    OPTION_NUMBER("density", &density, NULL),
+                    OPTION_NUMBER("cohesion", &cohesion, NULL),
                     {0}};
   const options_program program = {"test", "", table};
   char text[200];
@@ -35,9 +35,9 @@ TEST(a_number_of_another_unit_is_doubted) {
   assert_string_equal(text, "--density is 1.8 kg/m3: write 1.8t/m3 if that is meant");
   assert_false(options_doubt(2, text, sizeof text));
   young = 1e7, density = 1800.0;
-  char *written[] = {(char[]){"test"}, (char[]){"--young=1000"}, (char[]){"--young"},
-                     (char[]){"1000Pa"}, (char[]){"--density=1.8t/m3"}};
-  assert_int_equal(options_parse(&program, 5, written), -1);
+  char *written[] = {(char[]){"test"}, (char[]){"--young"}, (char[]){"1000Pa"},
+                     (char[]){"--density=1.8t/m3"}};
+  assert_int_equal(options_parse(&program, 4, written), -1);
   assert_false(options_doubt(0, text, sizeof text));
 }
 
@@ -48,26 +48,25 @@ TEST(options_are_read_in_both_spellings) {
   bool flag = false;
   const char *out = "out";
   option table[] = {OPTION_HEADING("Heading"),
-                    OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, ""),
-                    {.name = "three",
+                    OPTION_NUMBER("radius", &radius, NULL),
+                    {.name = "incline",
                      .count = 3,
                      .range = OPTION_FROM_TO(-1e3, 1e3),
-                     .number = three,
-                     .help = ""},
-                    OPTION_INTEGER("count", "N", OPTION_FROM_TO(0.0, 9.0), &count, ""),
-                    OPTION_CHOICE("wave", "S|P", &wave, ""),
-                    OPTION_FLAG("flag", &flag, ""),
+                     .number = three},
+                    OPTION_INTEGER("seed", &count, NULL),
+                    OPTION_CHOICE_OF("wave", "S|P", &wave, NULL),
+                    OPTION_FLAG("drained", &flag, NULL),
                     OPTION_OUT(&out),
                     {0}};
   const options_program program = {"test", "", table};
   char *argv[] = {(char[]){"test"},
                   (char[]){"--radius"},
                   (char[]){"-0"}, /* less than the least length */
-                  (char[]){"--count"},
+                  (char[]){"--seed"},
                   (char[]){"7"},
-                  (char[]){"--three=1,-2.5,3e2"},
+                  (char[]){"--incline=1,-2.5,3e2"},
                   (char[]){"--wave=P"},
-                  (char[]){"--flag"},
+                  (char[]){"--drained"},
                   (char[]){"--out=a=b"},
                   NULL};
   assert_int_equal(options_parse(&program, 9, argv), 2);
@@ -81,8 +80,46 @@ TEST(options_are_read_in_both_spellings) {
   assert_int_equal(wave, 1);
   assert_true(flag);
   assert_string_equal(out, "a=b");
-  assert_true(options_given(table, "three"));
+  assert_true(options_given(table, "incline"));
   assert_false(options_given(table, "nothing"));
+}
+
+/* No program starts with an option that the table of all does not have, or has otherwise. */
+TEST(options_are_those_of_the_vocabulary) {
+  double number = 1.0;
+  int64_t integer = 1;
+  int choice = 0;
+  bool flag = false;
+  const char *text = NULL;
+  option wrong[][3] = {{OPTION_NUMBER("resolution", &number, NULL)}, /* not there */
+                       {OPTION_INTEGER("young", &integer, NULL)},    /* of another kind */
+                       {OPTION_FLAG("cell", &flag, NULL)},
+                       {OPTION_TEXT_OF("out", "FILE", &text, NULL)}, /* of other words */
+                       {OPTION_CHOICE_OF("wave", "S|Q", &choice, NULL)},
+                       {OPTION_CHOICE("law", &choice, NULL)}, /* without its words */
+                       {OPTION_FLAG("drained", &flag, NULL), OPTION_FLAG("drained", &flag, NULL)}};
+  option right[] = {OPTION_CHOICE_OF("volumetric", "point|cell", &choice, NULL), {0}};
+  char *argv[] = {(char[]){"test"}, NULL};
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+    const options_program program = {"test", "", wrong[k]};
+    assert_int_equal(options_parse(&program, 1, argv), 2);
+  }
+  const options_program program = {"test", "", right};
+  assert_int_equal(options_parse(&program, 1, argv), -1);
+}
+
+/* A length that must divide another is rounded, and that is said. */
+TEST(lengths_that_must_divide_are_rounded) {
+  double part = 0.3, same = 0.25;
+  NEAR(options_divide("cell", &same, "--width", 1.0, false), 4.0, 0.0);
+  assert_null(options_noted(0));
+  NEAR(options_divide("cell", &part, "--width", 1.0, false), 3.0, 0.0);
+  NEAR(part, 1.0 / 3.0, 0.0);
+  assert_string_equal(options_noted(0), "--cell is 0.3 m, taken as 0.333333 m: 3 in --width, 1 m");
+  part = 0.2;
+  NEAR(options_divide("spacing", &part, "--radius", 1.0, true), 4.5, 0.0);
+  assert_non_null(options_noted(1));
+  assert_null(options_noted(2));
 }
 
 TEST(only_finite_decimal_numbers_are_numbers) {
@@ -114,18 +151,18 @@ TEST(options_are_compared_one_by_one) {
   bool flag = false;
   const char *out = "a", *file = NULL;
   option table[] = {OPTION_HEADING("Heading"),
-                    OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, ""),
-                    {.name = "three", .count = 3, .number = three, .help = ""},
-                    OPTION_INTEGER("count", "N", OPTION_FROM_TO(0.0, 9.0), &count, ""),
-                    OPTION_CHOICE("wave", "S|P", &wave, ""),
-                    OPTION_FLAG("flag", &flag, ""),
-                    OPTION_TEXT("file", "FILE", &file, ""),
+                    OPTION_NUMBER("radius", &radius, NULL),
+                    OPTION_NUMBERS("incline", 3, three, NULL),
+                    OPTION_INTEGER("seed", &count, NULL),
+                    OPTION_CHOICE_OF("wave", "S|P", &wave, NULL),
+                    OPTION_FLAG("drained", &flag, NULL),
+                    OPTION_TEXT("layers", &file, NULL),
                     OPTION_OUT(&out),
                     {0}};
   char record[200], small[20], why[200];
   assert_true(options_record(table, record, sizeof record));
-  assert_string_equal(record, "radius=0.1\nthree=1,-2.5,not given\ncount=3\nwave=P\n"
-                              "flag=not given\nfile=not given\n");
+  assert_string_equal(record, "radius=0.1\nincline=1,-2.5,not given\nseed=3\nwave=P\n"
+                              "drained=not given\nlayers=not given\n");
   assert_false(options_record(table, small, sizeof small));
   out = "b";
   assert_true(options_agree(table, record, why, sizeof why));
@@ -137,10 +174,10 @@ TEST(options_are_compared_one_by_one) {
   assert_string_equal(why, "--wave is S, was P");
   wave = 1, file = "x";
   assert_false(options_agree(table, record, why, sizeof why));
-  assert_string_equal(why, "--file is x, was not given");
+  assert_string_equal(why, "--layers is x, was not given");
   file = NULL;
   assert_false(options_agree(table, "radius=0.1\n", why, sizeof why));
-  assert_string_equal(why, "--three is 1,-2.5,not given, was unknown");
+  assert_string_equal(why, "--incline is 1,-2.5,not given, was unknown");
 }
 
 /* Numbers are SI, or have a unit of the same quantity; another one is refused. */
@@ -201,9 +238,9 @@ TEST(results_hold_no_nan) {
   output f;
   double young = NAN, rate = 2e-3;
   const char *name = "a \"b\"";
-  option table[] = {COMMON_NUMBER("young", &young, NULL),
-                    COMMON_NUMBER("rate", &rate, NULL),
-                    OPTION_TEXT("name", "TEXT", &name, ""),
+  option table[] = {OPTION_NUMBER("young", &young, NULL),
+                    OPTION_NUMBER("rate", &rate, NULL),
+                    OPTION_TEXT("layers", &name, NULL),
                     OPTION_OUT(&name),
                     {0}};
   const options_program program = {"test", "", table};
@@ -243,7 +280,7 @@ TEST(results_hold_no_nan) {
   assert_true(fread(text, 1, sizeof text - 1, stream) > 0);
   fclose(stream);
   assert_non_null(strstr(text, "\"outcome\": \"finished\",\n  \"options\": {\"young\": null, "
-                               "\"rate\": 0.005, \"name\": \"a \\\"b\\\"\"},\n"));
+                               "\"rate\": 0.005, \"layers\": \"a \\\"b\\\"\"},\n"));
   assert_non_null(strstr(text, "\"warnings\": [\""));
   assert_non_null(strstr(text, "\"force\": null\n}"));
   remove(path);

@@ -13,7 +13,7 @@ cat >"$here/docs/cases/page.ini" <<'END'
 group = discs
 title = Disc slips
 quantity = path
-command = mps-rolling-disc --fill rings --duration 0.05 --h {r}
+command = mps-rolling-disc --fill rings --duration 0.05 --cell {r}
 read = x_error_05
 scale = 100
 error = percent
@@ -23,7 +23,7 @@ cells = 2.5 5
 [relative]
 group = discs
 title = Angle
-command = mps-rolling-disc --fill rings --duration 0.05 --h 0.02
+command = mps-rolling-disc --fill rings --duration 0.05 --cell 0.02
 read = h
 reference = 0.01
 bar = 50
@@ -69,7 +69,7 @@ call --check
 sed -i 's/Disc slips | path/Disc slips | way/' "$here/docs/page.md"
 fails --check
 call --render
-sed -i 's/--duration 0.05 --h {r}/--duration 0.04 --h {r}/' "$here/docs/cases/page.ini"
+sed -i 's/--duration 0.05 --cell {r}/--duration 0.04 --cell {r}/' "$here/docs/cases/page.ini"
 fails --check
 grep -q 'another command' "$here/said"
 fails --case nothing

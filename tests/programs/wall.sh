@@ -8,7 +8,7 @@
 wall() { # NAME OPTION...
   name=$1
   shift
-  "${programs}/mps-wall" --h "${h:-0.125}" --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
+  "${programs}/mps-wall" --cell "${h:-0.125}" --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
 }
 programs=$1
 value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$work/$1/summary.json"; }
@@ -25,22 +25,22 @@ wall cohesive --phi 25 --cohesion 1413Pa # 0.08002 gamma H
 in_range "$work/cohesive/summary.json" K 0.198 0.228
 in_range "$work/cohesive/summary.json" K_theory 0.20193 0.20196 # K - 4 c/(gamma H) sqrt(K)
 in_range "$work/cohesive/summary.json" K_cracked 0.22754 0.22757 # K (1 - 2 c/(gamma H sqrt(K)))^2
-h=0.0625 wall rough --phi 36 --friction 0.445 --base 0.5
+h=0.0625 wall rough --phi 36 --friction 0.445 --below-toe 0.5
 in_range "$work/rough/summary.json" K 0.19 0.25 # of Coulomb's wedge 0.2146, in sand that does not dilate more
 has "$work/rough/summary.json" '"K_theory": null' # psi is 0, and the wedge is of associated sand
 wall bed --phi 36 --friction 0.445
 has "$work/bed/summary.json" '"K_theory": null'
-wall based --base 0.5 --psi 30 # by a smooth bed's value, though the ground below the toe stays
+wall based --below-toe 0.5 --psi 30 # by a smooth bed's value, though the ground below the toe stays
 in_range "$work/based/summary.json" K 0.317 0.35
 has "$work/based/summary.json" '"K_reduced": null'
-wall tip --base 0.5 --psi 30 --sheet 0 # ground beside a toe at the level in front loses its pressure
+wall tip --below-toe 0.5 --psi 30 --sheet 0 # ground beside a toe at the level in front loses its pressure
 in_range "$work/tip/summary.json" K 0.15 0.3
-wall loose --base 0.5 --rate 0.08
+wall loose --below-toe 0.5 --rate 0.08
 in_range "$work/loose/summary.json" K_reduced 0.38196 0.38198 # tan(phi*) = sin(30 degrees)
 wall loaded --surcharge 5kPa # K (1 + 2 q/(gamma H)) = 0.52210
 in_range "$work/loaded/summary.json" K 0.506 0.538
 in_range "$work/loaded/summary.json" K_theory 0.52209 0.52211
-wall both --surcharge 5kPa --base 0.5 --psi 30
+wall both --surcharge 5kPa --below-toe 0.5 --psi 30
 in_range "$work/both/summary.json" K 0.49 0.555
 # Water at rest in the ground, layers, and friction of the wall between none and full: psi = phi.
 wall wet --water-table 0.25 --density 2000
@@ -57,7 +57,7 @@ in_range "$work/layers/summary.json" K_theory 0.37305 0.37312
 in_range "$work/layers/summary.json" K 0.36 0.385
 wall pushed --layers "$layers" --pressure passive --length 3
 in_range "$work/pushed/summary.json" K 2.68 2.85
-wall delta --base 0.5 --psi 30 --friction 0.17633
+wall delta --below-toe 0.5 --psi 30 --friction 0.17633
 in_range "$work/delta/summary.json" K_theory 0.30377 0.30379 # Coulomb, 10 degrees
 in_range "$work/delta/summary.json" K 0.285 0.32
 wall top --motion top

@@ -5,7 +5,7 @@ wave=$1/mps-wave
 
 # A pulse through 20 m of uniform ground between periodic sides: travel time and doubled peak.
 out="$work/a dir with 'quotes'"
-"$wave" --radius 0.5 --width 4 --height 20 --sides periodic --duration 0.7 --courant 0.5 \
+"$wave" --spacing 1 --width 4 --height 20 --sides periodic --duration 0.7 --courant 0.5 \
   --receivers 5 --out "$out" >"$work/log"
 tail -n 1 "$work/log" | grep -q "surface peak .*theory .*travel time .*exact" || fail "last line"
 in_range "$out/summary.json" travel_time_exact 0.19499 0.19501
@@ -55,7 +55,7 @@ done
 ! cmp -s "$work/seam/receivers.csv" "$work/firm/receivers.csv" || fail "the seam is lost"
 
 # P wave under rollers, energy kept after the input has ended.
-"$wave" --radius 1 --height 20 --wave P --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
+"$wave" --spacing 2 --height 20 --wave P --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
 in_range "$work/p/summary.json" energy_drift 0 0.01
 
 # Frames: as many as the option says, the first and the last of the run among them; one alone is the last.
@@ -73,7 +73,7 @@ has "$work/info" "frames 3 first 0 s last 0.2 s"
 rm -r "$work/frames"
 
 # A slope writes its crest and toe.
-"$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \
+"$wave" --spacing 2 --width 40 --height 20 --incline 15,25,12 --sides freefield --courant 0.5 \
   --duration 0.3 --out "$work/slope" >/dev/null
 head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slope.csv"
 [ "$(wc -l <"$work/slope/peaks.csv")" -eq "$(($(sed -n 's/.*"particles": \([0-9]*\).*/\1/p' \
@@ -81,7 +81,7 @@ head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slop
 
 # A run that is cut in two at a checkpoint ends with the results of one in one piece, the travel time
 # too, right after the restart; another model is refused by the name of the option.
-whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
+whole="--spacing 2 --height 20 --damping 0.02 --courant 0.5"
 if "$wave" $whole --duration 0.6 --frames 6 --out "$work/cut" >"$work/log" 2>&1; then
   [ -s "$work/cut/wave.vtkhdf" ] || fail "wave.vtkhdf"
   "$1/mps-info" "$work/cut/checkpoint.h5" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
@@ -106,7 +106,7 @@ if "$wave" $whole --duration 0.6 --frames 6 --out "$work/cut" >"$work/log" 2>&1;
   grep travel_time "$work/whole/summary.json" >"$work/b"
   cmp "$work/a" "$work/b" || fail "restart: another travel time"
   grep -q '"travel_time": null' "$work/b" && fail "no travel time"
-  for other in "--height 40" "--vs 90" "--unit-weight 15kN/m3" "--damping 0.03" "--amplitude 2"; do
+  for other in "--height 40" "--vs 90" "--unit-weight 15kN/m3" "--damping 0.03" "--acceleration 2"; do
     "$wave" $whole $other --restart "$work/cut/checkpoint.h5" --out "$work/rest" 2>"$work/log" &&
       fail "a checkpoint of another model was taken: $other"
     has "$work/log" "of another model: ${other%% *}"
@@ -117,7 +117,7 @@ else
 fi
 
 # Without gnuplot: a note, and no error.
-PATH=/nonexistent "$wave" --radius 1 --duration 0.3 --dt 2e-4 --integrator euler --out "$work/p" \
+PATH=/nonexistent "$wave" --spacing 2 --duration 0.3 --dt 2e-4 --integrator euler --out "$work/p" \
   >"$work/log"
 has "$work/p/wave.gp" 'Euler'
 has "$work/log" "gnuplot is not installed"
