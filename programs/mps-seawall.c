@@ -103,7 +103,7 @@ int main(int argc, char **argv) {
       OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_CHOICE_OF("method", "modern|classical", &s->method,
                        "of the water: the library's, or the first scheme of MPS, whose pressure is "
-                       "noisy and which takes energy from the waves"),
+                       "noisy and which takes energy from the waves; it wants --disturb 0"),
       OPTION_NUMBER("share", &s->share, NULL),
       OPTION_CHOICE_OF("wall-method", "conservative|published", &s->wall_method, NULL),
       OPTION_HEADING("Tank"),
