@@ -7,6 +7,7 @@
 #include "common/compare.h"
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
 #include "common/sand.h"
@@ -26,7 +27,9 @@ typedef struct settings {
   sand_voids voids;
   int64_t ppc, threads;
   int cone;
-  int spline; /* degree of the weights less 2 */
+  int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
+  mpm_method method;
+  bool paper;
   bool sweep, compare, axisymmetric;
   mpm_course_options course;
   const char *out;
@@ -150,6 +153,8 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
   def.gravity[1] = -G;
   def.flip_time = s->flip_time;
+  def.volumetric = s->volumetric;
+  mpm_method_define(&s->method, &def);
   mps_status status = fill(sim->context, s, c, m);
   if (status == MPS_OK)
     status = mps_material_create_drucker_prager(sim->context, &law, &m->material);
@@ -157,6 +162,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   if (status == MPS_OK && !isnan(s->bed_friction))
     status = mps_body_create_half_plane(sim->context, NULL, up, &m->body[0]);
   status = mpm_model_create(m, sim->context, status, &def);
+  status = mpm_method_choose(&s->method, m->mpm, status);
   if (status != MPS_OK) return status;
   if (isnan(s->bed_friction))
     return mps_mpm_set_side(m->mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
@@ -607,6 +613,7 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Column"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_NUMBER("aspect", &s->aspect, NULL),
       OPTION_NUMBER("width", &s->width, "L0 from the wall, or radius of the cylinder"),
       OPTION_FLAG("axisymmetric", &s->axisymmetric, "a cylinder"),
@@ -625,6 +632,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("friction", &s->bed_friction, "of the bed (default: soil sticks to it)"),
       OPTION_HEADING("Grid"),
       MPM_MODEL_GRID(s, "default width/20"),
+      OPTION_CHOICE("volumetric", &s->volumetric, NULL),
+      MPM_METHOD_OPTIONS(&s->method),
       OPTION_NUMBER("flip-time", &s->flip_time,
                     "which takes energy out of the flow; default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
@@ -638,6 +647,8 @@ int main(int argc, char **argv) {
       "against the run-out measured by Lube, Huppert, Sparks and Freundt (2005).",
       table};
   int code = options_parse(&program, argc, argv);
+  static const option_preset paper[] = {{"volumetric", "point"}, {0}};
+  if (code < 0) code = mpm_method_settle(&program, &s->method, s->paper, paper, s->flip_time);
   if (code < 0) code = complete(&program, &sim);
   if (code >= 0) return code;
   static const mpm_model_parts parts = {build, march, finish};

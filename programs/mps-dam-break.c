@@ -9,8 +9,6 @@
 #include "common/waves.h"
 #include "dam_break/dam_break.h"
 
-#include <mps/experimental/papers.h>
-
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -135,13 +133,14 @@ mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   def.courant = s->courant;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
+  mpm_method_define(&s->variant, &def);
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->rest ? s->base : s->tank * s->base;
   def.gravity[1] = -G;
   mps_status status = fill(context, s, sim);
   if (status == MPS_OK) status = mps_material_create_newtonian(context, &law, &sim->m.material);
   status = mpm_model_create(&sim->m, context, status, &def);
-  if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
+  status = mpm_method_choose(&s->variant, sim->m.mpm, status);
   if (status == MPS_OK && s->bed == NO_SLIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return status;
@@ -433,6 +432,8 @@ static bool finish(app *a, void *user) {
 static int complete(const options_program *program, settings *s) {
   if (s->impact && (s->method != METHOD_MPS || s->rest || s->n2 != 2))
     return options_refuse(program, "--impact needs --method mps, and has no --still and --n2");
+  if (s->paper && s->method == METHOD_MPS)
+    return options_refuse(program, "--paper is for --method mpm");
   if (s->solver != 0 && s->method != METHOD_MPS)
     return options_refuse(program, "--solver is for --method mps only");
   if (s->impact) s->tank = 0.5 * 5.366;
@@ -482,6 +483,7 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Method"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_CHOICE_OF(
           "method", "mpm|mps", &s->method,
           "WLS-MPM on a grid, weakly compressible; MPS, moving particles, incompressible: "
@@ -503,7 +505,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("ppc", &s->ppc, NULL),
       OPTION_NUMBER("courant", &s->courant, NULL),
       OPTION_CHOICE("spline", &s->spline, NULL),
-      OPTION_CHOICE_OF("transfer", "shape|weight", &s->transfer, NULL),
+      MPM_METHOD_OPTIONS(&s->variant),
       OPTION_CHOICE("volumetric", &s->volumetric, NULL),
       OPTION_NUMBER("disturb", &s->disturb, "of MPS"),
       WAVES_SOLVER(&s->solver, &s->tolerance),
@@ -520,6 +522,8 @@ int main(int argc, char **argv) {
                                    "experiments of Martin and Moyce (1952).",
                                    table};
   int code = options_parse(&program, argc, argv);
+  static const option_preset paper[] = {{"volumetric", "point"}, {0}};
+  if (code < 0) code = mpm_method_settle(&program, &s->variant, s->paper, paper, 0.0);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
   const mpm_model_parts parts = {dam_build, dam_march, finish};

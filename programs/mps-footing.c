@@ -37,6 +37,7 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_CHOICE_OF("law", "vonmises|druckerprager", &s->model,
                        "under a circle Tresca's in place of von Mises'"),
       OPTION_TEXT_OF("soil", "WxH", &s->domain, "half the width, and the depth"),
@@ -68,6 +69,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Grid"),
       MPM_MODEL_GRID(s, NULL),
       OPTION_CHOICE("volumetric", &s->volumetric, "for ground that hardly changes its volume"),
+      MPM_METHOD_OPTIONS(&s->method),
       OPTION_NUMBER("flip-time", &s->flip_time,
                     "and while the ground comes to rest; default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
@@ -86,6 +88,10 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {
+      {"contact", "penalty"}, {"k", "2GN/m"}, {"volumetric", "point"}, {"rate", "0.5mm/s"}, {0}};
+  const int settled = mpm_method_settle(&program, &s->method, s->paper, paper, s->flip_time);
+  if (settled >= 0) return settled;
   const char *reason = footing_settle(s, table);
   if (reason) return options_refuse(&program, reason);
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);

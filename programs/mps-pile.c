@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define PAPER_XI 0.6 /* Nakamura (58) */
+
 int main(int argc, char **argv) {
   static pile p = {.s = {.inner_diameter = 0.15,
                          .wall = 0.01,
@@ -34,6 +36,7 @@ int main(int argc, char **argv) {
   pile_settings *s = &p.s;
   option table[] = {
       OPTION_HEADING("Pile"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_NUMBER("inner-diameter", &s->inner_diameter, NULL),
       OPTION_NUMBER("wall-thickness", &s->wall, "by --contact penalty at least 2 cells"),
       OPTION_NUMBER("friction", &s->friction, "of its surface, tan(delta)"),
@@ -60,6 +63,8 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("ppc", &s->ppc, NULL),
       OPTION_CHOICE("spline", &s->spline, NULL),
       OPTION_NUMBER("courant", &s->courant, "Nakamura (49)"),
+      OPTION_CHOICE("volumetric", &s->volumetric, NULL),
+      MPM_METHOD_OPTIONS(&s->method),
       OPTION_NUMBER("flip-time", &s->flip_time, "default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("rest", &s->rest, NULL),
@@ -77,6 +82,11 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {
+      {"contact", "penalty"}, {"volumetric", "point"}, {"rate", "0.1m/s"}, {0}};
+  const int settled = mpm_method_settle(&program, &s->method, s->paper, paper, s->flip_time);
+  if (settled >= 0) return settled;
+  if (s->paper && isnan(s->k) && isnan(s->xi)) s->xi = PAPER_XI;
   if (options_given(table, "xi") && options_given(table, "k"))
     return options_refuse(&program, "--xi and --k exclude each other");
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);

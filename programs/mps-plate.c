@@ -69,6 +69,8 @@ static int parse(settings *s, int argc, char **argv) {
   const options_program program = {"mps-plate", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  const int preferred = elastic_prefer(&program, &s->method);
+  if (preferred >= 0) return preferred;
   s->plate.young = s->method.young;
   s->plate.poisson = s->method.poisson;
   s->plate.plane_strain = s->method.state == 1;

@@ -5,6 +5,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/compare.h"
 #include "common/mpm_course.h"
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
 
@@ -32,6 +33,8 @@ typedef struct settings {
   int64_t ppc, threads;
   int fill, body, contact; /* contact: mps_contact_method */
   int spline;              /* degree of the weights less 2 */
+  mpm_method method;
+  bool paper;
   mpm_course_options course;
   const char *out;
 } settings;
@@ -145,6 +148,7 @@ static mps_status build(mps_context *context, void *user) {
   def.cell = s->h;
   def.courant = s->courant;
   def.spline = s->spline + 2;
+  mpm_method_define(&s->method, &def);
   if (s->body == BODY_SLOPE) {
     sim->along[0] = cos(a), sim->along[1] = -sin(a);
     sim->start[0] = RADIUS * sin(a), sim->start[1] = RADIUS * cos(a);
@@ -162,6 +166,7 @@ static mps_status build(mps_context *context, void *user) {
     status = mps_material_create_linear_elastic(context, s->young, s->poisson, &sim->m.material);
   if (status == MPS_OK) status = make_rigid(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
+  status = mpm_method_choose(&s->method, sim->m.mpm, status);
   if (status == MPS_OK && s->body != BODY_SLOPE)
     status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
@@ -356,6 +361,7 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Disc and slope"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_CHOICE_OF("body", "slope|disc", &s->body, NULL),
       OPTION_NUMBER("slope-angle", &s->angle, NULL),
       OPTION_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
@@ -368,6 +374,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("ppc", &s->ppc, NULL),
       OPTION_NUMBER("courant", &s->courant, NULL),
       OPTION_CHOICE("spline", &s->spline, NULL),
+      MPM_METHOD_OPTIONS(&s->method),
       OPTION_CHOICE_OF("fill", "lattice|rings", &s->fill, NULL),
       OPTION_HEADING("Run"),
       OPTION_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
@@ -382,6 +389,10 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {
+      {"contact", "penalty"}, {"k", "2MN/m"}, {"friction", "0.3"}, {0}};
+  const int settled = mpm_method_settle(&program, &s->method, s->paper, paper, 0.0);
+  if (settled >= 0) return settled;
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {build, march, finish};

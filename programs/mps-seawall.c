@@ -8,6 +8,7 @@
 #include <string.h>
 
 static const char *check(seawall_settings *s) {
+  if (s->coupled && s->method == 1) return "--method classical has no coupling";
   options_whole("length", &s->length, "--spacing", s->spacing);
   options_whole("depth", &s->depth, "--spacing", s->spacing);
   options_whole("wall-thickness", &s->wall_thickness, "--spacing", s->spacing);
@@ -87,10 +88,18 @@ int main(int argc, char **argv) {
                             .every_checkpoint = 1.0,
                             .frames = 55,
                             .disturb = 0.1,
+                            .share = 0.2,
                             .seed = 1,
                             .out = "out/seawall"}};
   seawall_settings *s = &w.s;
   option table[] = {
+      OPTION_HEADING("Method"),
+      OPTION_FLAG("paper", &s->paper, NULL),
+      OPTION_CHOICE_OF("method", "modern|classical", &s->method,
+                       "of the water: the library's, or the first scheme of MPS, whose pressure is "
+                       "noisy and which takes energy from the waves; it wants --disturb 0"),
+      OPTION_NUMBER("share", &s->share, NULL),
+      OPTION_CHOICE_OF("wall-method", "conservative|published", &s->wall_method, NULL),
       OPTION_HEADING("Tank"),
       OPTION_NUMBER("length", &s->length, "from the piston to the wall"),
       OPTION_NUMBER("depth", &s->depth, "of the water"),
@@ -134,6 +143,12 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {
+      {"method", "classical"}, {"wall-method", "published"}, {"disturb", "0"}, {0}};
+  const int settled = s->paper ? options_prefer(&program, paper) : -1;
+  if (settled >= 0) return settled;
+  if (options_given(table, "share") && s->method == 0)
+    return options_refuse(&program, "--share is for --method classical");
   const char *reason = check(s);
   if (reason) return options_refuse(&program, reason);
   app a;

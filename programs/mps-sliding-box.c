@@ -8,6 +8,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/compare.h"
 #include "common/mpm_course.h"
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
 
@@ -29,6 +30,8 @@ typedef struct settings {
   int contact; /* mps_contact_method */
   int spline;  /* degree of the weights less 2 */
   int64_t ppc, threads;
+  mpm_method method;
+  bool paper;
   mpm_course_options course;
   const char *out;
 } settings;
@@ -152,8 +155,10 @@ static mps_status build(mps_context *context, void *user) {
   def.courant = s->courant;
   def.spline = s->spline + 2;
   def.origin[0] = def.origin[1] = s->offset * s->h;
+  mpm_method_define(&s->method, &def);
   if (status == MPS_OK) status = make_plates(context, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
+  status = mpm_method_choose(&s->method, sim->m.mpm, status);
   if (status == MPS_OK) status = add_contacts(s, sim);
   return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }
@@ -283,6 +288,7 @@ int main(int argc, char **argv) {
                                  .out = "out/sliding-box"}};
   settings *s = &sim.s;
   option table[] = {OPTION_HEADING("Block"),
+                    OPTION_FLAG("paper", &s->paper, NULL),
                     OPTION_NUMBER("young", &s->young, NULL),
                     OPTION_NUMBER("poisson", &s->poisson, NULL),
                     OPTION_NUMBER("density", &s->density, NULL),
@@ -295,6 +301,7 @@ int main(int argc, char **argv) {
                     OPTION_INTEGER("ppc", &s->ppc, NULL),
                     OPTION_NUMBER("courant", &s->courant, NULL),
                     OPTION_CHOICE("spline", &s->spline, NULL),
+                    MPM_METHOD_OPTIONS(&s->method),
                     OPTION_NUMBER("offset", &s->offset, NULL),
                     OPTION_NUMBER("turn", &s->turn, NULL),
                     OPTION_HEADING("Run"),
@@ -309,6 +316,9 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {{"contact", "penalty"}, {"k", "2MN/m"}, {0}};
+  const int settled = mpm_method_settle(&program, &s->method, s->paper, paper, 0.0);
+  if (settled >= 0) return settled;
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
   const char *large = mpm_model_too_large(pow(SIDE / s->h, 2.0) * (double)s->ppc);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 typedef struct settings {
-  bool study;
+  bool study, paper;
   int wave, integrator;
   double spacing, velocity, other, damping; /* as in stability_case */
   double vs, vp;                            /* m/s; NaN: not given */
@@ -53,6 +53,7 @@ static int parse(settings *s, int argc, char **argv) {
   method *m = &s->m;
   option table[] = {
       OPTION_HEADING("Study"),
+      OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_FLAG("study", &s->study, NULL),
       OPTION_HEADING("One case"),
       OPTION_CHOICE("wave", &s->wave, NULL),
@@ -80,6 +81,9 @@ static int parse(settings *s, int argc, char **argv) {
   const options_program program = {"mps-stability", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  static const option_preset paper[] = {{"criterion", "1e15"}, {"accuracy", "1.2"}, {0}};
+  const int preferred = s->paper ? options_prefer(&program, paper) : -1;
+  if (preferred >= 0) return preferred;
   static const char *const single[] = {"wave",          "spacing", "vs",        "vp",
                                        "wave-velocity", "damping", "integrator"};
   char text[160];

@@ -505,6 +505,17 @@ int options_set(const options_program *program, const char *where, const char *n
   return code;
 }
 
+int options_prefer(const options_program *program, const option_preset *presets) {
+  for (; presets->name; presets++) {
+    option *o = find(program->table, presets->name);
+    if (!o || o->given) continue;
+    const int code = read_value(program, o, presets->value);
+    if (code >= 0) return code;
+    o->given = false;
+  }
+  return -1;
+}
+
 bool options_given(const option *table, const char *name) {
   for (const option *o = table; o->name || o->help; o++)
     if (o->name && strcmp(o->name, name) == 0) return o->given;

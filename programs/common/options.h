@@ -91,6 +91,12 @@ int options_parse(const options_program *program, int argc, char **argv);
 int options_set(const options_program *program, const char *where, const char *name,
                 const char *value);
 int options_again(const options_program *program, int argc, char **argv);
+/* Values of options that a flag such as --paper names, as on the command line. */
+typedef struct option_preset {
+  const char *name, *value; /* NULL: the end */
+} option_preset;
+/* Sets those that are not given; they stay so for options_given. Return as options_parse. */
+int options_prefer(const options_program *program, const option_preset *presets);
 /* True when the option was on the command line or in a file. */
 bool options_given(const option *table, const char *name);
 /* Options of the output and execution of a run, such as --out, which a restarted run may change. */

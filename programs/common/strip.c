@@ -3,6 +3,7 @@
 #include "strip.h"
 
 #include <mps/experimental/domain.h>
+#include <mps/experimental/papers.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -82,7 +83,10 @@ mps_status strip_make(mps_context *context, const strip_def *def, strip *out) {
   int64_t *ids = malloc((size_t)mps_particles_count(out->set) * sizeof *ids + 8);
   if (!ids) status = MPS_ERROR_MEMORY;
   if (def->domain) status = mps_domain_agree(def->domain, status);
-  if (status == MPS_OK) status = mps_elastic_create(context, out->set, &elastic, &out->solver);
+  if (status == MPS_OK)
+    status = def->published
+                 ? mps_experimental_elastic_published(context, out->set, &elastic, 0, &out->solver)
+                 : mps_elastic_create(context, out->set, &elastic, &out->solver);
   for (int edge = STRIP_LEFT; status == MPS_OK && edge <= STRIP_TOP; edge *= 2)
     if ((def->clamped | def->level) & edge) status = make_edge(out, edge, ids);
   free(ids);

@@ -6,6 +6,8 @@
 
 #include <mps/elastic.h>
 
+#include <stdbool.h>
+
 /* Edges, or-ed. */
 enum { STRIP_LEFT = 1, STRIP_RIGHT = 2, STRIP_BOTTOM = 4, STRIP_TOP = 8 };
 
@@ -13,6 +15,7 @@ typedef struct strip_def {
   double lower[2], upper[2];      /* m: the rectangle, whole spacings along both axes */
   double spacing;                 /* m */
   double young, poisson, density; /* Pa, -, kg/m3 */
+  bool published;                 /* as Chikazawa (10): whole cells, one process */
   int clamped; /* STRIP_...: particles lie on these edges, half of their cells cut off, and are held
                 */
   int level;   /* STRIP_...: particles lie on these edges and are cut, but free */

@@ -134,6 +134,10 @@ static const struct {
     NUMBER("eccentricity", "m", FROM_TO(0.0, 1e3),
            "distance of the load on a strip from its middle; it is free to turn about the line of "
            "the load; von Mises"),
+    CHOICE(
+        "edge", "mirror|fit",
+        "shape functions at rollers and fixed sides: with images of the nodes inside, or fitted to "
+        "the nodes that there are, Nakamura (5), (6)"),
     NUMBER("edge-stress", "Pa", FROM_TO(1e-9, 1e15), "stress at the far edge"),
     NUMBER("emax", "1", FROM_TO(0.01, 20.0),
            "void ratio at which dilation ends, from --e0, which is emax - Dr (emax - emin)"),
@@ -170,6 +174,10 @@ static const struct {
     NUMBER("friction", "1", FROM_TO(0.0, 10.0), "Coulomb's coefficient mu of the contact"),
     NUMBER("gamma", "1", FROM_TO(1.0, 20.0), "peak enhancement of JONSWAP"),
     TEXT("gauge", "m,...", "stations of level gauges"),
+    CHOICE(
+        "gradient", "derivative|fit",
+        "velocity gradient that the law receives: of the field that the shape functions span, or "
+        "the slope of the fit, Nakamura (42)"),
     NUMBER("gravity", "m/s2", GRAVITY, "g"),
     NUMBER("half-width", "m", LENGTH, "B/2 of a strip, radius of a circle"),
     NUMBER("hardening", "Pa", STRENGTH, "vonmises: linear hardening, per plastic strain"),
@@ -240,6 +248,7 @@ static const struct {
     TEXT("out", "DIR", "directory of the results"),
     NUMBER("p0", "Pa", FROM_TO(0.0, 1e11),
            "first mean effective pressure; laws of F or V/V0 begin without stress"),
+    FLAG("paper", "the case and the method of the paper, but for the options that are given"),
     TEXT("participant", "NAME", "name of this participant"),
     CHOICE("passed", NULL,
            "what becomes of water that has passed the crest: within some two periods it returns to "
@@ -326,6 +335,8 @@ static const struct {
     NUMBER("settlement", "m", LENGTH,
            "where the run ends; default 0.6 mm or 120 c/E half widths, Drucker-Prager 4 mm"),
     CHOICE("shape", NULL, "of the footing; circle: axisymmetry; cohesive ground"),
+    NUMBER("share", "1", ABOVE_TO(0.0, 1.0),
+           "fraction of the density error that the classical scheme corrects in a step"),
     NUMBER("shear-modulus", "Pa", MODULUS,
            "mcc: constant G, default by Poisson's ratio; smallstrain: G at zero strain, default by "
            "Young's modulus"),
@@ -405,6 +416,9 @@ static const struct {
            "inclination of block and plates against the grid; forces are along the plates"),
     FLAG("undrained", "water in the pores that does not flow"),
     NUMBER("unit-weight", "N/m3", FROM_TO(1.0, 1e6), "unit weight; density follows with 9.8 m/s2"),
+    CHOICE("variant", "wls|flip|pic",
+           "WLS-MPM, or the original material point method, Nakamura Table 1, with the velocity of "
+           "particles by increments (FLIP) or as that of the nodes (PIC)"),
     TEXT("velocity", "NAME", "name of the velocities in it,"),
     NUMBER("viscosity", "Pa s", FROM_TO(0.0, 1e3), "dynamic viscosity of the water"),
     CHOICE("volumetric", "law|point|cell|nodes",
@@ -417,6 +431,8 @@ static const struct {
            "it ends, and water that passes them falls behind and leaves"),
     NUMBER("wall-density", "kg/m3", DENSITY, "density of the wall"),
     NUMBER("wall-height", "m", LENGTH, "height of the wall above the bed"),
+    CHOICE("wall-method", "conservative|published",
+           "discretisation of the wall: the library's, or as Chikazawa (10) prints it, corrected"),
     NUMBER("wall-thickness", "m", LENGTH, "thickness of the wall"),
     NUMBER("water-bulk", "Pa", FROM_TO(1e4, 1e11), "K_w, bulk modulus of the water"),
     TEXT("water-level", "m|FILE",

@@ -5,6 +5,7 @@
 #define EXAMPLES_DAM_BREAK_H
 
 #include "common/mpm_heap.h"
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/resume.h"
 
@@ -22,7 +23,9 @@ typedef struct settings {
   double courant;
   double h, base, viscosity, sound, duration, tank, disturb, tolerance;
   int64_t n2, ppc, threads;
-  int method, state, tension, spline, transfer, volumetric, bed, solver;
+  int method, state, tension, spline, volumetric, bed, solver;
+  mpm_method variant;
+  bool paper;
   int64_t frames;
   bool rest, impact;
   double every_checkpoint; /* s */

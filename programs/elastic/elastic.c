@@ -12,6 +12,11 @@ elastic_settings elastic_settings_defaults(void) {
   return (elastic_settings){.young = 1.0, .poisson = 0.3, .radius_ratio = NAN, .alpha = 1.0};
 }
 
+int elastic_prefer(const options_program *program, const elastic_settings *s) {
+  static const option_preset paper[] = {{"method", "published"}, {0}};
+  return s->paper ? options_prefer(program, paper) : -1;
+}
+
 elastic_method elastic_settings_method(const elastic_settings *s) {
   mps_elastic_def def = mps_elastic_defaults();
   def.state = s->state == 1 ? MPS_ELASTIC_STATE_PLANE_STRAIN : MPS_ELASTIC_STATE_PLANE_STRESS;

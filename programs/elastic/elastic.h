@@ -14,9 +14,12 @@ typedef struct elastic_settings {
   double young, poisson;      /* Pa, - */
   double radius_ratio, alpha; /* radius_ratio NaN: the method's own */
   int method, divisor, state; /* as options */
+  bool paper;
 } elastic_settings;
 
 elastic_settings elastic_settings_defaults(void);
+/* With --paper the published method, unless another is given. Returns -1, or an exit code. */
+int elastic_prefer(const options_program *program, const elastic_settings *s);
 /* The method of solution: the library's, or the one that the paper prints. */
 typedef struct elastic_method {
   mps_elastic_def def;
@@ -50,7 +53,7 @@ const char *elastic_method_name(const elastic_settings *s);
       OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, NULL),              \
       OPTION_CHOICE("state", &(s)->state, NULL)
 #define ELASTIC_METHOD(s)                                                                          \
-  OPTION_HEADING("Method"),                                                                        \
+  OPTION_HEADING("Method"), OPTION_FLAG("paper", &(s)->paper, NULL),                               \
       OPTION_CHOICE_OF("method", "conservative|published", &(s)->method, "discretisation"),        \
       OPTION_NUMBER("influence", &(s)->radius_ratio, NULL),                                        \
       OPTION_NUMBER("stabilisation", &(s)->alpha, NULL),                                           \

@@ -5,6 +5,7 @@
 
 #include "characteristics.h"
 #include "common/mpm_course.h"
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/sand.h"
 
@@ -30,6 +31,8 @@ typedef struct settings {
   double flip_time;                                      /* s */
   double section;                                        /* m: x of a vertical line; NaN: none */
   int64_t ppc, threads;
+  mpm_method method;
+  bool paper;
   bool settled; /* --quasi-static */
   mpm_course_options course;
   const char *domain, *out;

@@ -295,12 +295,14 @@ mps_status footing_build(mps_context *context, void *user) {
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
   def.flip_time = s->flip_time;
+  mpm_method_define(&s->method, &def);
   def.lower[0] = footing_is_whole(s) ? -s->width : 0.0;
   def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -s->gravity;
   if (status == MPS_OK) status = make_footing(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
+  status = mpm_method_choose(&s->method, sim->m.mpm, status);
   if (status == MPS_OK)
     status = mps_mpm_set_side(sim->m.mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);

@@ -151,12 +151,15 @@ mps_status pile_build(mps_context *context, void *user) {
   def.spline = s->spline + 2;
   def.courant = s->courant;
   def.flip_time = s->flip_time;
+  def.volumetric = s->volumetric;
+  mpm_method_define(&s->method, &def);
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -PILE_GRAVITY;
   if (status == MPS_OK) status = make_pile(context, p);
   if (status == MPS_OK) status = pile_begin(p);
   status = mpm_model_create(&p->m, context, status, &def);
+  status = mpm_method_choose(&s->method, p->m.mpm, status);
   p->particles = mps_particles_count(p->m.particles);
   if (status == MPS_OK) status = mpm_model_sum(&p->m, &p->particles);
   if (status != MPS_OK) return status;

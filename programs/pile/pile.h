@@ -6,6 +6,7 @@
 #ifndef EXAMPLES_PILE_H
 #define EXAMPLES_PILE_H
 
+#include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/resume.h"
 #include "common/sand.h"
@@ -27,7 +28,9 @@ typedef struct pile_settings {
   int cone;                      /* see pile_cone */
   double h, courant, flip_time;  /* m, 1, s */
   int64_t ppc, frames, threads;
-  int spline;                       /* degree of the weights less 2 */
+  int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
+  mpm_method method;
+  bool paper;
   const char *checkpoint, *restart; /* files, NULL: none */
   double every_checkpoint;          /* s; NaN: a tenth of the run */
   const char *out;

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include <mps/experimental/papers.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -29,6 +31,8 @@ static mps_status make_fluid(app *a, seawall *w) {
   def.domain = a->domain;
   status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
+  if (status == MPS_OK && s->method == 1)
+    status = mps_experimental_fluid_classical(w->fluid, s->share);
   if (status == MPS_OK && !waves_choose_solver(a, s->solver, w->fluid, w->why, sizeof w->why))
     return MPS_ERROR_UNSUPPORTED;
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 0.0, 1.0, NULL, NULL);
@@ -52,6 +56,7 @@ static mps_status make_wall(app *a, seawall *w) {
                          .young = s->young,
                          .poisson = s->poisson,
                          .density = s->wall_density,
+                         .published = s->wall_method == 1,
                          .clamped = STRIP_BOTTOM,
                          .level = STRIP_TOP,
                          .wet = STRIP_LEFT,

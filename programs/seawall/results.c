@@ -107,6 +107,7 @@ static void summarise(output *f, const seawall *w, const sainflou *h) {
   const double peak = find_peak(w, SEAWALL_IMPULSE, INFINITY, &peak_at); /* after the jerk */
   const double most =
       find_peak(w, SEAWALL_LOOK - 0.25 * s->period, SEAWALL_LOOK + 0.25 * s->period, &crest_at);
+  json_number(f, "force_10_hz_at_516", crest ? seawall_smooth(w, llround(at->t / s->dt) - 1) : NAN);
   json_number(f, "force_crest", crest ? most : NAN);
   json_number(f, "force_crest_time", crest ? crest_at : NAN);
   json_number(f, "force_peak", peak);

@@ -42,13 +42,25 @@ static mps_status take_look(seawall *w, const seawall_sample *sample) {
   return status;
 }
 
+/* The classical scheme has no levels: that of as much water as there is in the last columns. */
+static mps_status find_level(const seawall *w, double station, double *level) {
+  mps_view x;
+  int64_t count = 0;
+  if (w->s.method == 0) return mps_fluid_get_levels(w->fluid, 1, &station, level);
+  const mps_status status = mps_particles_view(w->water, "position", &x);
+  for (int64_t i = 0; status == MPS_OK && i < x.shape[0]; i++)
+    count += *mps_view_f64(&x, i, 0) > w->s.length - SEAWALL_COLUMNS * w->s.spacing;
+  *level = (double)count * w->s.spacing / SEAWALL_COLUMNS;
+  return status;
+}
+
 static mps_status take_sample(seawall *w) {
   const double station = w->s.length - w->s.spacing;
   seawall_sample sample = {.t = mps_fluid_time(w->fluid)};
   double motion[3];
   mps_reaction r;
   mps_status status = mps_fluid_get_reaction(w->fluid, SEAWALL_WALL, &r);
-  if (status == MPS_OK) status = mps_fluid_get_levels(w->fluid, 1, &station, &sample.level);
+  if (status == MPS_OK) status = find_level(w, station, &sample.level);
   if (status == MPS_OK) status = waves_move_piston(&w->motion, sample.t, motion);
   if (status == MPS_OK) status = bend_wall(w, &sample.deflection);
   if (status != MPS_OK) return status;

@@ -17,6 +17,7 @@
 #define SEAWALL_LOOK 5.16    /* s: the crest of Chikazawa's Figures 12 and 13 */
 #define SEAWALL_IMPULSE 0.05 /* s: the piston starts with a jerk, whose forces are no waves' */
 #define SEAWALL_WINDOW 0.072 /* s, of a Hann window: half the power passes at 10 Hz */
+#define SEAWALL_COLUMNS 4    /* of particles at the wall, of whose number the level is that */
 #define SEAWALL_LAYERS 3     /* of particles that a wall of the paper's fluid has */
 
 enum { SEAWALL_BED = 0, SEAWALL_PISTON, SEAWALL_WALL };
@@ -29,7 +30,9 @@ typedef struct seawall_settings {
   int64_t frames, threads, seed;
   int solver;       /* of the pressure: waves_choose_solver */
   double tolerance; /* of its residual */
-  bool coupled;
+  bool coupled, paper;
+  int method, wall_method; /* 0 or 1: classical; published */
+  double share;            /* of the density error, classical */
   const char *out, *checkpoint, *restart;
 } seawall_settings;
 

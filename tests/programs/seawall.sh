@@ -37,6 +37,18 @@ in_range "$s" force_end 441.4 441.5
 in_range "$s" moment_end 44.10 44.20
 in_range "$s" deflection_end 0.99e-7 1.03e-7
 
+# The water and wall of the paper: what --paper says, levels by the number of particles, and a wall of whole cells that
+# bends within a fifth of the theory of beams above.
+"$1/mps-seawall" --paper $coarse --duration 2.6 --frames 0 --out "$work/paper" >"$work/log"
+"$1/mps-seawall" --method classical --wall-method published --disturb 0 --share 0.2 $coarse --duration 2.6 \
+  --frames 0 --out "$work/same" >"$work/log"
+cmp "$work/paper/force.csv" "$work/same/force.csv" || fail "--paper is not what it says"
+awk -F, 'NR > 1 { if ($5 + 0 > high) high = $5 + 0; if ($5 + 0 < low) low = $5 + 0 }
+  END { exit !(high > 0.06 && high < 0.13 && low < -0.03 && low > -0.1) }' "$work/paper/force.csv" || fail "levels of the classical scheme"
+"$1/mps-seawall" --wall-method published --amplitude 0 --disturb 0 --length 0.6 --wall-height 0.6 --duration 0.01 --frames 0 \
+  --threads 1 --out "$work/published" >"$work/log"
+in_range "$work/published/summary.json" deflection_end 0.95e-7 1.2e-7
+
 # The paper's number of particles.
 "$1/mps-seawall" --duration 0.002 --sample 0.001 --frames 0 --threads 1 --out "$work/count" >"$work/log"
 in_range "$work/count/summary.json" particles 5878 5878

@@ -79,3 +79,55 @@ grep -q 'FAILED' "$here/said"
 sed -i 's/error = percent/error = per cent/' "$here/docs/cases/page.ini"
 fails --list
 grep -q 'error is per cent, must be one of' "$here/said"
+sed -i 's/error = per cent/error = percent/; s/--duration 9/--duration 0.05/' "$here/docs/cases/page.ini"
+
+# Claims of a paper: one row of all its cases, a number of a table of the results, a command that must fail; a claim
+# without a row is named, and so is a case with neither a number nor a reason.
+cat >"$here/docs/cases/claims.ini" <<'END'
+[claims]
+all = A1-A3
+[path]
+group = paper
+claim = A1
+title = Disc slips
+printed = good
+method = paper
+quantity = path
+command = mps-rolling-disc --paper --friction 0 --duration 0.05 --cell 0.02
+read = motion.csv /^0.05,([^,]*),/
+unit = m
+error = none
+[path-default]
+group = paper
+claim = A1
+title = Disc slips
+quantity = path
+command = mps-rolling-disc --duration 0.05 --cell 0.02
+read = x
+unit = m
+reference = 0.00613125
+says = Holds.
+[refused]
+group = paper
+claim = A2
+title = Refused
+command = mps-rolling-disc --cell 1
+code = 2
+read = /--cell is (\\S+) m/
+error = none
+END
+sed -i 's/\\\\S/\\S/' "$here/docs/cases/claims.ini"
+printf '<!-- results of claims: paper -->\n<!-- end of results -->\n' >"$here/docs/claims.md"
+call --page claims
+grep -q '^| A1 | Disc slips | `mps-rolling-disc --paper .*<br>`mps-rolling-disc --duration .* | good | path: 0.00[0-9]* m | path: 0.00[0-9]* m (.* %) | Holds. |' \
+  "$here/docs/claims.md" || { echo "no row of the claim"; cat "$here/docs/claims.md"; exit 1; }
+grep -q '^| A2 | Refused |.*| 1 |' "$here/docs/claims.md"
+fails --check
+grep -q 'claims: claim A3 has no row' "$here/said"
+printf '[later]\ngroup = paper\nclaim = A3\ntitle = Later\ncommand = mps-rolling-disc\nread = x\nerror = none\n' >>"$here/docs/cases/claims.ini"
+call --render
+fails --check
+grep -q 'claims, later: neither a number of - nor a reason' "$here/said"
+sed -i 's/^command = mps-rolling-disc$/reason = not run by this version: long/' "$here/docs/cases/claims.ini"
+call --case path-default --case slips
+call --check || { cat "$here/said"; exit 1; }
