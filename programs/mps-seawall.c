@@ -76,7 +76,7 @@ int main(int argc, char **argv) {
                             .spacing = 0.01,
                             .amplitude = 0.05,
                             .period = 1.0,
-                            .dt = 1e-3,
+                            .dt = 5e-4,
                             .tolerance = WAVES_TOLERANCE,
                             .duration = 5.5,
                             .sample = 0.01,
@@ -144,7 +144,7 @@ int main(int argc, char **argv) {
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
   static const option_preset paper[] = {
-      {"method", "classical"}, {"wall-method", "published"}, {"disturb", "0"}, {0}};
+      {"method", "classical"}, {"wall-method", "published"}, {"disturb", "0"}, {"dt", "1ms"}, {0}};
   const int settled = s->paper ? options_prefer(&program, paper) : -1;
   if (settled >= 0) return settled;
   if (options_given(table, "share") && s->method == 0)
