@@ -7,7 +7,7 @@ programs=$1
 shift
 mpirun=$*
 . "$(dirname "$0")/runs.sh"
-pile="--soil 0.6x0.6 --wall 0.08 --inner-diameter 0.32 --frames 1"
+pile="--soil 0.6x0.6 --wall-thickness 0.08 --inner-diameter 0.32 --frames 1"
 
 # wrong WHAT COMMAND...: mpirun must fail, in time.
 wrong() {

@@ -43,7 +43,7 @@ data=$(dirname "$0")/../programs/data
 same layers mps-consolidation --layers "$data/consolidation_layers.csv" --times 0.002
 same slope mps-slope --cell 1 --factor 1 --falls 0.3 --water-level 0 --drawdown 10
 same backfill mps-wall --cell 0.1 --travel 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa
-pile="--soil 0.6x0.6 --cell 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
+pile="--soil 0.6x0.6 --cell 0.04 --wall-thickness 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
 # shellcheck disable=SC2086
 same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.06
 # The last checkpoint of the 3 ranks goes on with 2, and without mpirun, to the same results.
