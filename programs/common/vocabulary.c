@@ -87,7 +87,7 @@ static const struct {
     NUMBER("cohesion", "Pa", STRENGTH, "cohesion c"),
     FLAG("compare", "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),
     CHOICE("cone", "planestrain|circumscribed|inscribed|extension",
-           "where the cone of Drucker and Prager meets Mohr and Coulomb"),
+           "where the cone of Drucker and Prager agrees with Mohr and Coulomb"),
     TEXT("config", "FILE", "preCICE's configuration"),
     CHOICE("contact", "impulse|penalty",
            "impulses at the surface, or springs at the particles, Nakamura (28) to (34)"),
