@@ -44,14 +44,21 @@ static void read_record(const char *path, const char *options, char *out) {
 
 static void read_layers(const char *path, const char *options, char *out) {
   (void)options;
-  static const table_def def = {.row = "layer",
-                                .column = {{"thickness", "m", "m", 0.0, 2e3, true},
-                                           {"vs", "m/s", "m/s", 10.0, 6e3, false},
-                                           {"vp", "m/s", "m/s", 15.0, 1.2e4, false},
-                                           {"unit weight", "N/m3", "kN/m3", 5e3, 5e4, false},
-                                           {"damping", "1", "ratio", 0.0, 0.5, false}},
-                                .count = 5,
-                                .most = 10};
+  static const table_def def = {
+      .row = "layer",
+      .column =
+          {{.name = "thickness",
+            .quantity = "m",
+            .unit = "m",
+            .lower = 0.0,
+            .upper = 2e3,
+            .open = true},
+           {.name = "vs", .quantity = "m/s", .unit = "m/s", .lower = 10.0, .upper = 6e3},
+           {.name = "vp", .quantity = "m/s", .unit = "m/s", .lower = 15.0, .upper = 1.2e4},
+           {.name = "unit weight", .quantity = "N/m3", .unit = "kN/m3", .lower = 5e3, .upper = 5e4},
+           {.name = "damping", .quantity = "1", .unit = "ratio", .lower = 0.0, .upper = 0.5}},
+      .count = 5,
+      .most = 10};
   double row[50];
   int64_t rows;
   if (!table_read(path, &def, row, &rows, out, ANSWER)) return;
