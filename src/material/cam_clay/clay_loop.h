@@ -89,6 +89,11 @@ MPSI_INLINE double clay_slope(const mpsi_law *law, mpsi_sym s, double q) {
   return q > 0.0 ? turned : m2;
 }
 
+/* How many particles the vectors work on: those after the last are copies of it. */
+MPSI_INLINE int64_t clay_padded(int64_t n) {
+  return (n + CLAY_LANES - 1) / CLAY_LANES * CLAY_LANES;
+}
+
 /* The elastic step of particles [begin, begin + count), and whether it yields. */
 MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *constants,
                           const mps_material_block *block, int64_t begin, int64_t count,
@@ -130,11 +135,8 @@ MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *c
     t->v0[k] = v0, t->ratio[k] = ratio, t->p[k] = p, t->scale[k] = 1.0;
     t->kind[k] = plain ? kind : CLAY_ALONE;
   }
-}
-
-/* How many particles the vectors work on: those after the last are copies of it. */
-MPSI_INLINE int64_t clay_padded(int64_t n) {
-  return (n + CLAY_LANES - 1) / CLAY_LANES * CLAY_LANES;
+  /* Vectors compare the lanes after the last too, where a host may trap what memory has there. */
+  for (int64_t k = count; k < clay_padded(count); k++) t->kind[k] = CLAY_ELASTIC;
 }
 
 MPSI_INLINE int64_t clay_pack(const mps_material_block *block, int64_t begin, int64_t count,
