@@ -53,12 +53,12 @@ on 2 "$wave" --spacing 2 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null
 one mps-wave "receivers.csv: Is a directory"
 
 # Ctrl-C, as mpirun passes it on: one line, the results so far, and the state.
-# As many seconds of the model as one process computes in some 15 s, so that the run is under way when it is
+# As many seconds of the model as one process computes in some 10 s, so that the run is under way when it is
 # asked to stop, on fast machines too.
 begun=$(date +%s%N)
 # shellcheck disable=SC2086
 "$wave" $model --duration 50 --out "$work/short" >/dev/null
-long=$((50 * 15000000 / (($(date +%s%N) - begun) / 1000 + 1)))
+long=$((50 * 10000000 / (($(date +%s%N) - begun) / 1000 + 1)))
 [ $long -ge 200 ] || long=200
 # begin_wave DIRECTORY: three ranks, until they compute.
 begin_wave() {
