@@ -1,5 +1,7 @@
 """The stubs of the package, from what make_docs.py has found."""
 
+import pathlib
+import re
 import textwrap
 
 from interface import SOLVERS, class_name
@@ -32,45 +34,7 @@ class Error(Exception):
     particle: int
     object: str
 
-class ArgumentError(Error, ValueError):
-    """A value outside its allowed range."""
-
-class StateError(Error, RuntimeError):
-    """A call that the object's present state does not allow."""
-
-class OutOfMemoryError(Error, builtins.MemoryError):
-    """Memory could not be allocated."""
-
-class FieldError(Error, KeyError):
-    """An unknown or wrongly shaped field of particles."""
-
-class FileError(Error, OSError):
-    """A file that could not be opened, read or written."""
-
-class FormatError(Error, ValueError):
-    """A file whose content is malformed."""
-
-class DivergedError(Error, ArithmeticError):
-    """The computation diverged."""
-
-class CancelledError(Error):
-    """The hook `cancel`, or a callback, has ended the call."""
-
-class UnsupportedError(Error, NotImplementedError):
-    """Not available in this build or for this input."""
-
-class NumericError(Error, ArithmeticError):
-    """A numerical method failed to converge or met a singular system."""
-
-class InternalError(Error, RuntimeError):
-    """An internal invariant is broken: please report it."""
-
-class StaleError(StateError):
-    """An array of a field taken before a solver stepped, or before particles were added, removed or sorted; a block
-    whose law has returned."""
-
-class Warning(UserWarning):
-    """A warning of the library, where the context has no hook `log`."""
+@errors@
 
 class Field(NDArrayOperatorsMixin):
     """A field of particles, without a copy; it computes and answers as a NumPy array does."""
@@ -137,6 +101,11 @@ def column(pointer: Any, count: int) -> Array | None:
 
 library: Any
 '''
+# The kinds of errors and warnings, as the package has them.
+KINDS = (pathlib.Path(__file__).parent / "libmps/_errors.py").read_text()
+KINDS = re.search(r"^class ArgumentError.*?(?=^KINDS =)", KINDS, re.M | re.S)[0]
+HEAD = HEAD.replace("@errors@", KINDS.strip().replace("\n\n\n", "\n\n"))
+
 
 EXTRA = {
     "context": ["def __init__(self, *, {context}) -> None: ..."],

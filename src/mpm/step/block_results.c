@@ -68,9 +68,9 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   char what[256];
   if (bad >= 0 || lost >= 0)
     own = report_bad(mpm->context, &mpm->grid, &mpm->p, run, function, bad >= 0 ? bad : lost,
-                     bad < 0                                             ? "has left the domain"
+                     bad < 0                                           ? "has left the domain"
                      : mpsi_pore_describe(mpm, bad, what, sizeof what) ? what
-                                                                         : NOT_FINITE);
+                                                                       : NOT_FINITE);
   if (bad < 0)
     mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
   mpsi_mpm_sweep_sums(&mpm->contact, most);

@@ -21,8 +21,8 @@
  *
  * A step is saved (undo.h) where it can end beyond all bounds: after a change by the caller, beyond
  * the Courant limit, where a load jumps, where water is near its bounds, or where particles or
- * bodies move by more than 1/20 of a cell in the step. Otherwise speeds would have to grow twentyfold within it.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * bodies move by more than 1/20 of a cell in the step. Otherwise speeds would have to grow
+ * twentyfold within it. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 #include "mpm/boundary/free_field.h"
 

@@ -18,7 +18,7 @@ typedef struct mpsi_undo {
   int32_t columns;
   mpsi_room list_room, room, dashpot_room;
   mpsi_room boundary_room; /* mpsi_boundary, of each number */
-  mpsi_room sums_room; /* mpsi_boundary_sums, of each boundary that has some */
+  mpsi_room sums_room;     /* mpsi_boundary_sums, of each boundary that has some */
   struct {
     void *kept; /* impulses in the step before: of contacts, of lists of particles */
     int64_t warm_count;
@@ -39,10 +39,11 @@ void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries
  */
 
 typedef struct mpsi_bound {
-  double allowed;  /* J: energy counted when it was last renewed, and the works done since */
-  double kinetic;  /* J, after the last step */
-  double fastest;  /* m/s: no particle was faster after the last step; infinite where water is tight */
-  double mass;     /* kg, of all particles */
+  double allowed; /* J: energy counted when it was last renewed, and the works done since */
+  double kinetic; /* J, after the last step */
+  double
+      fastest; /* m/s: no particle was faster after the last step; infinite where water is tight */
+  double mass; /* kg, of all particles */
   double lightest; /* kg */
   double most;     /* J, bound of the step being made */
   bool lapsed;     /* the bound did not apply in the last step: its energies are of before */
