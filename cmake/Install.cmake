@@ -25,6 +25,10 @@ install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${series}
 # Two export sets: who links libmps.so is not asked to have what only libmps.a needs.
 install(TARGETS mps EXPORT mps-shared LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
 install(TARGETS mps_static EXPORT mps-static ARCHIVE DESTINATION ${link_dir})
+get_property(modules GLOBAL PROPERTY MPS_MODULES) # what libmps.so loads when it is first needed
+if(modules)
+  install(TARGETS ${modules} LIBRARY DESTINATION ${link_dir})
+endif()
 set(link_names libmps)
 if(PETSc_FOUND)
   list(APPEND link_names libmps-petsc)

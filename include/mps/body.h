@@ -121,8 +121,9 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_revolution(mps_context *context
  *  of the longest side of the box apart. MPS_ERROR_ARGUMENT: triangles with no area,
  *  holes, edges of three or more triangles, and volumes that are zero; the message names the
  *  triangle. Surfaces that intersect are not detected. Face k is triangle k. The data are copied.
- *  Needs Embree: MPS_ERROR_UNSUPPORTED in a libmps without (CMake option MPS_EMBREE); Embree's own
- *  memory, about 150 B a triangle, does not come from the context. */
+ *  Needs Embree, loaded with the first mesh: MPS_ERROR_UNSUPPORTED where it cannot be, and in a
+ *  libmps without (CMake option MPS_EMBREE); Embree's own memory, about 150 B a triangle, does not
+ *  come from the context. */
 MPS_API MPS_NODISCARD mps_status mps_body_create_mesh(mps_context *context, const mps_body_def *def,
                                                       int64_t vertices, const double *xyz,
                                                       int64_t triangles, const int32_t *corner,

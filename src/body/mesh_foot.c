@@ -7,15 +7,12 @@
  * normal, the sum of the two normals at an edge, or that at a vertex weighted with the triangles'
  * angles, whose sign is right for every closed surface (Baerentzen and Aanaes 2005).
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/context/first_use.h"
+#include "embree_calls.h"
 #include "mesh.h"
 #include "rotation.h"
 
-#if MPSI_EMBREE == 3
-#include <embree3/rtcore.h>
-#else
-#include <embree4/rtcore.h>
-#endif
-
+#include <pthread.h>
 #include <string.h>
 
 /* In units of the mesh's size: far above the round-off of Embree's single precision. */
@@ -40,7 +37,22 @@ static void fill_vertices(const mpsi_mesh *mesh, float *to) {
     to[i] = (float)((mesh->xyz[i] - mesh->middle[i % 3]) / mesh->size);
 }
 
+const mpsi_embree_calls *mpsi_embree;
+
+static mps_status find_embree(mps_context *context, const char *function) {
+  static pthread_mutex_t finding = PTHREAD_MUTEX_INITIALIZER;
+  char why[300] = "";
+  pthread_mutex_lock(&finding);
+  if (!mpsi_embree) mpsi_embree = mpsi_embree_find(why, sizeof why);
+  const bool found = mpsi_embree;
+  pthread_mutex_unlock(&finding);
+  if (found) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                   "meshes of triangles need Embree, which cannot be loaded: %s", why);
+}
+
 mps_status mpsi_mesh_index(mps_context *context, const char *function, mpsi_mesh *mesh) {
+  MPSI_TRY(find_embree(context, function));
   /* One thread builds: no pool of threads remains in the host program. */
   RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
   mesh->device = device;

@@ -171,6 +171,7 @@ static mps_status open_checkpoint(writing *w, const char *path, const mps_checkp
   if (!(info->dt >= 0.0 && isfinite(info->dt)))
     return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be finite and >= 0", info->dt);
+  MPSI_TRY(mpsi_h5_load(context, w->function));
   return mpsi_replace_begin(context, w->function, path, true, &w->replacement);
 }
 
@@ -390,6 +391,7 @@ static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_sta
   const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
   mps_status status = mpsi_seal_check(r->context, r->function, fd, r->path);
+  if (status == MPS_OK) status = mpsi_h5_load(r->context, r->function);
   if (status == MPS_OK) {
     mpsi_h5_enter(&r->stay);
     if (!mpsi_h5_open(&r->file, fd, r->path, false))

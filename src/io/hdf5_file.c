@@ -8,6 +8,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "hdf5_file.h"
 
+#include "core/context/first_use.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -20,6 +22,19 @@
 
 /* HDF5 has process-wide tables, so the lock between contexts must be process-wide too. */
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
+
+const mpsi_hdf5_calls *mpsi_hdf5;
+
+mps_status mpsi_h5_load(mps_context *context, const char *function) {
+  char why[300] = "";
+  pthread_mutex_lock(&hdf5_mutex);
+  if (!mpsi_hdf5) mpsi_hdf5 = mpsi_hdf5_find(why, sizeof why);
+  const bool found = mpsi_hdf5;
+  pthread_mutex_unlock(&hdf5_mutex);
+  if (found) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                   "results and restart files need HDF5, which cannot be loaded: %s", why);
+}
 
 static herr_t note_innermost(unsigned n, const H5E_error2_t *error, void *data) {
   mpsi_h5_stay *stay = data;

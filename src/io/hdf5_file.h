@@ -3,13 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
+#include "hdf5_calls.h"
 #include "io_private.h"
-
-#define H5_USE_110_API /* newer versions of HDF5 have these forms of the functions */
-#include <hdf5.h>
-#if H5_VERSION_GE(1, 14, 0)
-#include <H5FDdevelop.h>
-#endif
 
 /* ---- a stay in HDF5 -------------------------------------------------------------------------- */
 
@@ -24,6 +19,8 @@ typedef struct mpsi_h5_stay {
   char text[200]; /* innermost text of the first HDF5 error since enter; "" none */
 } mpsi_h5_stay;
 
+/* Loads HDF5 where that has not been done: before the first of these. */
+mps_status mpsi_h5_load(mps_context *context, const char *function);
 /* Every call of HDF5 lies between these two. The lock excludes other contexts; errors go to `text`
  * instead of the host's standard error. */
 void mpsi_h5_enter(mpsi_h5_stay *stay);

@@ -345,6 +345,7 @@ static bool make_file(mps_recorder *recorder) {
 static mps_status open_file(mps_recorder *recorder) {
   static const char *const function = "mps_recorder_create";
   mps_context *context = recorder->context;
+  MPSI_TRY(mpsi_h5_load(context, function));
   mps_status status = MPS_OK;
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
