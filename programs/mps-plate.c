@@ -15,9 +15,12 @@ typedef struct settings {
 } settings;
 
 static const char purpose[] =
-    "Plate of particles in tension (implicit elasticity, CHOLMOD), against the exact solution. "
-    "The\n"
-    "defaults are the paper's square of 289 particles; --case hole is a quarter of Kirsch's plate.";
+    "Plate of particles in tension (implicit elasticity, CHOLMOD), against the exact solution: a\n"
+    "square of steel, Chikazawa, Figure 2; --case hole is a quarter of Kirsch's plate.";
+
+/* Of Figure 2. */
+static const option_preset paper[] = {
+    {"young", "1Pa"}, {"poisson", "0.3"}, {"edge-stress", "1Pa"}, {0}};
 
 /* Defaults of the hole, where they differ; -1, or an exit code. */
 static int check_hole(const options_program *program, settings *s) {
@@ -50,8 +53,8 @@ static int find_spacing(const options_program *program, settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.plate = {.spacing = NAN, .side = 1.0, .radius = 1.0, .tension = 1.0},
-                  .method = elastic_settings_defaults(),
+  *s = (settings){.plate = {.spacing = NAN, .side = 1.0, .radius = 1.0, .tension = 100e6},
+                  .method = elastic_settings_defaults(210e9, 0.3),
                   .out = "out/plate"};
   option table[] = {OPTION_HEADING("Plate"),
                     OPTION_CHOICE_OF("case", "tension|hole", &s->shape,
@@ -69,7 +72,7 @@ static int parse(settings *s, int argc, char **argv) {
   const options_program program = {"mps-plate", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  const int preferred = elastic_prefer(&program, &s->method);
+  const int preferred = elastic_prefer(&program, &s->method, paper);
   if (preferred >= 0) return preferred;
   s->plate.young = s->method.young;
   s->plate.poisson = s->method.poisson;

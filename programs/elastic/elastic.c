@@ -8,13 +8,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-elastic_settings elastic_settings_defaults(void) {
-  return (elastic_settings){.young = 1.0, .poisson = 0.3, .radius_ratio = NAN, .alpha = 1.0};
+elastic_settings elastic_settings_defaults(double young, double poisson) {
+  return (elastic_settings){.young = young, .poisson = poisson, .radius_ratio = NAN, .alpha = 1.0};
 }
 
-int elastic_prefer(const options_program *program, const elastic_settings *s) {
-  static const option_preset paper[] = {{"method", "published"}, {0}};
-  return s->paper ? options_prefer(program, paper) : -1;
+int elastic_prefer(const options_program *program, const elastic_settings *s,
+                   const option_preset *paper) {
+  static const option_preset method[] = {{"method", "published"}, {0}};
+  if (!s->paper) return -1;
+  const int code = options_prefer(program, method);
+  return code >= 0 ? code : options_prefer(program, paper);
 }
 
 elastic_method elastic_settings_method(const elastic_settings *s) {
@@ -51,7 +54,8 @@ void elastic_bar(app *a, double done, double share, double seconds) {
 #define SMALL 0.05 /* of a length: displacements for which the theory of small ones is one */
 
 void elastic_warn(app *a, const option *table, const char *of, double displacement, double length) {
-  if (!options_given(table, "young") && !options_given(table, of)) return;
+  const bool as_printed = options_given(table, "paper"); /* E of 1 Pa and a load of 1 N/m */
+  if (as_printed && !options_given(table, "young") && !options_given(table, of)) return;
   if (fabs(displacement) > SMALL * length)
     app_warn(a,
              "the displacement of %.3g m is more than %g of the length of %g m: displacements are "

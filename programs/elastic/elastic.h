@@ -17,9 +17,10 @@ typedef struct elastic_settings {
   bool paper;
 } elastic_settings;
 
-elastic_settings elastic_settings_defaults(void);
+elastic_settings elastic_settings_defaults(double young, double poisson);
 /* With --paper the published method, unless another is given. Returns -1, or an exit code. */
-int elastic_prefer(const options_program *program, const elastic_settings *s);
+int elastic_prefer(const options_program *program, const elastic_settings *s,
+                   const option_preset *paper);
 /* The method of solution: the library's, or the one that the paper prints. */
 typedef struct elastic_method {
   mps_elastic_def def;
@@ -34,8 +35,8 @@ double elastic_seconds(double particles);
 /* Draws the bar by the clock from `done` of the whole on, a part `share`, for a computation of
  * `seconds` of one processor; 0: ended. */
 void elastic_bar(app *a, double done, double share, double seconds);
-/* Warns of displacements that are not small, of a model given in its own units: with an option
- * `of` it. Those of the defaults, where E is 1 Pa, are numbers of the paper and no lengths. */
+/* Warns of displacements that are not small. Those of --paper, where E is 1 Pa, are numbers and no
+ * lengths, unless `of`, the option of the load, or E is given. */
 void elastic_warn(app *a, const option *table, const char *of, double displacement, double length);
 /* Ends a line with the solver used. */
 void elastic_tell(const app *a, const mps_elastic_report *report);

@@ -32,7 +32,7 @@ typedef struct settings {
   double every_checkpoint; /* s; NaN: a tenth of the run */
   const char *checkpoint, *restart, *out;
   /* made from the above */
-  bool ricker, sloped;
+  bool ricker, sloped, paper;
   layers ground;
 } settings;
 

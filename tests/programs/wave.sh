@@ -5,7 +5,7 @@ wave=$1/mps-wave
 
 # A pulse through 20 m of uniform ground between periodic sides: travel time and doubled peak.
 out="$work/a dir with 'quotes'"
-"$wave" --spacing 1 --width 4 --height 20 --sides periodic --duration 0.7 --courant 0.5 \
+"$wave" --spacing 1 --width 4 --height 20 --duration 0.7 --courant 0.5 \
   --receivers 5 --out "$out" >"$work/log"
 tail -n 1 "$work/log" | grep -q "surface peak .*theory .*travel time .*exact" || fail "last line"
 in_range "$out/summary.json" travel_time_exact 0.19499 0.19501
@@ -24,7 +24,7 @@ has "$out/wave.gp" 'Verlet' # the integrator by its name
 [ "$(find "$out" -name '*.part')" = "" ] || fail "temporary files are left"
 
 # Layers on a half space; the height follows from the file. 4/100 + 6/200 + 9.5/300 s.
-"$wave" --layers "$2/layers.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
+"$wave" --spacing 1 --layers "$2/layers.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
   --out "$work/layers" >/dev/null
 in_range "$work/layers/summary.json" travel_time_exact 0.10166 0.10167
 has "$work/layers/summary.json" '"energy_drift": null'
@@ -32,7 +32,7 @@ has "$work/layers/summary.json" '"energy_drift": null'
 # The same layers by names in another order and in other units; a file without names is refused.
 sed 's/[;,]/ /g' "$2/layers.csv" | awk '/^[0-9]/ { print $2 / .3048 ";" $5 * 100 ";" $1 ";" $4 ";" $3 }' |
   { echo 'Vs (ft/s);damping (%);thickness (m);unit weight (kN/m3);vp [m/s]'; cat; } >"$work/other.csv"
-"$wave" --layers "$work/other.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
+"$wave" --spacing 1 --layers "$work/other.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
   --out "$work/other" >/dev/null
 for key in travel_time_exact surface_peak; do
   want=$(sed -n "s/^ *\"$key\": \([^,]*\),*$/\1/p" "$work/layers/summary.json")
@@ -48,32 +48,32 @@ printf 'thickness_m,vs_m_s,vp_m_s,unit_weight_kN_m3,damping_ratio\n4,200,400,18,
   >"$work/seam.csv"
 sed 's/^0.4,40,400,16/0.4,200,400,18/' "$work/seam.csv" >"$work/firm.csv"
 for ground in seam firm; do
-  "$wave" --layers "$work/$ground.csv" --width 4 --sides periodic --duration 0.3 --courant 0.5 --out "$work/$ground" \
+  "$wave" --layers "$work/$ground.csv" --spacing 1 --width 4 --duration 0.3 --courant 0.5 --out "$work/$ground" \
     >/dev/null 2>"$work/log"
   has "$work/log" "layer 2 of $work/$ground.csv is 0.4 m thick, thinner than the particles, 1 m"
 done
 ! cmp -s "$work/seam/receivers.csv" "$work/firm/receivers.csv" || fail "the seam is lost"
 
 # P wave under rollers, energy kept after the input has ended.
-"$wave" --spacing 2 --height 20 --wave P --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
+"$wave" --spacing 2 --height 20 --wave P --sides roller --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
 in_range "$work/p/summary.json" energy_drift 0 0.01
 
 # Frames: as many as the option says, the first and the last of the run among them; one alone is the last.
 for frames in 1 2 3; do
-  "$wave" --width 4 --height 10 --duration 0.2 --frames $frames --out "$work/frames" >/dev/null
+  "$wave" --width 4 --height 10 --duration 0.2 --dt 1e-3 --frames $frames --out "$work/frames" >/dev/null
   "$1/mps-info" "$work/frames/wave.vtkhdf" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
   first=$([ $frames = 1 ] && echo 0.2 || echo 0)
   has "$work/info" "frames $frames first $first s last 0.2 s"
   rm -r "$work/frames"
 done
 # 60 steps, the last of which ends by 1.4e-12 s before the duration.
-"$wave" --width 4 --height 10 --duration 0.2 --dt 0.00333333333331 --frames 3 --out "$work/frames" >/dev/null
+"$wave" --spacing 1 --width 4 --height 10 --duration 0.2 --dt 0.00333333333331 --frames 3 --out "$work/frames" >/dev/null
 "$1/mps-info" "$work/frames/wave.vtkhdf" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
 has "$work/info" "frames 3 first 0 s last 0.2 s"
 rm -r "$work/frames"
 
 # A slope writes its crest and toe.
-"$wave" --spacing 2 --width 40 --height 20 --incline 15,25,12 --sides freefield --courant 0.5 \
+"$wave" --spacing 2 --width 40 --height 20 --incline 15,25,12 --courant 0.5 \
   --duration 0.3 --out "$work/slope" >/dev/null
 head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slope.csv"
 [ "$(wc -l <"$work/slope/peaks.csv")" -eq "$(($(sed -n 's/.*"particles": \([0-9]*\).*/\1/p' \
