@@ -109,6 +109,9 @@ static const struct {
     INTEGER("cycles", "N", FROM_TO(1.0, 1000.0), "number of cycles"),
     NUMBER("damping", "1", FROM_TO(0.0, 1.0),
            "Rayleigh damping ratio h at f1 and f2; 0.05 is 5 % of critical"),
+    CHOICE("damping-form", "pair|particle",
+           "Rayleigh damping by pairs, which keeps momentum, or by the h of each particle, Yoshida "
+           "(A1) to (A24)"),
     TEXT("data", "NAME", "name of the data in it"),
     NUMBER("density", "kg/m3", DENSITY, "density"),
     NUMBER("density-at", "m", FROM_TO(0.0, 1e6),

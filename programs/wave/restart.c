@@ -44,6 +44,7 @@ static void describe(const settings *s, char *text) {
                  {"integrator", s->integrator},
                  {"rotation", s->rotation},
                  {"torque", s->torque},
+                 {"damping-form", s->damping_form},
                  {"receivers", (double)s->receivers},
                  {"incline", s->slope[0]},
                  {"incline", s->slope[1]},

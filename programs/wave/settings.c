@@ -44,7 +44,8 @@ static const char purpose[] =
     "through 100 m in about 1 s and doubles at the free surface, Yoshida, Figure 2.";
 
 /* Of Figure 2. */
-static const option_preset paper[] = {{"spacing", "1m"}, {"sides", "roller"}, {"dt", "0.1ms"}, {0}};
+static const option_preset paper[] = {
+    {"spacing", "1m"}, {"sides", "roller"}, {"dt", "0.1ms"}, {"damping-form", "particle"}, {0}};
 
 /* ---- checks of combinations ------------------------------------------------------------------ */
 
@@ -148,6 +149,7 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_CHOICE("integrator", &s->integrator, NULL),
       OPTION_CHOICE("rotation", &s->rotation, NULL),
       OPTION_CHOICE("torque", &s->torque, NULL),
+      OPTION_CHOICE("damping-form", &s->damping_form, NULL),
       OPTION_NUMBER("dt", &s->dt, "default by --courant"),
       OPTION_NUMBER("courant", &s->courant, NULL),
       OPTION_NUMBER("duration", &s->duration,
@@ -235,6 +237,7 @@ mps_dynamics_def settings_dynamics(const settings *s, double width) {
   mps_dynamics_def def = mps_dynamics_defaults();
   def.integrator = s->integrator;
   def.rotation = s->rotation;
+  def.damping = s->damping_form;
   def.dt = s->dt;
   def.courant = s->courant;
   def.f1 = s->f1;

@@ -25,7 +25,7 @@ typedef struct settings {
   int base, sides;
   layer half_space; /* members NaN: those of the lowest layer */
   /* method */
-  int integrator, rotation, torque;
+  int integrator, rotation, torque, damping_form;
   double dt, courant, duration;
   int64_t receivers, threads;
   int64_t frames;

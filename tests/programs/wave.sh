@@ -117,6 +117,18 @@ else
   has "$work/log" "HDF5" # built without
 fi
 
+# The two forms of damping: one result with one h, two where h changes.
+printf 'thickness_m,vs_m_s,vp_m_s,unit_weight_kN_m3,damping_ratio\n10,100,200,18,0.05\n10,200,400,18,0.0%d\n' 5 >"$work/5.csv"
+sed 's/0\.05$/0.01/; 2s/0\.01$/0.05/' "$work/5.csv" >"$work/1.csv"
+for h in 5 1; do
+  for form in pair particle; do
+    "$wave" --layers "$work/$h.csv" --spacing 2 --width 4 --duration 0.6 --damping-form $form --out "$work/$form" >/dev/null
+    sed -n 's/.*"surface_peak": \([0-9.]*\),.*/\1/p' "$work/$form/summary.json" >"$work/peak-$form"
+  done
+  cat "$work/peak-pair" "$work/peak-particle" | awk -v h=$h 'NR == 1 { a = $1 } NR == 2 { d = a - $1; if (d < 0) d = -d
+    exit !(NR == 2 && (h == 5 ? d < 1e-9 * a : d > 1e-4 * a)) }' || fail "forms of damping, h $h: $(cat "$work/peak-pair" "$work/peak-particle")"
+done
+
 # Without gnuplot: a note, and no error.
 PATH=/nonexistent "$wave" --spacing 2 --duration 0.3 --dt 2e-4 --integrator euler --out "$work/p" \
   >"$work/log"
