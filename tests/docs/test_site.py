@@ -123,6 +123,25 @@ class Pages(unittest.TestCase):
                 self.assertIn(here[:-3], listed)
 
 
+    def test_blocks_that_do_not_run_on_the_page_of_answers_stand_where_they_run(self):
+        page = (ROOT / "docs/how.md").read_text()
+        clients = (ROOT / "docs/clients.md").read_text()  # whose blocks install/clients runs
+        blocks = re.findall(r"^```(\w+)\n(.*?)^```$", page, re.M | re.S)
+        self.assertGreater(sum(kind in ("python", "sh", "c") for kind, _ in blocks), 40)
+        for kind, text in blocks:
+            if kind not in ("python", "sh", "c", "text"):
+                self.assertIn(f"```{kind}\n{text}```", clients)
+
+    def test_every_question_has_a_short_answer_with_code(self):
+        answers = re.split(r"^### ", (ROOT / "docs/how.md").read_text(), flags=re.M)[1:]
+        self.assertGreaterEqual(len(answers), 30)
+        for answer in answers:
+            self.assertRegex(answer, r"^How do I [^\n]+\?\n")
+            self.assertIn("\n```", answer)
+            for kind, text in re.findall(r"^```(\w+)\n(.*?)^```$", answer, re.M | re.S):
+                self.assertLessEqual(len(text.splitlines()), 12, answer[:60])
+
+
 class Options(unittest.TestCase):
     """Pages of the programs, from what --help says."""
 
