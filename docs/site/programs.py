@@ -5,7 +5,7 @@ usage: programs.py BUILD OUT [--update] [PAGE...]
 A page's blocks marked sh, python and c are run in their order, in a folder of their own below OUT/runs: sh by bash with
 the programs of BUILD on the path; python in one interpreter, so that a block knows the names of those before; the c blocks
 of a page together are one program, compiled and run where the last of them stands. Files of examples/ that sh blocks name are
-copied there. A block marked text behind a block
+copied there. Of the guides (GUIDES) the python blocks alone run: those in C are parts of programs, or run by tests/install. A block marked text behind a block
 that ran is what that printed: words must agree, numbers within 1 % (or one of the last digit shown). Pictures of the page that a
 program draws (docs/images/NAME.png as NAME.png in the folder) go to OUT/pictures. With --update pages and docs/images take
 what was printed and drawn.
@@ -41,6 +41,9 @@ def environment(build):
     path = f"{build / 'programs'}{os.pathsep}{os.environ['PATH']}"
     return {"PATH": path, "PYTHONPATH": str(build / "python"), "LIBMPS_LIBRARY": str(library(build)), "MPLBACKEND": "Agg",
             "LD_LIBRARY_PATH": str(build / "src"), "OMP_WAIT_POLICY": "passive", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+GUIDES = ("fluid", "materials", "waves")
 
 
 class Page:
@@ -111,9 +114,12 @@ def agree(said, printed):
 def execute(page, build, update):
     """Runs the blocks; returns the page's text with what was printed, and complaints."""
     names = {"__name__": "__main__"}
+    runs = ("python",) if page.name in GUIDES else ("python", "sh", "c")
     last_c = max((k for k, b in enumerate(page.blocks) if b[0] == "c"), default=-1)
     printed, changes, wrong = None, [], []
     for k, (kind, text, span) in enumerate(page.blocks):
+        if kind not in (*runs, "text"):
+            continue
         if kind == "sh":
             printed = run_shell(text)
         elif kind == "python":
@@ -149,7 +155,7 @@ def run(page, build, out, update):
     print(f"docs: {page.name} took {time.monotonic() - start:.0f} s", flush=True)
     drawn = [p for p in page.pictures if (folder / p).exists()]
     programs = any(kind in ("sh", "python", "c") for kind, _, _ in page.blocks)
-    if programs and page.pictures and not drawn:
+    if programs and page.pictures and not drawn and page.name not in GUIDES:
         wrong.append(f"{page.path.relative_to(ROOT)}: its programs draw none of its pictures ({', '.join(page.pictures)})")
     for picture in drawn:
         shutil.copyfile(folder / picture, out / "pictures" / picture)
@@ -166,7 +172,7 @@ def run(page, build, out, update):
 def main():
     words = [word for word in sys.argv[1:] if word != "--update"]
     build, out = pathlib.Path(words[0]).resolve(), pathlib.Path(words[1]).resolve()
-    pages = words[2:] or ["extend", "gallery", "how"] + [p.relative_to(ROOT / "docs").with_suffix("").as_posix()
+    pages = words[2:] or ["extend", "gallery", "how", *GUIDES] + [p.relative_to(ROOT / "docs").with_suffix("").as_posix()
                           for folder in ("tutorial", "jobs") for p in sorted((ROOT / "docs" / folder).glob("*.md"))]
     variables = environment(build)
     os.environ.update(variables)

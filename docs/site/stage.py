@@ -52,6 +52,17 @@ def relink(text, path, here):
     return "".join(part if k % 2 else LINK.sub(new, part) for k, part in enumerate(parts))
 
 
+TWO = re.compile(r"^```python\n(?P<python>.*?)^```\n\n```c\n(?P<c>.*?)^```$", re.M | re.S)
+
+
+def tabs(text):
+    """A block of Python with the same in C behind it as two tabs; all of a page change together."""
+    def two(match):
+        items = [f":::{{tab-item}} {said}\n:sync: {kind}\n\n```{kind}\n{match[kind]}```\n:::\n" for said, kind in (("Python", "python"), ("C", "c"))]
+        return "::::{tab-set}\n:sync-group: language\n\n" + "\n".join(items) + "::::"
+    return TWO.sub(two, text)
+
+
 # Pages that lead to pages of their own folder: what is behind them in the navigation.
 TREES = {"verification/README.md": "wls-mpm soil liquefaction textbook pore-water explicit-mps implicit-elastic fluid ranks", "verification/wls-mpm.md": "wls-mpm/*",
          "verification/fluid.md": "fluid/*"}
@@ -74,7 +85,7 @@ def stage_pages(root, out):
     for path in [*pages, "CHANGELOG.md", "CONTRIBUTING.md", "docs/site/index.md", "examples/README.md"]:
         here = place_of(path)
         if here:
-            write(out / here, relink((root / path).read_text(), path, here) + tree(here))
+            write(out / here, tabs(relink((root / path).read_text(), path, here)) + tree(here))
     for picture in sorted(p for p in (root / "docs").rglob("*") if p.suffix in (".png", ".gif")):
         target = out / picture.relative_to(root / "docs")
         target.parent.mkdir(parents=True, exist_ok=True)

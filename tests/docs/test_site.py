@@ -94,6 +94,13 @@ class Pages(unittest.TestCase):
         kept = "```c\n[a](../CHANGELOG.md)\n```\n"
         self.assertEqual(stage.relink(kept, "docs/fluid.md", "fluid.md"), kept)
 
+    def test_python_and_c_side_by_side_are_tabs(self):
+        made = stage.tabs("a\n\n```python\nx = 1\n```\n\n```c\nint x = 1;\n```\n\nb\n")
+        self.assertEqual(made.count(":::{tab-item}"), 2)
+        self.assertLess(made.index(":sync: python\n\n```python\nx = 1\n```\n:::"), made.index(":sync: c\n\n```c\nint x = 1;\n```\n:::"))
+        apart = "```python\nx = 1\n```\n\nIn C:\n\n```c\nint x = 1;\n```\n"
+        self.assertEqual(stage.tabs(apart), apart)
+
     def test_a_program_without_a_place_in_the_gallery_is_found(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
