@@ -94,6 +94,21 @@ class Pages(unittest.TestCase):
         kept = "```c\n[a](../CHANGELOG.md)\n```\n"
         self.assertEqual(stage.relink(kept, "docs/fluid.md", "fluid.md"), kept)
 
+    def test_each_question_has_a_page_of_its_own_and_links_lead_there(self):
+        self.assertEqual(stage.relink("[a](how.md#how-do-i-cite-it)", "docs/fluid.md", "fluid.md"), "[a](how/cite-it.md)")
+        self.assertEqual(stage.relink("[a](#how-do-i-cite-it)", "docs/how.md", "how/begin.md"), "[a](cite-it.md)")
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            stage.stage_answers(ROOT, out)
+            index = (out / "how.md").read_text()
+            asked = re.findall(r"^### (.*)$", (ROOT / "docs/how.md").read_text(), re.M)
+            pages = {page.stem: page.read_text() for page in (out / "how").glob("*.md")}
+            self.assertEqual(sorted(text.partition("\n")[0][2:] for text in pages.values()), sorted(asked))
+            for name, text in pages.items():
+                self.assertIn(f"how/{name}\n", index)
+                for link in re.findall(r"\]\(([\w-]+\.md)\)", text):
+                    self.assertTrue((out / "how" / link).exists(), link)
+
     def test_python_and_c_side_by_side_are_tabs(self):
         made = stage.tabs("a\n\n```python\nx = 1\n```\n\n```c\nint x = 1;\n```\n\nb\n")
         self.assertEqual(made.count(":::{tab-item}"), 2)
