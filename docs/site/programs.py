@@ -43,7 +43,7 @@ def environment(build):
             "LD_LIBRARY_PATH": str(build / "src"), "OMP_WAIT_POLICY": "passive", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-GUIDES = ("bodies", "coupling", "dynamics", "elastic", "fluid", "materials", "mpm", "pore-water", "waves")
+GUIDES = ("bodies", "coupling", "dynamics", "elastic", "fluid", "materials", "mpm", "output", "pore-water", "signals", "waves")
 
 
 class Page:

@@ -93,6 +93,12 @@ def tabs(text):
     return TWO.sub(two, text)
 
 
+def first_program(root, text):
+    """The start page with the program of README.md, in Python and C."""
+    blocks = [re.search(rf"^```{kind}\n.*?^```$", (root / "README.md").read_text(), re.M | re.S)[0] for kind in ("python", "c")]
+    return text.replace("{first program}", "\n\n".join(blocks))
+
+
 # Pages that lead to pages of their own folder: what is behind them in the navigation.
 TREES = {"verification/README.md": "wls-mpm soil liquefaction textbook pore-water explicit-mps implicit-elastic fluid ranks", "verification/wls-mpm.md": "wls-mpm/*",
          "verification/fluid.md": "fluid/*"}
@@ -117,7 +123,7 @@ def stage_pages(root, out):
         if path == ANSWERS:
             stage_answers(root, out)
         elif here:
-            write(out / here, tabs(relink((root / path).read_text(), path, here)) + tree(here))
+            write(out / here, tabs(first_program(root, relink((root / path).read_text(), path, here))) + tree(here))
     for picture in sorted(p for p in (root / "docs").rglob("*") if p.suffix in (".png", ".gif")):
         target = out / picture.relative_to(root / "docs")
         target.parent.mkdir(parents=True, exist_ok=True)
