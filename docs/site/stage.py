@@ -52,11 +52,12 @@ def stage_answers(root, out):
         for question in questions:
             asked, _, answer = question.partition("\n")
             page = answer_page(re.sub(r"[^\w\- ]", "", asked.lower()).replace(" ", "-"))
+            answer = tabs(relink(answer, ANSWERS, page))
             if first and "```python" in answer:
                 answer += f"\nWhat a block does not make itself comes from [the first answer]({first}).\n"
             first = first or os.path.basename(page)
             pages.append(page[:-3])
-            write(out / page, f"# {asked}\n" + tabs(relink(answer, ANSWERS, page)))
+            write(out / page, f"# {asked}\n" + answer)
         index += f"\n## {title.strip()}\n\n```{{toctree}}\n:maxdepth: 1\n\n" + "\n".join(pages) + "\n```\n"
     write(out / "how.md", index)
 
