@@ -80,9 +80,9 @@ def run_shell(text):
 
 
 def run_python(text, names, label):
-    """What a block prints; `names` are kept from block to block."""
+    """What a block prints; `names` are kept from block to block. Progress and warnings go to a file."""
     printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
+    with contextlib.redirect_stdout(printed), open("progress.txt", "a") as progress, contextlib.redirect_stderr(progress):
         exec(compile(text, label, "exec"), names)
     return printed.getvalue()
 
