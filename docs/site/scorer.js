@@ -1,11 +1,12 @@
 // How the search of the site orders what it finds (html_search_scorer): answers before guides, guides before what lists or records.
 var Scorer = {
-  score: ([page, , , , score, , kind]) => {
+  score: ([page, title, , , score, , kind]) => {
     const places = [[/^how\//, 25], [/^(changelog|license|contributing|architecture)$/, -12], [/^(tutorial|jobs)\/|^[a-z-]+$/, 3], [/^(api|python-api)\//, -2],
       [/^verification\//, -4]];
     const place = places.find(([pattern]) => pattern.test(page));
-    // A name of the interface that was typed in full comes first.
-    return score + (kind === "object" ? 0 : place ? place[1] : 0);
+    if (kind === "object") return score; // a name of the interface that was typed in full comes first
+    const words = (new URLSearchParams(window.location.search).get("q") ?? "").toLowerCase().match(/\w{3,}/g) ?? [];
+    return score + (place ? place[1] : 0) + words.filter((word) => title.toLowerCase().includes(word)).length;
   },
   objNameMatch: 30,
   objPartialMatch: 6,
