@@ -83,7 +83,8 @@ def relink(text, path, here):
     return "".join(part if k % 2 else LINK.sub(new, part) for k, part in enumerate(parts))
 
 
-TWO = re.compile(r"^```python\n(?P<python>.*?)^```\n\n```c\n(?P<c>.*?)^```$", re.M | re.S)
+LINES = r"(?:(?!```).*\n)*"  # of one block
+TWO = re.compile(rf"^```python\n(?P<python>{LINES})```\n\n```c\n(?P<c>{LINES})```$", re.M)
 
 
 def tabs(text):

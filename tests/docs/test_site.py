@@ -115,6 +115,11 @@ class Pages(unittest.TestCase):
         self.assertLess(made.index(":sync: python\n\n```python\nx = 1\n```\n:::"), made.index(":sync: c\n\n```c\nint x = 1;\n```\n:::"))
         apart = "```python\nx = 1\n```\n\nIn C:\n\n```c\nint x = 1;\n```\n"
         self.assertEqual(stage.tabs(apart), apart)
+        between = "```python\nx = 1\n```\n\n## Next\n\n```python\ny = 1\n```\n\n```c\nint y = 1;\n```\n"
+        self.assertTrue(stage.tabs(between).startswith("```python\nx = 1\n```\n\n## Next\n\n::::{tab-set}"))
+        for path in sorted((ROOT / "docs").rglob("*.md")):  # no heading within a tab
+            for item in re.findall(r"^:::\{tab-item\}.*?^:::$", stage.tabs(path.read_text()), re.M | re.S):
+                self.assertNotRegex(item, r"(?m)^## ")
 
     def test_a_program_without_a_place_in_the_gallery_is_found(self):
         with tempfile.TemporaryDirectory() as folder:
