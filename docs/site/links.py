@@ -63,10 +63,22 @@ def reference_of(app):
     return found
 
 
+def python_of(app):
+    """Names of the Python package, whole (mps.Waves) and by their last word where only one class has it: (page, anchor)."""
+    found = {}
+    for name, _, _, page, anchor, _ in app.env.get_domain("py").get_objects():
+        for said in ("mps." + name.removeprefix("libmps."), name.split(".")[-1]):
+            found.setdefault(said, set()).add((page, anchor))
+    return {said: next(iter(places)) for said, places in found.items() if len(places) == 1}
+
+
+PYTHON_PAGES = ("how", "coming-from", "python")  # where names are those of the Python package
+
+
 def target_of(app, text, near, page):
     """Where a piece of code leads: ("page", page, anchor), ("listing", file, line), or None."""
     name = re.sub(r"\(\)$|\(.*\)$", "", text.strip())
-    known = app.mps_reference.get(name)
+    known = app.mps_reference.get(name) or (app.mps_python.get(name) if name.startswith("mps.") or page.split("/")[0] in PYTHON_PAGES else None)
     if known:
         return ("page", *known)
     header = re.fullmatch(r"(?:include/)?mps/(\w+)\.h", name)
@@ -80,7 +92,7 @@ def target_of(app, text, near, page):
     if file:
         return ("listing", file, 0)
     # Of words without an underscore only those of theory pages are functions; elsewhere they are fields and options.
-    if re.fullmatch(r"[a-z_]\w*", name) and ("_" in name or page.startswith("theory/")):
+    if re.fullmatch(r"[a-z_]\w*", name) and ("_" in name or page.startswith("theory/")) and page.split("/")[0] not in PYTHON_PAGES:
         place = app.mps_sources.function(name, near)
         if place:
             return ("listing", *place)
@@ -96,7 +108,7 @@ def link_code(app, doctree, page):
     if app.builder.format != "html":
         return
     if not hasattr(app, "mps_reference"):
-        app.mps_reference, app.mps_sources = reference_of(app), Sources()
+        app.mps_reference, app.mps_python, app.mps_sources = reference_of(app), python_of(app), Sources()
         app.mps_programs = {p.stem for p in (ROOT / "programs").glob("mps-*.c")}
     literals = [n for n in doctree.findall(nodes.literal)]
     files = [(n.parent, app.mps_sources.file(n.astext())) for n in literals]

@@ -4,7 +4,8 @@ usage: programs.py BUILD OUT [--update] [PAGE...]
 
 A page's blocks marked sh, python and c are run in their order, in a folder of their own below OUT/runs: sh by bash with
 the programs of BUILD on the path; python in one interpreter, so that a block knows the names of those before; the c blocks
-of a page together are one program, compiled and run where the last of them stands. A block marked text behind a block
+of a page together are one program, compiled and run where the last of them stands. Files of examples/ that sh blocks name are
+copied there. Of the guides (GUIDES) the python blocks alone run: those in C are parts of programs, or run by tests/install. A block marked text behind a block
 that ran is what that printed: words must agree, numbers within 1 % (or one of the last digit shown). Pictures of the page that a
 program draws (docs/images/NAME.png as NAME.png in the folder) go to OUT/pictures. With --update pages and docs/images take
 what was printed and drawn.
@@ -42,6 +43,9 @@ def environment(build):
             "LD_LIBRARY_PATH": str(build / "src"), "OMP_WAIT_POLICY": "passive", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
+GUIDES = ("bodies", "coupling", "dynamics", "elastic", "fluid", "materials", "mpm", "output", "pore-water", "signals", "waves")
+
+
 class Page:
     """A page and its programs."""
 
@@ -51,12 +55,16 @@ class Page:
         self.blocks = [(m[1], m[2], m.span(2)) for m in BLOCK.finditer(self.text)]
         self.pictures = re.findall(r"\]\((?:\.\./)*images/([\w-]+\.(?:png|gif))\)", self.text)
 
+    def examples(self):
+        """Files of examples/ that its sh blocks name."""
+        return [ROOT / name for name in sorted(set(re.findall(r"\bexamples/[\w.]+\w", " ".join(b[1] for b in self.blocks if b[0] == "sh"))))]
+
     def digest(self, build):
         """Changes with the blocks, libmps, its package and the programs that the page runs."""
         sha = hashlib.sha256(repr([b[:2] for b in self.blocks]).encode())
         sha.update(library(build).read_bytes())
         programs = sorted(set(re.findall(r"\bmps-[a-z-]+", " ".join(b[1] for b in self.blocks if b[0] in ("sh", "python")))))
-        for file in [build / "programs" / p for p in programs] + sorted((build / "python/libmps").glob("*.py")):
+        for file in [build / "programs" / p for p in programs] + sorted((build / "python/libmps").glob("*.py")) + self.examples():
             if file.is_file():
                 sha.update(file.read_bytes())
         return sha.hexdigest()
@@ -72,9 +80,9 @@ def run_shell(text):
 
 
 def run_python(text, names, label):
-    """What a block prints; `names` are kept from block to block."""
+    """What a block prints; `names` are kept from block to block. Progress and warnings go to a file."""
     printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
+    with contextlib.redirect_stdout(printed), open("progress.txt", "a") as progress, contextlib.redirect_stderr(progress):
         exec(compile(text, label, "exec"), names)
     return printed.getvalue()
 
@@ -106,9 +114,12 @@ def agree(said, printed):
 def execute(page, build, update):
     """Runs the blocks; returns the page's text with what was printed, and complaints."""
     names = {"__name__": "__main__"}
+    runs = ("python",) if page.name in GUIDES else ("python", "sh", "c")
     last_c = max((k for k, b in enumerate(page.blocks) if b[0] == "c"), default=-1)
     printed, changes, wrong = None, [], []
     for k, (kind, text, span) in enumerate(page.blocks):
+        if kind not in (*runs, "text"):
+            continue
         if kind == "sh":
             printed = run_shell(text)
         elif kind == "python":
@@ -136,12 +147,15 @@ def run(page, build, out, update):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     os.chdir(folder)
+    for file in page.examples():
+        pathlib.Path("examples").mkdir(exist_ok=True)
+        shutil.copy(file, "examples")
     start = time.monotonic()
     wrong = execute(page, build, update)
     print(f"docs: {page.name} took {time.monotonic() - start:.0f} s", flush=True)
     drawn = [p for p in page.pictures if (folder / p).exists()]
     programs = any(kind in ("sh", "python", "c") for kind, _, _ in page.blocks)
-    if programs and page.pictures and not drawn:
+    if programs and page.pictures and not drawn and page.name not in GUIDES:
         wrong.append(f"{page.path.relative_to(ROOT)}: its programs draw none of its pictures ({', '.join(page.pictures)})")
     for picture in drawn:
         shutil.copyfile(folder / picture, out / "pictures" / picture)
@@ -158,7 +172,7 @@ def run(page, build, out, update):
 def main():
     words = [word for word in sys.argv[1:] if word != "--update"]
     build, out = pathlib.Path(words[0]).resolve(), pathlib.Path(words[1]).resolve()
-    pages = words[2:] or ["extend", "gallery"] + [p.relative_to(ROOT / "docs").with_suffix("").as_posix()
+    pages = words[2:] or ["extend", "gallery", "how", *GUIDES] + [p.relative_to(ROOT / "docs").with_suffix("").as_posix()
                           for folder in ("tutorial", "jobs") for p in sorted((ROOT / "docs" / folder).glob("*.md"))]
     variables = environment(build)
     os.environ.update(variables)

@@ -33,13 +33,44 @@ def place_of(path):
     return None
 
 
+ANSWERS = "docs/how.md"  # one page in the repository, on the site one for each question, so that the search finds these
+
+
+def answer_page(anchor):
+    """The page of the question that has this anchor in docs/how.md."""
+    return f"how/{anchor.removeprefix('how-do-i-')}.md"
+
+
+def stage_answers(root, out):
+    """The list of questions, and a page for each."""
+    text = (root / ANSWERS).read_text()
+    groups = re.split(r"^## ", text, flags=re.M)
+    first, index = None, groups[0].strip() + "\n"
+    for group in groups[1:]:
+        title, *questions = re.split(r"^### ", group, flags=re.M)
+        pages = []
+        for question in questions:
+            asked, _, answer = question.partition("\n")
+            page = answer_page(re.sub(r"[^\w\- ]", "", asked.lower()).replace(" ", "-"))
+            answer = tabs(relink(answer, ANSWERS, page))
+            if first and "```python" in answer:
+                answer += f"\nWhat a block does not make itself comes from [the first answer]({first}).\n"
+            first = first or os.path.basename(page)
+            pages.append(page[:-3])
+            write(out / page, f"# {asked}\n" + answer)
+        index += f"\n## {title.strip()}\n\n```{{toctree}}\n:maxdepth: 1\n\n" + "\n".join(pages) + "\n```\n"
+    write(out / "how.md", index)
+
+
 def relink(text, path, here):
     """The links of the page `path`, which becomes `here`, for the site."""
     def new(match):
         said, target, anchor = match[1], match[2], match[3] or ""
-        if not target:
+        if not target and path != ANSWERS:
             return match[0]
-        file = os.path.normpath(os.path.join(os.path.dirname(path), target))
+        file = os.path.normpath(os.path.join(os.path.dirname(path), target)) if target else path
+        if file == ANSWERS and anchor:
+            return f"[{said}]({os.path.relpath(answer_page(anchor[1:]), os.path.dirname(here) or '.')})"
         page = place_of(file)
         if page:
             return f"[{said}]({os.path.relpath(page, os.path.dirname(here) or '.')}{anchor})"
@@ -50,6 +81,24 @@ def relink(text, path, here):
         return f"{said} (`{file}`)" if "`" not in said else said
     parts = re.split(r"(^```.*?^```\s*$)", text, flags=re.S | re.M)
     return "".join(part if k % 2 else LINK.sub(new, part) for k, part in enumerate(parts))
+
+
+LINES = r"(?:(?!```).*\n)*"  # of one block
+TWO = re.compile(rf"^```python\n(?P<python>{LINES})```\n\n```c\n(?P<c>{LINES})```$", re.M)
+
+
+def tabs(text):
+    """A block of Python with the same in C behind it as two tabs; all of a page change together."""
+    def two(match):
+        items = [f":::{{tab-item}} {said}\n:sync: {kind}\n\n```{kind}\n{match[kind]}```\n:::\n" for said, kind in (("Python", "python"), ("C", "c"))]
+        return "::::{tab-set}\n:sync-group: language\n\n" + "\n".join(items) + "::::"
+    return TWO.sub(two, text)
+
+
+def first_program(root, text):
+    """The start page with the program of README.md, in Python and C."""
+    blocks = [re.search(rf"^```{kind}\n.*?^```$", (root / "README.md").read_text(), re.M | re.S)[0] for kind in ("python", "c")]
+    return text.replace("{first program}", "\n\n".join(blocks))
 
 
 # Pages that lead to pages of their own folder: what is behind them in the navigation.
@@ -73,8 +122,10 @@ def stage_pages(root, out):
     pages = [p.relative_to(root).as_posix() for p in sorted((root / "docs").rglob("*.md"))]
     for path in [*pages, "CHANGELOG.md", "CONTRIBUTING.md", "docs/site/index.md", "examples/README.md"]:
         here = place_of(path)
-        if here:
-            write(out / here, relink((root / path).read_text(), path, here) + tree(here))
+        if path == ANSWERS:
+            stage_answers(root, out)
+        elif here:
+            write(out / here, tabs(first_program(root, relink((root / path).read_text(), path, here))) + tree(here))
     for picture in sorted(p for p in (root / "docs").rglob("*") if p.suffix in (".png", ".gif")):
         target = out / picture.relative_to(root / "docs")
         target.parent.mkdir(parents=True, exist_ok=True)

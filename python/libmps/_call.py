@@ -463,9 +463,9 @@ class _Fields:
 
 
 def _set_defaults(made, kind):
-    """The defaults of a struct that has some."""
+    """The defaults of a struct that has some: not those of mps_goda_def for the result mps_goda."""
     number = getattr(library, "MPS_DEF_" + tag(kind).removeprefix("mps_").removesuffix("_def").upper(), None)
-    if number is not None:
+    if number is not None and tag(kind) in _tables.DEFINITIONS:
         status = library.mps_def_init(number, made, ffi.sizeof(kind))
         if status != 0:
             raise failed("def_init()", status)

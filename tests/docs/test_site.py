@@ -94,6 +94,33 @@ class Pages(unittest.TestCase):
         kept = "```c\n[a](../CHANGELOG.md)\n```\n"
         self.assertEqual(stage.relink(kept, "docs/fluid.md", "fluid.md"), kept)
 
+    def test_each_question_has_a_page_of_its_own_and_links_lead_there(self):
+        self.assertEqual(stage.relink("[a](how.md#how-do-i-cite-it)", "docs/fluid.md", "fluid.md"), "[a](how/cite-it.md)")
+        self.assertEqual(stage.relink("[a](#how-do-i-cite-it)", "docs/how.md", "how/begin.md"), "[a](cite-it.md)")
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            stage.stage_answers(ROOT, out)
+            index = (out / "how.md").read_text()
+            asked = re.findall(r"^### (.*)$", (ROOT / "docs/how.md").read_text(), re.M)
+            pages = {page.stem: page.read_text() for page in (out / "how").glob("*.md")}
+            self.assertEqual(sorted(text.partition("\n")[0][2:] for text in pages.values()), sorted(asked))
+            for name, text in pages.items():
+                self.assertIn(f"how/{name}\n", index)
+                for link in re.findall(r"\]\(([\w-]+\.md)\)", text):
+                    self.assertTrue((out / "how" / link).exists(), link)
+
+    def test_python_and_c_side_by_side_are_tabs(self):
+        made = stage.tabs("a\n\n```python\nx = 1\n```\n\n```c\nint x = 1;\n```\n\nb\n")
+        self.assertEqual(made.count(":::{tab-item}"), 2)
+        self.assertLess(made.index(":sync: python\n\n```python\nx = 1\n```\n:::"), made.index(":sync: c\n\n```c\nint x = 1;\n```\n:::"))
+        apart = "```python\nx = 1\n```\n\nIn C:\n\n```c\nint x = 1;\n```\n"
+        self.assertEqual(stage.tabs(apart), apart)
+        between = "```python\nx = 1\n```\n\n## Next\n\n```python\ny = 1\n```\n\n```c\nint y = 1;\n```\n"
+        self.assertTrue(stage.tabs(between).startswith("```python\nx = 1\n```\n\n## Next\n\n::::{tab-set}"))
+        for path in sorted((ROOT / "docs").rglob("*.md")):  # no heading within a tab
+            for item in re.findall(r"^:::\{tab-item\}.*?^:::$", stage.tabs(path.read_text()), re.M | re.S):
+                self.assertNotRegex(item, r"(?m)^## ")
+
     def test_a_program_without_a_place_in_the_gallery_is_found(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
@@ -121,6 +148,25 @@ class Pages(unittest.TestCase):
             here = stage.place_of(path.relative_to(ROOT).as_posix())
             if here and here != "index.md" and not here.startswith("verification/"):
                 self.assertIn(here[:-3], listed)
+
+
+    def test_blocks_that_do_not_run_on_the_page_of_answers_stand_where_they_run(self):
+        page = (ROOT / "docs/how.md").read_text()
+        clients = (ROOT / "docs/clients.md").read_text()  # whose blocks install/clients runs
+        blocks = re.findall(r"^```(\w+)\n(.*?)^```$", page, re.M | re.S)
+        self.assertGreater(sum(kind in ("python", "sh", "c") for kind, _ in blocks), 40)
+        for kind, text in blocks:
+            if kind not in ("python", "sh", "c", "text"):
+                self.assertIn(f"```{kind}\n{text}```", clients)
+
+    def test_every_question_has_a_short_answer_with_code(self):
+        answers = re.split(r"^### ", (ROOT / "docs/how.md").read_text(), flags=re.M)[1:]
+        self.assertGreaterEqual(len(answers), 30)
+        for answer in answers:
+            self.assertRegex(answer, r"^How do I [^\n]+\?\n")
+            self.assertIn("\n```", answer)
+            for kind, text in re.findall(r"^```(\w+)\n(.*?)^```$", answer, re.M | re.S):
+                self.assertLessEqual(len(text.splitlines()), 12, answer[:60])
 
 
 class Options(unittest.TestCase):
