@@ -3,7 +3,9 @@ forms, readers of files, models against theory on other grids than the worked jo
 
 import importlib.util
 import json
+import os
 import pathlib
+import re
 import tempfile
 import unittest
 
@@ -356,6 +358,8 @@ class Files(unittest.TestCase):
                     sand.remove(ids=[0, 5])
                 recorder.write(solver.time)
             recorder.close()
+            names = ("position", "velocity", "stress", "density", "id")
+            kept = {name: np.array(sand[name]) for name in names}  # in the order of the file; saving may sort the set
             solver.save(f"{folder}/a.h5")
             if not has("h5py"):
                 for call in (files.Series, files.read_checkpoint):
@@ -365,8 +369,8 @@ class Files(unittest.TestCase):
             with files.Series(f"{folder}/a.vtkhdf") as series:
                 self.assertEqual((len(series), series.dim, series.units["stress"]), (3, 2, "Pa"))
                 last = series[-1]
-                for name in ("position", "velocity", "stress", "density", "id"):
-                    np.testing.assert_array_equal(last[name], np.array(sand[name]))
+                for name in names:
+                    np.testing.assert_array_equal(last[name], kept[name])
                 self.assertEqual((last.time, series.at(0.19).time, round(last.spacing, 6)), (solver.time, 0.2, 0.1))
                 self.assertRaises(IndexError, series.__getitem__, 3)
                 if has("xarray"):
@@ -422,6 +426,58 @@ class Pictures(unittest.TestCase):
                 plot.film(f"{folder}/a.gif", series, ("velocity", 1), dpi=50)
                 self.assertEqual(Image.open(f"{folder}/a.gif").n_frames, 3)
                 self.assertRaises(ValueError, plot.film, f"{folder}/a.txt", series)
+
+
+class Guide(unittest.TestCase):
+    """The lines of docs/python.md on histories, motions and files run."""
+
+    def blocks(self, title):
+        page = pathlib.Path(__file__).resolve().parents[2].joinpath("docs/python.md").read_text(encoding="utf-8")
+        part = page.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+        found = re.findall(r"^```python\n(.*?)^```$", part, re.M | re.S)
+        self.assertTrue(found, title)
+        return found
+
+    def run_in(self, folder, title, names):
+        before = os.getcwd()
+        os.chdir(folder)
+        try:
+            for block in self.blocks(title):
+                exec(compile(block, f"docs/python.md, {title}", "exec"), names)
+        finally:
+            os.chdir(before)
+        return names
+
+    def test_lines(self):
+        with tempfile.TemporaryDirectory() as folder:
+            sand, solver = falling(gravity=[0, -0.1, 0])
+            body = mps.Disc(0.2, position=[0.3, 9.0], context=sand.context)
+            solver.add_contact(body)
+            number = solver.add_boundary(ids=sand.select_box([0, 5], [0.2, 5.2]))
+            names = {"solver": solver, "sand": sand, "body": body, "number": number, "mps": mps}
+            if not (has("pandas") and has("xarray")):
+                with self.assertRaisesRegex(ImportError, "pip install"):
+                    self.run_in(folder, "Histories", names)
+            else:
+                self.run_in(folder, "Histories", names)
+                self.assertTrue(pathlib.Path(folder, "force.csv").exists())
+            self.assertEqual((len(names["energy"]), names["force"].units["force_x"]), (2001, "N"))
+            t, a = signals.artificial(8, 0.01, 1.0)
+            pathlib.Path(folder, "quake.AT2").write_text("time_s,acceleration_m_s2\n" + "".join(f"{x:.4f},{y:.6f}\n" for x, y in zip(t, a)))
+            grid = 0.005 * np.arange(1599)
+            names.update(surface=np.interp(grid, t, 2 * a), outcrop=np.interp(grid, t, a))
+            found = self.run_in(folder, "Motions", names)
+            self.assertLess(abs(found["ratio"][100:1000] / 2 - 1).max(), 1e-6)
+            pathlib.Path(folder, "out/wall").mkdir(parents=True)
+            pathlib.Path(folder, "out/footing").mkdir()
+            pathlib.Path(folder, "out/wall/pressure.csv").write_text("path_mm,force_N\n0,1\n")
+            pathlib.Path(folder, "out/footing/summary.json").write_text('{"q_over_c": 5.1}')
+            if mps.library_has("hdf5") and has("h5py") and has("xarray") and has("pandas") and has("pyvista"):
+                recorder = mps.Recorder(sand, path=f"{folder}/pile.vtkhdf")
+                recorder.write(solver.time)
+                recorder.close()
+                solver.save(f"{folder}/pile.h5")
+                self.assertEqual(self.run_in(folder, "Files of runs and programs", names)["state"]["time"], solver.time)
 
 
 class Models(unittest.TestCase):
