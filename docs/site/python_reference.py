@@ -212,7 +212,9 @@ def stage(root, write):
         lines += [f".. py:data:: {name}", "   :no-contents-entry:", "", *body(said, 3)]
     write("python-api/constants.rst", titled("Constants", *lines))
     for name in MODULES:
-        write(f"python-api/{name}.rst", module_lines(root, name))
+        text = module_lines(root, name)
+        count += len(re.findall(r"^ *\.\. py:(?:method|property|function)::", text, re.M))
+        write(f"python-api/{name}.rst", text)
     rest = [(name, "module of Python above the layer") for name in MODULES] + [("functions", f"{len(functions)} functions without an object"), ("results", f"{len(results)} structs that calls return"),
             ("enumerations", f"{len(enums)} lists of choices"), ("base", "errors, fields of particles, edits, what all objects have"),
             ("constants", "numbers")]
