@@ -70,7 +70,6 @@ class HistoryRows(Rows):
     def _created(self, bound):
         self._names = ("t", *bound["columns"])
         self._units = ("s", *(bound["units"] or [""] * len(bound["columns"])))
-        self._alive = [held for held in self._alive if held is not bound["solver"]]  # a history may outlive its solver
 
     def __len__(self):
         return self.count
@@ -120,7 +119,7 @@ def _at_particle(particles, field, at):
     if mark < 0:
         raise ArgumentError("record(): there is no particle")
 
-    def ask():
+    def ask(_solver):
         row = numpy.flatnonzero(particles["id"] == mark)
         if not len(row):
             raise StaleError(f"the particle {mark} of the history has been removed")
@@ -131,7 +130,7 @@ def _at_particle(particles, field, at):
 
 
 def source(solver, what, at):
-    """(function without arguments, unit) of the quantity that record() is given."""
+    """(function of the solver, unit) of the quantity that record() is given. None keeps the solver, which keeps them."""
     if at is not None:
         if callable(what) or isinstance(what, int):
             raise TypeError("record(): 'at' is for a field of the particles by its name")
@@ -142,11 +141,11 @@ def source(solver, what, at):
                                 f"(lambda: solver.particles[{what!r}].mean(axis=0))")
         ask = operator.attrgetter(what)
         ask(solver)  # AttributeError: which name there is not, with the nearest
-        return lambda: ask(solver), "s" if what in ("time", "dt") else ""
+        return ask, "s" if what in ("time", "dt") else ""
     if isinstance(what, int) and not isinstance(what, bool):
-        return lambda: solver.get_reaction(what).force, "N"
+        return lambda s: s.get_reaction(what).force, "N"
     if hasattr(type(what), "get_reaction"):  # a body or contact
-        return lambda: what.get_reaction().force, "N"
+        return lambda _s: what.get_reaction().force, "N"
     if not callable(what):
         raise TypeError(f"record(): {what!r} is no function, name of a quantity, number of a boundary, body or contact")
     try:
@@ -154,7 +153,7 @@ def source(solver, what, at):
                     for p in inspect.signature(what).parameters.values())
     except (TypeError, ValueError):  # built in
         takes = 0
-    return (lambda: what(solver)) if takes else what, ""
+    return what if takes else lambda _s: what(), ""
 
 
 class Recording:
@@ -182,7 +181,7 @@ class Recording:
         if not (every >= 0 and math.isfinite(every)):
             raise ArgumentError(f"record(): 'every' is {every!r}, must be a time above 0 s")
         word = re.sub(r"[^\w-]", "_", name)
-        columns, first = _named(word, ask())
+        columns, first = _named(word, ask(self))
         if not columns:
             raise TypeError(f"record(): {name!r} gives no numbers")
         history = _made(self, word, columns, [known if unit is None else unit] * len(columns))
@@ -195,7 +194,7 @@ class Recording:
     def _look(self):
         """Adds the rows that are due now."""
         for record in self._records:
-            record.look(self.time)
+            record.look(self)
 
     def _pace(self):
         """Steps between looks: explicit dynamics and implicit elasticity, whose steps are equal, need not stop at each."""
@@ -224,9 +223,12 @@ class Recording:
 
 
 def _made(solver, word, columns, units):
+    """A history that belongs to its solver, and may outlive it."""
     from . import _objects
 
-    return _objects.classes["history"](solver, word, columns, units)
+    made = _objects.classes["history"](solver, word, columns, units)
+    made._alive = [held for held in made._alive if held is not solver]
+    return made
 
 
 class _Record:
@@ -243,17 +245,17 @@ class _Record:
         rows = seen.shape[0]
         return ffi.cast("double *", seen.data)[(rows - 1) * seen.stride[0]] if rows else -math.inf
 
-    def look(self, now):
+    def look(self, solver):
         if self.history._pointer is None:  # closed by its user
             return
-        last = self.last()
+        last, now = self.last(), solver.time
         if now <= last:
             return
         if self.every > 0 and math.isfinite(last):
             place = [math.floor((t - self.start) / self.every * (1 + 1e-12) + 1e-9) for t in (last, now)]
             if place[0] == place[1]:
                 return
-        columns, values = _named(self.word, self.ask())
+        columns, values = _named(self.word, self.ask(solver))
         if columns != self.columns:
             raise TypeError(f"the source of the history {self.word!r} gives {', '.join(columns)}, and gave {', '.join(self.columns)}")
         self.history.record(math.nan, values)

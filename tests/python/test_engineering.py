@@ -125,6 +125,21 @@ class Histories(unittest.TestCase):
         solver.close()
         self.assertEqual(len(kept["kept"]), 6)
 
+    def test_a_solver_with_histories_ends_with_its_last_name(self):
+        sand, solver = falling()
+        h = solver.record("v", "velocity", at=[0, 5])
+        solver.record("totals.kinetic")
+        solver.record("mean", lambda: sand["velocity"].mean(axis=0))
+        solver.step()
+        del solver
+        again = mps.Mpm(sand, mps.LinearElastic(1e6, 0.3, context=sand.context), cell=0.2, dt=1e-3)  # the set is free
+        again.step()
+        self.assertEqual(len(h), 2)
+        other = mps.History(again, "other", ["mass"], ["kg"])  # by the header: the source gets the solver
+        other.set_source("mass", lambda s: s.totals.mass)
+        other.record(0.5, [])
+        self.assertAlmostEqual(other["mass"][0], 0.24 * 1800)
+
     def test_tables_elsewhere(self):
         _, solver = falling()
         h = solver.record("v", "velocity", at=[0, 5], every=0.01)
