@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy
 
+import libmps as mps
+
 from . import theory
 from ._errors import ArgumentError
-from ._quantities import number
+from .theory import _si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,10 +29,6 @@ if TYPE_CHECKING:
     from . import Array, Body, Context, Dynamics, Fluid, History, Material, Mpm, Particles
 
     Value = Union[float, str]
-
-
-def _si(value: Any, unit: str, word: str) -> float:
-    return float(number(value, unit, word))
 
 
 class Layer(NamedTuple):
@@ -43,7 +41,22 @@ class Layer(NamedTuple):
     k0: float = 0.5
 
 
-class Ground:
+class Model:
+    """What the models have in common: `particles` and `solver`, whose run() and record() are theirs too."""
+
+    particles: Particles
+    solver: Any
+
+    def run(self, t_end: Value, **more: Any) -> None:
+        """solver.run."""
+        self.solver.run(t_end, **more)
+
+    def record(self, name: str, what: Any = None, **more: Any) -> History:
+        """solver.record."""
+        return self.solver.record(name, what, **more)
+
+
+class Ground(Model):
     """Level ground of layers in plane strain (WLS-MPM) from x = 0 to its length and from y = 0 up to its surface, at rest
     under its weight and a surcharge, between smooth sides.
 
@@ -54,21 +67,16 @@ class Ground:
     gravity    m/s2; 0: without weight, as in the theory of bearing capacity
     base       "roller": smooth; "held": rough
     room       m of the grid in front of x = 0, which a wall needs; 0: a smooth side, or a plane of symmetry, at x = 0
-    more       keywords of Mpm
+    more       keywords of Mpm"""
 
-    `particles`, `solver`; run() and record() are the solver's."""
-
-    particles: Particles
     solver: Mpm
 
     def __init__(self, size: Sequence[Value], cell: Value, layers: Sequence[Layer], *, surcharge: Value = 0.0, gravity: Value = 9.81,
                  base: str = "roller", room: Value = 0.0, context: Context | None = None, **more: Any) -> None:
-        import libmps as mps
-
         self.length, self.height = (_si(side, "m", "size") for side in size)
         self.cell, g, q = _si(cell, "m", "cell"), _si(gravity, "m/s2", "gravity"), _si(surcharge, "Pa", "surcharge")
         thickness = [_si(layer.thickness, "m", "thickness") for layer in layers]
-        self.particles = mps.Particles(spacing=self.cell / 2, context=context)
+        self.particles = mps.Particles(spacing=self.cell / 2, context=context or layers[0].law.context)
         self.particles.fill_box([0, 0], [self.length, self.height])
         bottoms = numpy.cumsum(thickness)
         bottoms[-1] = numpy.inf
@@ -91,8 +99,6 @@ class Ground:
             self.solver.add_load(ids=top, traction=[0, -q])
 
     def _moving(self, body: Body, component: int, speed: float, ramp: float, factor: float, contact: dict[str, Any]) -> Body:
-        import libmps as mps
-
         body.drive(component, mps.Table("velocity", [0, ramp, ramp + 1e6], [0, speed, speed], context=self.particles.context), factor)
         self.solver.add_contact(body, **{"corner": 0.6 * self.cell, **contact})
         return body
@@ -101,8 +107,6 @@ class Ground:
         """A rigid wall at x = 0 that moves at `speed` (m/s) into the ground (passive), or away from it (negative: active),
         after `ramp` (s) of growing speed; friction=0 and other keywords of add_contact. Returns the body: its reaction in x
         is minus the ground's pressure."""
-        import libmps as mps
-
         v, h, thick = _si(speed, "m/s", "speed"), self.height, 2 * self.cell
         body = mps.Polygon([[0, -h / 2], [0, 1.5 * h], [-thick, 1.5 * h], [-thick, -h / 2]], context=self.particles.context)
         return self._moving(body, 0, abs(v), _si(ramp, "s", "ramp"), 1.0 if v > 0 else -1.0, contact)
@@ -110,39 +114,24 @@ class Ground:
     def footing(self, width: Value, speed: Value, *, ramp: Value = 0.01, **contact: Any) -> Body:
         """Half of a rigid strip `width` (m) wide on the surface, whose middle is at x = 0, a plane of symmetry; it sinks at
         `speed` (m/s). friction=0 is smooth, 10 rough. Returns the body: its reaction in y is that of half of the strip."""
-        import libmps as mps
-
         b = _si(width, "m", "width")
         body = mps.Box(b, b / 2, position=[0, self.height + b / 4], context=self.particles.context)
         return self._moving(body, 1, _si(speed, "m/s", "speed"), _si(ramp, "s", "ramp"), -1.0, contact)
 
-    def run(self, t_end: Value, **more: Any) -> None:
-        """solver.run."""
-        self.solver.run(t_end, **more)
 
-    def record(self, name: str, what: Any = None, **more: Any) -> History:
-        """solver.record."""
-        return self.solver.record(name, what, **more)
-
-
-class Site:
+class Site(Model):
     """Level layers on a half space of rock, a column of explicit dynamics that repeats itself across: shear waves rise
     through it as through endless layers. The surface is y = 0.
 
     layers   from the surface down: thickness (m), vs (m/s), density (kg/m3), damping (ratio; default 0), vp (default 2 vs)
     rock     vs, density (vp)
     spacing  of the particles, m: at most a tenth of the shortest wave
-    f1, f2   Hz, at which Rayleigh damping has the ratios given
+    f1, f2   Hz, at which Rayleigh damping has the ratios given"""
 
-    `particles`, `solver`."""
-
-    particles: Particles
     solver: Dynamics
 
     def __init__(self, layers: Sequence[Mapping[str, Any]], rock: Mapping[str, Any], spacing: Value, *, f1: float = 1.0, f2: float = 8.0,
                  context: Context | None = None, **more: Any) -> None:
-        import libmps as mps
-
         self.layers, self.rock, self.f1, self.f2 = [dict(layer) for layer in layers], dict(rock), f1, f2
         d, depths = _si(spacing, "m", "spacing"), numpy.cumsum([_si(layer["thickness"], "m", "thickness") for layer in layers])
         self.depth = float(depths[-1])
@@ -167,8 +156,6 @@ class Site:
     def shake(self, t: ArrayLike, outcrop: ArrayLike) -> History:
         """The horizontal acceleration (m/s2) that the rock would have without the layers: half of it rises as a wave. Returns
         the history of the surface's acceleration, which run() fills: surface["a"]."""
-        import libmps as mps
-
         times, d = numpy.asarray(t, float), self.particles.spacing
         early = times - 0.5 * d / _si(self.rock["vs"], "m/s", "vs")  # it passes the middle of the row of rock
         wave = mps.Table("acceleration", early, 0.5 * numpy.asarray(outcrop, float), context=self.particles.context)
@@ -193,28 +180,17 @@ class Site:
         found = numpy.fft.irfft(moved * self.transfer(numpy.fft.rfftfreq(len(grid), step)), len(grid))
         return grid[grid <= t_end], found[grid <= t_end]
 
-    def run(self, t_end: Value, **more: Any) -> None:
-        """solver.run."""
-        self.solver.run(t_end, **more)
 
-    def record(self, name: str, what: Any = None, **more: Any) -> History:
-        """solver.record."""
-        return self.solver.record(name, what, **more)
-
-
-class Tank:
+class Tank(Model):
     """Water at rest in a tank from x = 0 to `length` and y = 0 to `depth` (m), between a bed and two walls.
 
     more  keywords of Fluid, such as density and viscosity
 
-    `particles`, `solver`; `bed`, `left`, `right` are the numbers of the boundaries, for record() and get_reaction()."""
+    `bed`, `left`, `right` are the numbers of the boundaries, for record() and get_reaction()."""
 
-    particles: Particles
     solver: Fluid
 
     def __init__(self, length: Value, depth: Value, spacing: Value, *, context: Context | None = None, **more: Any) -> None:
-        import libmps as mps
-
         self.length, self.depth = _si(length, "m", "length"), _si(depth, "m", "depth")
         self.particles = mps.Particles(spacing=_si(spacing, "m", "spacing"), context=context)
         self.particles.fill_box([0, 0], [self.length, self.depth])
@@ -226,8 +202,6 @@ class Tank:
     def drop(self, width: Value, height: Value, mass: Value, *, above: Value = 0.0, damping: float = 0.0) -> Body:
         """A box of `mass` (kg for a metre of tank) that falls onto the middle of the water from `above` (m) over it; `damping`
         (1/s) of its motion up and down. Returns the body."""
-        import libmps as mps
-
         w, h, m = _si(width, "m", "width"), _si(height, "m", "height"), _si(mass, "kg", "mass")
         place = [self.length / 2, self.depth + h / 2 + _si(above, "m", "above")]
         body = mps.Box(w, h, motion="free", mass=m, inertia=[0, 0, m * (w * w + h * h) / 12], position=place,
@@ -241,11 +215,3 @@ class Tank:
         x = x[abs(x - self.length / 2) > away]
         levels = self.solver.get_levels(x)
         return float(numpy.nanmean(levels))
-
-    def run(self, t_end: Value, **more: Any) -> None:
-        """solver.run."""
-        self.solver.run(t_end, **more)
-
-    def record(self, name: str, what: Any = None, **more: Any) -> History:
-        """solver.record."""
-        return self.solver.record(name, what, **more)

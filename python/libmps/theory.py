@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy
 
+import libmps
+
 from ._quantities import number
 
 if TYPE_CHECKING:
@@ -333,8 +335,6 @@ def goda(**wave_and_wall: Any) -> Any:
     """Pressures (Pa), force (N/m) and moment (N m/m) of the highest wave on a caisson, by the library's own evaluation
     of Y. Goda, Proc. 14th Int. Conf. Coastal Eng. (1974) 1702-1720: keywords of libmps.goda_evaluate (height, period, depth,
     crest, width, ...)."""
-    import libmps
-
     return libmps.goda_evaluate(**wave_and_wall)
 
 
