@@ -61,9 +61,19 @@ class Writer:
         return "_" + name if name[0].isdigit() else name
 
     def words(self, text):
-        """A comment with the names that Python has."""
+        """A comment with the names that Python has; an end alone, as in "mps_body_create_box, _polygon", is a whole name before."""
+        text = re.sub(r"\b(mps_\w+)((?:(?:,| and| or)\s+_\w+)+)", self.whole, text)
         text = re.sub(r"\bmps_\w+|\bMPS_\w+", lambda m: self.spoken.get(m[0], m[0].removeprefix("MPS_") if m[0].isupper() else m[0]), text)
         return re.sub(r"\bNULL\b", "None", text)
+
+    def whole(self, found):
+        parts = found[1].split("_")
+        starts = ["_".join(parts[:k]) for k in range(len(parts) - 1, 0, -1)]
+
+        def name(end):
+            return next((start + end[0] for start in starts if start + end[0] in self.spoken), end[0])
+
+        return found[1] + re.sub(r"_\w+", name, found[2])
 
     def result(self, function):
         if function.form == "class":

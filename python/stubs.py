@@ -1,5 +1,6 @@
 """The stubs of the package, from what make_docs.py has found."""
 
+import ast
 import pathlib
 import re
 import textwrap
@@ -107,6 +108,14 @@ KINDS = re.search(r"^class ArgumentError.*?(?=^KINDS =)", KINDS, re.M | re.S)[0]
 HEAD = HEAD.replace("@errors@", KINDS.strip().replace("\n\n\n", "\n\n"))
 
 
+def docstring(file, name, method):
+    """A docstring of the package's own, as lines of a stub."""
+    tree = ast.parse((pathlib.Path(__file__).parent / "libmps" / file).read_text())
+    of = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == name)
+    text = ast.get_docstring(next(node for node in of.body if isinstance(node, ast.FunctionDef) and node.name == method))
+    return [line and f"    {line}" for line in f'"""{text}"""'.splitlines()]
+
+
 EXTRA = {
     "context": ["def __init__(self, *, {context}) -> None: ..."],
     "particles": ["def __len__(self) -> int: ...", "def __getitem__(self, name: str | bytes | tuple[str, int], /) -> Field: ...",
@@ -115,6 +124,13 @@ EXTRA = {
                   "def __iter__(self) -> Iterator[str]: ...", "fields: dict[str, FieldInfo]",
                   "def edit(self, name: str) -> Edit: ...", "def to_pandas(self, *names: str) -> Any: ...",
                   "def to_xarray(self, *names: str) -> Any: ..."],
+    "solver": ["def record(self, name: str, what: Any = None, *, every: float | str | None = None, at: Sequence[float] | None = None,",
+               "           unit: str | None = None, path: str | PathLike[str] | None = None) -> History:",
+               *docstring("_history.py", "Recording", "record")],
+    "history": ["columns: tuple[str, ...]", "units: dict[str, str]", "t: Array", "values: Array",
+                "def __getitem__(self, name: str, /) -> Array: ...", "def __contains__(self, name: object, /) -> bool: ...",
+                "def __iter__(self) -> Iterator[str]: ...", "def __len__(self) -> int: ...",
+                "def to_pandas(self) -> Any: ...", "def to_xarray(self) -> Any: ..."],
 }
 #: Parents of the classes of objects; attributes of the solvers that the table of C does not have.
 PARENTS = {kind: "Solver" for kind in SOLVERS}
@@ -184,7 +200,7 @@ class Stubs:
         mine = [f for f in interface.functions.values() if f.owner == kind]
         setters = {f.word: f for f in mine if f.form == "setter"}
         out = [f"class {class_name(kind)}({PARENTS.get(kind, 'Object')}):"]
-        out += ["    " + line.format(context=context) for line in EXTRA.get(kind, [])]
+        out += [line and "    " + line.replace("{context}", context) for line in EXTRA.get(kind, [])]
         makers = [f for f in interface.functions.values() if f.form == "class" and f.made == kind]
         own = [f for f in makers if f.word == class_name(kind)]
         out += [self.function(f, "    ") for f in own]

@@ -119,6 +119,41 @@ def constants(tree):
             yield node.target.id, behind.value.value if isinstance(behind, ast.Expr) and isinstance(behind.value, ast.Constant) else ""
 
 
+#: Modules above the layer, which are Python alone.
+MODULES = ("models", "theory", "signals", "files", "plot", "compiled")
+
+
+def module_lines(root, name):
+    """A module of the package: its text, then what it defines for others."""
+    tree = ast.parse((root / f"python/libmps/{name}.py").read_text())
+    title = f"libmps.{name}"
+    lines = [title, "=" * len(title), "", f".. py:module:: libmps.{name}", "", *plain(ast.get_docstring(tree), 0)]
+    for node in tree.body:
+        if getattr(node, "name", "_").startswith("_"):
+            continue
+        if isinstance(node, ast.FunctionDef):
+            lines += [f".. py:function:: {node.name}{signature(node)}{returned(node)}", "", *plain(ast.get_docstring(node), 3)]
+        elif isinstance(node, ast.ClassDef):
+            made = next((item for item in node.body if isinstance(item, ast.FunctionDef) and item.name == "__init__"), None)
+            lines += [f".. py:class:: {node.name}{signature(made) if made else ''}", "", *plain(ast.get_docstring(node), 3)]
+            for item in node.body:
+                if isinstance(item, ast.FunctionDef) and not item.name.startswith("_"):
+                    kind = "property" if is_property(item) else "method"
+                    head = "" if kind == "property" else f"{signature(item)}{returned(item)}"
+                    lines += [f"   .. py:{kind}:: {item.name}{head}", "      :no-contents-entry:", "", *plain(ast.get_docstring(item), 6)]
+    return "\n".join(lines) + "\n"
+
+
+def plain(text, indent):
+    """A docstring with its lines as they stand: paragraphs, and columns of names or programs as literal blocks."""
+    lines = []
+    for part in re.split(r"\n\s*\n", (text or "").strip()):
+        rows = part.splitlines()
+        column = any(re.match(r"\w[\w, ]*\S {2,}\S|\s{2,}\S", row) for row in rows)
+        lines += ["::", "", *(f"   {row}" for row in rows), ""] if column else [headers.escape(row) for row in rows] + [""]
+    return [" " * indent + line if line else "" for line in lines]
+
+
 INDEX = """Python reference
 ================
 
@@ -176,7 +211,11 @@ def stage(root, write):
     for name, said in constants(tree):
         lines += [f".. py:data:: {name}", "   :no-contents-entry:", "", *body(said, 3)]
     write("python-api/constants.rst", titled("Constants", *lines))
-    rest = [("functions", f"{len(functions)} functions without an object"), ("results", f"{len(results)} structs that calls return"),
+    for name in MODULES:
+        text = module_lines(root, name)
+        count += len(re.findall(r"^ *\.\. py:(?:method|property|function)::", text, re.M))
+        write(f"python-api/{name}.rst", text)
+    rest = [(name, "module of Python above the layer") for name in MODULES] + [("functions", f"{len(functions)} functions without an object"), ("results", f"{len(results)} structs that calls return"),
             ("enumerations", f"{len(enums)} lists of choices"), ("base", "errors, fields of particles, edits, what all objects have"),
             ("constants", "numbers")]
     rows += [f"   * - :doc:`{name}`\n     - {what}" for name, what in rest]

@@ -12,6 +12,7 @@ import tempfile
 
 import equations
 import headers
+import notebooks
 import options
 import python_reference
 
@@ -131,8 +132,28 @@ def stage_pages(root, out):
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(picture, target)
     write(out / "license.md", "# Licence\n\n```text\n" + (root / "LICENSE").read_text().strip() + "\n```\n")
-    write(out / "cite.md", "# How to cite\n\nThe file `CITATION.cff` in the root of the sources, as reference managers read it:\n\n```yaml\n"
-          + (root / "CITATION.cff").read_text().strip() + "\n```\n")
+    given = (root / "CITATION.cff").read_text().strip()
+    write(out / "cite.md", f"# How to cite\n\nlibmps, and the paper of the method that you used. For LaTeX:\n\n```bibtex\n{bibtex(given)}```\n\nThe file "
+          f"`CITATION.cff` in the root of the sources, as reference managers read it:\n\n```yaml\n{given}\n```\n")
+
+
+def bibtex(text):
+    """The entries of a CITATION.cff for BibTeX: the software, then the papers of its methods."""
+    import yaml  # here, as tests of the rest need no package
+    cff, entries = yaml.safe_load(text), []
+    for entry in [cff, *cff.get("references", [])]:
+        software = entry is cff
+        authors = " and ".join("{" + a["name"] + "}" if "name" in a else f"{a['family-names']}, {a['given-names']}" for a in entry["authors"])
+        year = entry.get("year") or str(entry.get("date-released", ""))[:4]
+        key = "libmps" if software else f"{entry['authors'][0]['family-names'].lower()}{year}"
+        fields = {"author": authors, "title": "{" + entry["title"] + "}", "year": year, "version": entry.get("version"),
+                  "journal": entry.get("journal"), "institution": entry.get("institution", {}).get("name"), "number": entry.get("number"),
+                  "volume": entry.get("volume"), "pages": f"{entry['start']}--{entry['end']}" if "start" in entry else None,
+                  "note": f"{entry['license']} licence" if software else entry.get("notes")}
+        kind = {"software": "software", "report": "techreport"}.get(entry["type"], "article" if entry.get("journal") else "misc")
+        rows = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items() if value)
+        entries.append(f"@{kind}{{{key},\n{rows}}}\n")
+    return "\n".join(entries)
 
 
 # Parts of pictures for the start page: left, top, right, bottom as fractions.
@@ -209,6 +230,7 @@ def stage(root, out, pictures, build=None):
     shutil.rmtree(out, ignore_errors=True)
     check_gallery(root)
     stage_pages(root, out)
+    notebooks.stage(root, out)
     stage_reference(root, out)
     write(out / "theory" / "equations.rst", equations.page(root))
     python_reference.stage(root, lambda name, text: write(out / name, text))

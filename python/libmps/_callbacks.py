@@ -1,6 +1,7 @@
 """Python functions as C callbacks: what C passes by pointer and length are arrays, what C wants written is returned."""
 
 import inspect
+import reprlib
 
 import numpy
 
@@ -137,14 +138,24 @@ class Law(Callback):
         try:
             answer = self.function(block)
             if len(values) > 1:
-                if answer is None:
-                    raise TypeError("`moduli` of a law returns K + 4G/3 of each particle of the block, not None")
-                numpy.frombuffer(ffi.buffer(values[1], 8 * block.count))[:] = answer
+                self.moduli(values[1], answer, block.count)
                 return None
             block._write()
         finally:
             block._end()
         return self.status(answer)
+
+    @staticmethod
+    def moduli(pointer, answer, count):
+        """One number a particle, to where C wants them."""
+        try:
+            numbers = None if answer is None else numpy.broadcast_to(numpy.asarray(answer, numpy.float64), (count,))
+        except (TypeError, ValueError):
+            numbers = None
+        if numbers is None:
+            raise TypeError(f"'moduli' of a law returned {reprlib.repr(answer)}: must return K + 4G/3 of each of the {count} particles of "
+                            "the block, or one number for all")
+        numpy.frombuffer(ffi.buffer(pointer, 8 * count))[:] = numbers
 
 
 def make(state, kind, function, owner, word):

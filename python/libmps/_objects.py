@@ -8,7 +8,7 @@ import warnings
 
 import numpy
 
-from . import _callbacks, _enums, _quantities, _show, _tables
+from . import _callbacks, _enums, _history, _quantities, _show, _tables
 from ._arrays import Edit, lend
 from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, same, to_python, unknown)
 from ._errors import ArgumentError, StateError, Warning, failed, spoken
@@ -44,6 +44,10 @@ class Object:
         made, outputs = _perform(function, None, context, bound, members)
         self._hold(outputs[0], context, _kept(made.state.alive))
         self._lengths = {word: value for word, value in made.state.lengths.items() if isinstance(value, (int, float))}
+        self._created(bound)
+
+    def _created(self, bound):
+        """What a class of its own notes of the arguments that it was made from."""
 
     def close(self):
         """Destroys the object; without effect the second time."""
@@ -54,7 +58,7 @@ class Object:
             self.context._late.append((self._destroy, self._holder, self._alive))
         else:
             self._destroy(self._holder)
-        self._alive, self._held = [], {}
+        self._alive, self._held, self._records = [], {}, ()
 
     def __del__(self):
         if self._pointer is not None:
@@ -398,7 +402,7 @@ class Particles(Object):
     def to_pandas(self, *names):
         """The fields of these names, or all, as a pandas.DataFrame: a row for each particle by its id, a column for each
         component (velocity_x). A copy."""
-        pandas = _wanted("pandas", "to_pandas")
+        pandas = _history.wanted("pandas", "to_pandas")
         columns = {}
         for name, labels, values in self._columns([n for n in names if n != "id"] or [n for n in self if n != "id"]):
             for k, label in enumerate(labels):
@@ -407,7 +411,7 @@ class Particles(Object):
 
     def to_xarray(self, *names):
         """The fields of these names, or all, as an xarray.Dataset over particles, with units and meanings. A copy."""
-        xarray = _wanted("xarray", "to_xarray")
+        xarray = _history.wanted("xarray", "to_xarray")
         found, known = {}, self.fields
         for name, labels, values in self._columns([n for n in names if n != "id"] or [n for n in self if n != "id"]):
             attributes = {"units": known[name].unit, "long_name": known[name].meaning}
@@ -437,14 +441,6 @@ def _text(name):
     if b"\0" in text:
         raise ArgumentError(f"{name!r} has a null character, where C would end it")
     return text
-
-
-def _wanted(module, method):
-    """A package that libmps does not need."""
-    try:
-        return __import__(module)
-    except ImportError as error:
-        raise ImportError(f"{method}() needs {module}, which is not installed: pip install {module}") from error
 
 
 # ---- the progress of a run --------------------------------------------------------------------------
@@ -477,11 +473,18 @@ class _Progress:
             print(file=sys.stderr)
 
 
+def _run(solver, function, values, keywords):
+    """A run with the histories that it adds to, if any."""
+    if solver._records:
+        return solver._recorded(solver._invoke, function, values, keywords)
+    return solver._invoke(function, values, keywords)
+
+
 def _run_with_progress(solver, function, values, keywords):
     shown, before = _Progress(), solver.context._progress
     solver.context.set_progress(shown)
     try:
-        return solver._invoke(function, values, keywords)
+        return _run(solver, function, values, keywords)
     finally:
         solver.context.set_progress(before)
         shown.end()
@@ -526,7 +529,11 @@ def _method(function, owner):
         def method(self, *values, progress=False, **keywords):
             if progress:
                 return _run_with_progress(self, function, values, keywords)
-            return self._invoke(function, values, keywords)
+            return _run(self, function, values, keywords)
+    elif function.owner in SOLVERS and function.word == "step":
+        def method(self, *values, **keywords):
+            self._invoke(function, values, keywords)
+            self._look()
     else:
         def method(self, *values, **keywords):
             return self._invoke(function, values, keywords)
@@ -561,13 +568,17 @@ def _maker(function, name):
     return described(__init__, function, "self")
 
 
+#: What classes have besides the functions of their headers.
+_MORE = {"solver": (_history.Recording,), "history": (_history.HistoryRows,)}
+
+
 def _classes():
     """A class for each kind of object, with its methods and properties; classes of the ways to make one."""
     made, ways = {"context": Context, "particles": Particles}, {}
     for kind in sorted(_tables.KINDS, key=lambda kind: kind != "solver"):  # the others are solvers
         name = class_name(kind)
-        parent = made["solver"] if kind in SOLVERS and kind != "solver" else Object
-        made.setdefault(kind, type(name, (parent,), {"__module__": "libmps", "__doc__": Object.__doc__, "_kind": kind}))
+        parents = (made["solver"],) if kind in SOLVERS and kind != "solver" else (*_MORE.get(kind, ()), Object)
+        made.setdefault(kind, type(name, parents, {"__module__": "libmps", "__doc__": Object.__doc__, "_kind": kind}))
     for function in functions.values():
         if function.form == "method" and function.word not in made[function.owner].__dict__:
             setattr(made[function.owner], function.word, _method(function, class_name(function.owner)))

@@ -1,4 +1,5 @@
-"""Pictures of particles on matplotlib: a set with its bodies, coloured by a field; curves; animations.
+"""Pictures on matplotlib: particles with their bodies, coloured by a field; histories and curves against theory; response
+spectra; animations of a run or of a series of frames.
 
     from libmps import plot
 
@@ -6,16 +7,20 @@
     ax = plot.particles(sand, ("stress", 1))                    # one component
     ax = plot.particles(sand, pressure, label="pressure (Pa)")  # an array, one value a particle
     plot.curve(settlement, load, x_label="settlement (m)", y_label="load (N/m)", theory=5.14e3)
+    plot.history(force, "force_x", theory=-6.3e3)               # a History, a files.Table; units on the axes
+    plot.spectrum({"surface": spectrum, "theory": exact})       # of signals.response_spectrum
     plot.animation("fall.gif", solver, 1.0, 40, lambda ax: plot.particles(sand, "velocity", ax=ax))
+    plot.film("pile.gif", files.Series("pile.vtkhdf"), "velocity")
 
 Every particle is drawn as the square that its material was, deformed: by its `deformation_gradient` where the set has
 that field, else by its `volume_ratio`, else with the set's spacing. A set in 3D is drawn where a plane cuts it.
-Functions return the axes, to which anything of matplotlib may be added; they neither show nor save.
+Frames of a series (files.Series) are drawn as sets are. Functions return the axes, to which anything of matplotlib may be
+added; they neither show nor save. Colours are told apart by the colour-blind too: viridis, and for lines those of COLOURS.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -30,9 +35,23 @@ if TYPE_CHECKING:  # of the stubs: what the package makes of the headers has no 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-    from . import Body, Dynamics, Fluid, Mpm, Particles
+    from . import Body, Dynamics, Fluid, History, Mpm, Particles
+    from .files import Frame, Series, Table
+    from .signals import Spectrum
 
 AXES = "xyz"
+#: For lines: M. Okabe and K. Ito, Color Universal Design (2008); theory is black.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+
+
+def _unit(particles, name):
+    """The unit of a field, of a set or a frame."""
+    units = particles.units if hasattr(particles, "units") else {found: unit for found, unit, _ in _show.fields(particles)}
+    return f" ({units[name]})" if units.get(name, "") not in ("", "-") else ""
+
+
+def _labelled(name, unit):
+    return f"{name.replace('_', ' ')} ({unit})" if unit not in ("", "-") else name.replace("_", " ")
 
 
 def _values(particles, field):
@@ -40,8 +59,7 @@ def _values(particles, field):
     if isinstance(field, (str, tuple)):
         name, component = (field, None) if isinstance(field, str) else field
         values = numpy.array(particles[name], float)
-        unit = next(unit for found, unit, _ in _show.fields(particles) if found == name)
-        unit = f" ({unit})" if unit not in ("", "-") else ""
+        unit = _unit(particles, name)
         if component is not None:
             if values.ndim == 1 or not 0 <= component < values.shape[1]:
                 raise ValueError(f"component of {name!r} is {component}, must be from 0 to "
@@ -53,8 +71,9 @@ def _values(particles, field):
             raise ValueError(f"{name!r} has {values.shape[1]} components: name one, ({name!r}, 0)")
         return numpy.sqrt((values ** 2).sum(axis=1)), f"|{name}|{unit}"
     values = numpy.array(field, float)
-    if values.shape != (len(particles),):
-        raise ValueError(f"values have the shape {values.shape}, must have one for each of the {len(particles)} particles")
+    count = len(particles["id"])
+    if values.shape != (count,):
+        raise ValueError(f"values have the shape {values.shape}, must have one for each of the {count} particles")
     return values, None
 
 
@@ -107,7 +126,7 @@ def _draw_bodies(ax, bodies, axes, plane, box):
             ax.contour(x, y, distance, [0], colors="black", linewidths=1, zorder=4)
 
 
-def particles(particles: Particles, field: str | tuple[str, int] | ArrayLike | None = None, *,
+def particles(particles: Particles | Frame, field: str | tuple[str, int] | ArrayLike | None = None, *,
               bodies: Iterable[Body] = (), plane: tuple[str, float] | None = None,
               limits: Sequence[float] | None = None, label: str | None = None, size: float = 1.0,
               cmap: Any = "viridis", ax: Axes | None = None) -> Axes:
@@ -170,7 +189,7 @@ def curve(x: ArrayLike, y: ArrayLike, *, x_label: str = "displacement (m)", y_la
         raise ValueError(f"theory has the shape {numpy.shape(theory)}, must be a number or have that of x, {x.shape}")
     if ax is None:
         ax = pyplot.figure(layout="constrained").add_subplot()
-    ax.plot(x, y, label=label)
+    ax.plot(x, y, label=label, color=COLOURS[len(ax.lines) % len(COLOURS)])
     if theory is not None and numpy.ndim(theory):
         ax.plot(x, theory, "k--", label=theory_label)
     elif theory is not None:
@@ -182,27 +201,112 @@ def curve(x: ArrayLike, y: ArrayLike, *, x_label: str = "displacement (m)", y_la
     return ax
 
 
+def history(rows: History | Table, *names: str, theory: ArrayLike | Mapping[str, ArrayLike] | None = None,
+            theory_label: str = "theory", ax: Axes | None = None) -> Axes:
+    """Draws columns of a history or table over its first column (mostly t); of these names, or all. `theory` is a number or
+    an array as long as the rows, or a dictionary of them by the names of columns: dashed. Labels have the units. KeyError: no
+    such column; ValueError: an array of another length."""
+    first, *others = rows.columns
+    shown, x = list(names) or others, rows[first]
+    for name in shown:
+        if rows[name].ndim > 1:
+            raise ValueError(f"{name!r} has components: name them, as {name}_x")
+    lines = theory if isinstance(theory, Mapping) else {} if theory is None else {theory_label: theory}
+    if ax is None:
+        ax = pyplot.figure(layout="constrained").add_subplot()
+    for k, name in enumerate(shown):
+        ax.plot(x, rows[name], color=COLOURS[k % len(COLOURS)], label=name.replace("_", " "))
+    for k, (name, values) in enumerate(lines.items()):
+        level = numpy.broadcast_to(numpy.asarray(values, float), x.shape) if numpy.ndim(values) == 0 else numpy.asarray(values, float)
+        if level.shape != x.shape:
+            raise ValueError(f"theory has the shape {level.shape}, must be a number or have that of the rows, {x.shape}")
+        said = theory_label if len(lines) == 1 else f"{theory_label}: {name.replace('_', ' ')}"
+        ax.plot(x, level, color="black", linestyle=("--", ":", "-.")[k % 3], label=said)
+    units = {rows.units.get(name, "") for name in shown}
+    ax.set(xlabel=_labelled(first, rows.units.get(first, "")),
+           ylabel=_labelled(shown[0] if len(shown) == 1 else "", units.pop() if len(units) == 1 else "").strip())
+    ax.grid(True, alpha=0.3)
+    if len(shown) > 1 or lines:
+        ax.legend()
+    return ax
+
+
+def spectrum(spectra: Spectrum | Mapping[str, Spectrum], quantity: str = "acceleration", *, ax: Axes | None = None) -> Axes:
+    """Draws response spectra (signals.response_spectrum), one or several by name, over the period; one named "theory" is
+    dashed and black. quantity: acceleration, velocity, displacement or absolute."""
+    units = {"acceleration": "pseudo-acceleration (m/s$^2$)", "velocity": "pseudo-velocity (m/s)", "displacement": "displacement (m)",
+             "absolute": "acceleration of the mass (m/s$^2$)"}
+    if quantity not in units:
+        raise ValueError(f"quantity is {quantity!r}, must be one of {', '.join(units)}")
+    named = spectra if isinstance(spectra, Mapping) else {"": spectra}
+    if ax is None:
+        ax = pyplot.figure(layout="constrained").add_subplot()
+    for k, (name, one) in enumerate(named.items()):
+        exact = name == "theory"
+        ax.semilogx(one.period, getattr(one, quantity), color="black" if exact else COLOURS[k % len(COLOURS)],
+                    linestyle="--" if exact else "-", label=name)
+    damping = {f"{100 * one.damping:g} %" for one in named.values()}
+    ax.set(xlabel="period (s)", ylabel=units[quantity] + (f", {damping.pop()} damping" if len(damping) == 1 else ""))
+    ax.grid(True, alpha=0.3)
+    if not isinstance(spectra, tuple):
+        ax.legend()
+    return ax
+
+
+def _writer(path):
+    """What writes a film of this name."""
+    writers = {".gif": PillowWriter, ".mp4": FFMpegWriter}
+    ending = str(path)[-4:].lower()
+    if ending not in writers:
+        raise ValueError(f"path is {str(path)!r}, must end in .gif or .mp4")
+    return writers[ending]
+
+
 def animation(path: str | PathLike[str], solver: Mpm | Fluid | Dynamics, t_end: float, frames: int,
               draw: Callable[[Axes], Any], *, fps: float = 20, dpi: float = 100,
               size: tuple[float, float] = (6.4, 4.8)) -> None:
     """Runs `solver` to t_end (s) and writes `frames` pictures of equal steps in time to `path`, a .gif (by Pillow) or
     .mp4 (by ffmpeg); the first shows the present state. `draw(ax)` draws each into the axes that it is given; what it
     raises ends the run. ValueError: another ending, or `frames` below 2."""
-    writers = {".gif": PillowWriter, ".mp4": FFMpegWriter}
-    ending = str(path)[-4:].lower()
-    if ending not in writers:
-        raise ValueError(f"path is {str(path)!r}, must end in .gif or .mp4")
+    made = _writer(path)
     if frames < 2:
         raise ValueError(f"frames is {frames}, must be at least 2")
     figure = pyplot.figure(figsize=size, layout="constrained")
     try:
-        ax, writer, start = figure.add_subplot(), writers[ending](fps=fps), solver.time
+        ax, writer, start = figure.add_subplot(), made(fps=fps), solver.time
         with writer.saving(figure, str(path), dpi):
             for k in range(frames):
                 if k:
                     solver.run(start + (t_end - start) * k / (frames - 1))
                 draw(ax)
                 ax.set_title(f"t = {solver.time:.3f} s")
+                writer.grab_frame()
+    finally:
+        pyplot.close(figure)
+
+
+def film(path: str | PathLike[str], series: Series, field: str | tuple[str, int] | None = None, *, fps: float = 20, dpi: float = 100,
+         size: tuple[float, float] = (6.4, 4.8), **drawing: Any) -> None:
+    """Writes the frames of a series to `path` (.gif, .mp4), coloured by `field`; keywords of `particles`. Without limits= the
+    colours are those of the whole series, and the axes those of all its frames."""
+    made = _writer(path)
+    if field is not None and "limits" not in drawing:
+        ends = [(values.min(), values.max()) for values in (_values(frame, field)[0] for frame in series) if len(values)]
+        drawing["limits"] = (min(low for low, _ in ends), max(high for _, high in ends))
+    figure = pyplot.figure(figsize=size, layout="constrained")
+    boxes: list[Any] = []
+    try:
+        ax, writer = figure.add_subplot(), made(fps=fps)
+        for frame in series:  # the view that holds all
+            boxes.append((frame["position"].min(axis=0), frame["position"].max(axis=0)))
+        low, high = numpy.min([b[0] for b in boxes], axis=0), numpy.max([b[1] for b in boxes], axis=0)
+        margin = 0.08 * (high - low).max()
+        with writer.saving(figure, str(path), dpi):
+            for frame in series:
+                particles(frame, field, ax=ax, **drawing)
+                if series.dim == 2:
+                    ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
+                ax.set_title(f"t = {frame.time:.3f} s")
                 writer.grab_frame()
     finally:
         pyplot.close(figure)

@@ -1,5 +1,6 @@
 """The parts of the site (docs/site) that need no package: headers, links, equations, programs on pages."""
 
+import json
 import pathlib
 import re
 import sys
@@ -11,6 +12,7 @@ sys.path.insert(0, str(ROOT / "docs/site"))
 
 import equations  # noqa: E402
 import headers  # noqa: E402
+import notebooks  # noqa: E402
 import options  # noqa: E402
 import programs  # noqa: E402
 import python_reference  # noqa: E402
@@ -248,6 +250,34 @@ class Programs(unittest.TestCase):
         self.assertEqual(programs.agree("force 100.0 N", "force 103.0 N"), ("force 100.0 N", "force 103.0 N"))
         self.assertEqual(programs.agree("force 100.0 N", "load 100.0 N"), ("force 100.0 N", "load 100.0 N"))
         self.assertEqual(programs.agree("a 1", "a 1\nb 2"), ("nothing", "b 2"))
+
+
+class Notebooks(unittest.TestCase):
+    def test_pages_become_notebooks(self):
+        text = "# A\n\n![p](../images/p.png)\n\nSee [b](b.md), [c](https://c.org).\n\n```sh\nls\n```\n\n```text\nx\n```\n\n```python\na = 1\n```\n\nEnd.\n"
+        found = notebooks.notebook(text)
+        self.assertEqual([(c["cell_type"], "".join(c["source"])) for c in found["cells"]],
+                         [("markdown", "# A\n\n\nSee b, [c](https://c.org)."), ("code", "%%bash\nls"), ("code", "a = 1"), ("markdown", "End.")])
+        self.assertEqual(found["cells"][1]["outputs"][0]["text"], ["x\n"])
+        self.assertIsNone(notebooks.notebook("```c\nint a;\n```\n```python\n```\n"))
+
+    def test_all_programs_of_the_jobs_are_in_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            for page in [*(ROOT / "docs/jobs").glob("*.md"), ROOT / "docs/tutorial/python.md"]:
+                (out / page.relative_to(ROOT / "docs")).parent.mkdir(exist_ok=True)
+                (out / page.relative_to(ROOT / "docs")).write_text(page.read_text())
+            made = notebooks.stage(ROOT, out)
+            self.assertIn("jobs/short", made)
+            self.assertGreater(len(made), 5)
+            for name in made:
+                text = (ROOT / "docs" / f"{name}.md").read_text()
+                cells = json.loads((out / f"{name}.ipynb").read_text())["cells"]
+                code = ["".join(c["source"]) for c in cells if c["cell_type"] == "code"]
+                blocks = [(kind, body) for kind, body, _ in programs.Page(name).blocks if kind in ("sh", "python")]
+                self.assertEqual(code, [("%%bash\n" if kind == "sh" else "") + body.strip("\n") for kind, body in blocks], name)
+                self.assertIn(f"notebook <{name.split('/')[1]}.ipynb>", (out / f"{name}.md").read_text())
+                self.assertIn(text.splitlines()[0], "".join(cells[0]["source"]))
 
 
 if __name__ == "__main__":

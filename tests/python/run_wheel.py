@@ -1,5 +1,5 @@
-"""run_wheel.py SOURCE WORK: makes a wheel of the package (scripts/wheel --fast), installs it into a bare virtual
-environment, and runs a small job there: a block on a roller under its own weight, whose mean vertical stress is
+"""run_wheel.py SOURCE WORK: makes a source archive of the package, and a wheel from it (scripts/wheel --fast --sdist), installs
+that into a bare virtual environment, asks all programs for their help, and runs a small job there: a block on a roller under its own weight, whose mean vertical stress is
 -density * g * height / 2. Exit status 77, with a line, where pip reaches no registry."""
 
 import pathlib
@@ -34,6 +34,8 @@ beam["poisson"] = 0.0
 elastic = mps.Elastic(beam)
 elastic.add_boundary(box=([0, 0], [0.1, 0.3]), kind="held")
 solver.save("job.h5")
+from libmps import files, theory
+assert files.read_summary("wave")["outcome"] == "finished" and theory.prandtl() > 5
 """
 
 
@@ -49,10 +51,15 @@ def main():
     if reached.returncode:
         print("skipped: pip reaches no registry:", (reached.stderr.strip().splitlines() or ["no pip"])[-1])
         sys.exit(77)
-    made = call(sys.executable, source / "scripts/wheel", "--fast", "--out", work, stdout=subprocess.PIPE, text=True,
+    made = call(sys.executable, source / "scripts/wheel", "--fast", "--sdist", "--address", "https://example.org/libmps/", "--out", work, stdout=subprocess.PIPE, text=True,
                 check=True).stdout.split()[-1]
-    names = zipfile.ZipFile(made).namelist()
-    for wanted in ("libmps/py.typed", "libmps/__init__.pyi", "licenses/LIBRARIES.md", "licenses/LICENSE"):
+    wheel = zipfile.ZipFile(made)
+    names = wheel.namelist()
+    metadata = wheel.read(next(name for name in names if name.endswith(".dist-info/METADATA"))).decode()
+    if "https://example.org/libmps/issues" not in metadata or ".invalid" in metadata:
+        sys.exit(f"{made}: the address of the project is not in place:\n{metadata[:2000]}")
+    for wanted in ("libmps/py.typed", "libmps/__init__.pyi", "licenses/LIBRARIES.md", "licenses/LICENSE", "libmps/theory.py",
+                   "libmps/share/libmps/models/caisson.yaml", "libmps/share/libmps/paraview_libmps.py"):
         if not any(name.endswith(wanted) for name in names):
             sys.exit(f"{made} lacks {wanted}")
     if "-py3-none-manylinux" not in made:
@@ -67,6 +74,16 @@ def main():
     strangers = [name for name in outside if not name.startswith(system)]
     if strangers:
         sys.exit(f"the installed library needs {strangers} of the system")
+    programs = sorted(path.name for path in bare.glob("lib/python3*/site-packages/libmps/bin/mps-*"))
+    scripts = sorted(path.name for path in (bare / "bin").glob("mps-*"))
+    if programs != scripts or len(programs) < 15:
+        sys.exit(f"the programs are {programs}, and those that can be called {scripts}")
+    for name in scripts:
+        told = call(bare / "bin" / name, "--help", capture_output=True, text=True, env={"PATH": "/usr/bin:/bin"})
+        if told.returncode or name not in told.stdout:
+            sys.exit(f"{name} --help: {told.returncode}\n{told.stderr}")
+    call(bare / "bin/mps-wave", "--width", 4, "--height", 10, "--duration", 0.1, "--frames", 0, "--out", work / "wave", check=True,
+         stdout=subprocess.DEVNULL)
     done = call(bare / "bin/python", "-c", JOB, cwd=work, env={"PATH": "/usr/bin:/bin", "HOME": str(work)})
     sys.exit(done.returncode)
 

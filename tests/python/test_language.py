@@ -8,6 +8,7 @@ import inspect
 import io
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -382,6 +383,31 @@ class Types(unittest.TestCase):
         wrong = [k + 1 for k, line in enumerate(PROGRAM.splitlines()) if line.endswith("# wrong")]
         lines = [line for line in done.stdout.splitlines() if ": error:" in line]
         self.assertEqual([int(line.split(":")[1]) for line in lines], wrong, done.stdout + done.stderr)
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_programs_on_pages(self):
+        """What the package is asked on a page has the types that the stubs say; functions of a page need none."""
+        docs = pathlib.Path(__file__).resolve().parents[2] / "docs"
+        pages = {"short": docs / "jobs/short.md", "guide": docs / "python.md", "readme": docs.parent / "README.md"}
+        pages.update({f"page_{p.stem}": p for p in [docs / "clients.md", docs / "extend.md", docs / "tutorial/python.md", *(docs / "jobs").glob("*.md")]
+                      if p.stem != "short"})
+        with tempfile.TemporaryDirectory() as folder:
+            for name, page in pages.items():
+                blocks = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.M | re.S)
+                if name == "short":  # a program each; the last block draws
+                    for k, block in enumerate(blocks[:-1]):
+                        pathlib.Path(folder, f"short{k}.py").write_text(block)
+                elif blocks:  # the guide's first block is a program, the other pages are one together
+                    pathlib.Path(folder, f"{name}.py").write_text(blocks[0] if name == "guide" else "\n".join(blocks))
+            made = sorted(pathlib.Path(folder).glob("*.py"))
+            self.assertGreater(len(made), 10)
+            done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--allow-untyped-defs", "--allow-untyped-calls",
+                                   "--ignore-missing-imports", "--disable-error-code=var-annotated", "--follow-imports=silent", "--no-error-summary",
+                                   f"--cache-dir={folder}/cache", *map(str, made)], capture_output=True, text=True, cwd=folder,
+                                  env={**{k: v for k, v in os.environ.items() if k != "PYTHONPATH"},
+                                       "MYPYPATH": str(pathlib.Path(mps.__file__).parent.parent)})
+        wrong = [line for line in done.stdout.splitlines() if ": error:" in line and "/libmps/" not in line]
+        self.assertEqual(wrong, [], done.stderr)
 
 
 class Import(unittest.TestCase):

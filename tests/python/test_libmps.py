@@ -157,7 +157,7 @@ class Values(unittest.TestCase):
         first = solver.limit
         solver.run(0.03)
         self.assertAlmostEqual(first / solver.limit, 10.0, delta=0.02)
-        with self.assertRaisesRegex(TypeError, "returns K . 4G/3 of each particle"):
+        with self.assertRaisesRegex(TypeError, "must return K . 4G/3 of each of the 64 particles"):
             made(lambda block: None).step(1)
 
     def test_a_struct_is_a_mapping_or_a_result(self):

@@ -211,6 +211,12 @@ class Laws(unittest.TestCase):
             np.testing.assert_allclose(stress_after(law, threads=threads), expected, atol=1e-9 * abs(expected).max())
         self.assertEqual(shapes, {(9, 4, 2)})
 
+    def test_wrong_moduli_name_the_callback(self):
+        for wrong in (None, "stiff", np.zeros(3)):
+            with self.assertRaisesRegex(TypeError, "'moduli' of a law returned .*: must return K . 4G/3 of each of the"):
+                stress_after(lambda c: mps.UserMaterial(update=lambda b: None, moduli=lambda b: wrong, name="m", bulk_modulus=YOUNG,
+                                                        shear_modulus=SHEAR), steps=2)
+
     def test_arrays_of_a_block_outlive_the_law(self):
         kept = []
 
