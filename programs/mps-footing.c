@@ -63,7 +63,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("friction", &s->mu, "of its base"),
       OPTION_NUMBER("corner", &s->corner, "with --inset 0"),
       OPTION_NUMBER("inset", &s->inset,
-                    "default 0.6, --volumetric point 0.9, Drucker-Prager 0.75, eccentric load 0"),
+                    "default 0.6, --volumetric point 0.9, Drucker-Prager 0.75, with --surcharge "
+                    "0.65; eccentric load and quasi-static 0"),
       OPTION_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
                        "default 0.5 mm/s, quasi-static 1.5 mm/s, more in strong or soft clay"),
       OPTION_NUMBER("settlement", &s->settlement, NULL),

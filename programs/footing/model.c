@@ -59,7 +59,8 @@ const char *footing_settle(settings *s, const option *table) {
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
   const bool point = s->volumetric == MPS_MPM_VOLUMETRIC_POINT;
-  const double inset = s->eccentricity > 0.0 ? 0.0 : cone ? 0.75 : point ? 0.9 : 0.6;
+  const double ended = cone ? (s->surcharge > 0.0 ? 0.65 : 0.75) : point ? 0.9 : 0.6;
+  const double inset = s->eccentricity > 0.0 || s->settled ? 0.0 : ended;
   const char *edges = mpm_model_settle_edges(table, s->contact, inset, &s->corner, &s->inset);
   if (edges) return edges;
   const double cells = (footing_is_whole(s) ? 2.0 : 1.0) * s->width * s->depth / (s->h * s->h);
