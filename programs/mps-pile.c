@@ -43,7 +43,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("depth", &s->depth, "of the tip, where the run ends"),
       OPTION_NUMBER("rate", &s->rate, NULL),
       MPM_MODEL_CONTACT(&s->contact),
-      OPTION_NUMBER("corner", &s->corner, NULL),
+      OPTION_NUMBER("corner", &s->corner, "with --inset 0"),
+      OPTION_NUMBER("inset", &s->inset, NULL),
       OPTION_NUMBER("k", &s->k, "default 4 (K + 4G/3)"),
       OPTION_NUMBER("xi", &s->xi, NULL),
       OPTION_HEADING("Soil"),
@@ -91,7 +92,8 @@ int main(int argc, char **argv) {
     return options_refuse(&program, "--xi and --k exclude each other");
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
-  const char *reason = pile_check(s);
+  const char *reason = mpm_model_settle_edges(table, s->contact, 0.0, &s->corner, &s->inset);
+  if (!reason) reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};
   const mpm_model_places places = {&s->out, &s->checkpoint, s->restart};

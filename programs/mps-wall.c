@@ -32,6 +32,9 @@ static const char *settle(settings *s, const option *table) {
     return "--below-toe must be at least 2 cells of --cell more than --sheet";
   if (s->length < s->height) return "--length must be at least --height";
   if (s->path > 0.2 * s->height) return "--travel must be at most a fifth of --height";
+  const char *edges = mpm_model_settle_edges(table, MPS_CONTACT_METHOD_IMPULSE, active ? 0.0 : 0.9,
+                                             &s->corner, &s->inset);
+  if (edges) return edges;
   const char *why = wall_settle_ground(s, table);
   if (why) return why;
   if (s->heaviest * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
@@ -51,6 +54,7 @@ int main(int argc, char **argv) {
                                  .density = 1800.0,
                                  .gravity = 9.81,
                                  .corner = 0.6,
+                                 .inset = NAN,
                                  .sheet = NAN,
                                  .water = NAN,
                                  .path = NAN,
@@ -70,7 +74,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("friction", &s->friction, "of its face"),
       OPTION_NUMBER("travel", &s->path, NULL),
       OPTION_NUMBER("rate", &s->rate, "of that end"),
-      OPTION_NUMBER("corner", &s->corner, "of its toe"),
+      OPTION_NUMBER("corner", &s->corner, "of its toe; with --inset 0"),
+      OPTION_NUMBER("inset", &s->inset, "default passive 0.9, active 0"),
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       OPTION_NUMBER("below-toe", &s->base, "and in front of it; 0: a smooth bed"),
       OPTION_NUMBER("sheet", &s->sheet, NULL),

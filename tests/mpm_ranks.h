@@ -182,7 +182,8 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
     if (what == (k == 0 ? PRESS : CONE)) def.method = MPS_CONTACT_METHOD_PENALTY;
     if (k == 1 && what != CONE) def.adhesion = 500.0, def.strength = 4e3;
     if (what == PLATES) def.inside = MPS_CONTACT_INSIDE_REMOVE, def.thin = k < 2;
-    if (what == PILES || (what == BALLS && k == 1)) def.corner = 0.03;
+    if ((what == PILES || what == BALLS) && k == 1) def.corner = 0.03;
+    if ((what == PILES && k != 1) || (what == CONE && k == 0)) def.inset = 0.03;
     if (status == MPS_OK) status = make_body(own, what, k, &s->body[k]);
     motion.velocity[1] = k == 0 ? -4.0 : -2.0;
     if (k > 0 || what == CONE || what == PILES) TRY(mps_body_set_motion(s->body[k], &motion));

@@ -37,6 +37,7 @@ typedef struct rest_case {
   int32_t spline;
   double shift; /* of the grid, cells */
   double angle; /* by which the ground is turned against the grid, rad */
+  double inset; /* of the body in the ground, cells */
 } rest_case;
 
 /* Relative deviations from theory, of the mean over the last steps. */
@@ -127,7 +128,8 @@ static inline void rest_fill(rest_scene *r) {
 }
 
 static inline void rest_touch(rest_scene *r, mps_body *body, double offset) {
-  USING(contact, mps_mpm_add_contact(r->s.mpm, body, &given, NULL), .offset = offset);
+  USING(contact, mps_mpm_add_contact(r->s.mpm, body, &given, NULL), .offset = offset,
+        .inset = body == r->body[3] ? r->c->inset * REST_CELL : 0.0);
 }
 
 static inline mps_body *rest_half(rest_scene *r, double x, double y, double nx, double ny) {
@@ -276,12 +278,12 @@ static inline rest_result rest_run(mps_context *context, const rest_case *c, int
   const double M = REST_YOUNG * 0.7 / (1.3 * 0.4);
   out.kinetic =
       mpm_scene_totals(&r.s).kinetic / (weight * weight * H * H * H * r.width / (6.0 * M));
-  print_message(
-      "%s, spline %d, shift %.2f, turned by %.0f degrees: walls %+.3f %+.3f, floor %+.3f, "
-      "body %+.3f; stress %+.3f %+.3f %%; motion %.1e\n",
-      rest_names[c->edge], (int)c->spline, c->shift, c->angle * 57.29578, 100.0 * out.wall[0],
-      100.0 * out.wall[1], 100.0 * out.floor, 100.0 * out.body, 100.0 * out.across,
-      100.0 * out.along, out.kinetic);
+  print_message("%s, spline %d, shift %.2f, turned by %.0f degrees, inset %.1f: walls %+.3f %+.3f, "
+                "floor %+.3f, "
+                "body %+.3f; stress %+.3f %+.3f %%; motion %.1e\n",
+                rest_names[c->edge], (int)c->spline, c->shift, c->angle * 57.29578, c->inset,
+                100.0 * out.wall[0], 100.0 * out.wall[1], 100.0 * out.floor, 100.0 * out.body,
+                100.0 * out.across, 100.0 * out.along, out.kinetic);
   return out;
 }
 

@@ -97,6 +97,7 @@ static inline mps_status try_build(mps_context *context, int32_t geometry, const
   contact.thin = 1; /* where the cell is another */
   for (int b = 0; b < c->bodies && status == MPS_OK; b++) {
     contact.friction = b == FREE ? 0.3 : 0.4;
+    contact.inset = b == FREE && dim == 2 ? 0.6 * c->cell : 0.0;
     status = mps_mpm_add_contact(s->mpm, out->body[b], &contact, NULL);
   }
   return status;

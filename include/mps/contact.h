@@ -87,6 +87,11 @@ typedef struct mps_contact_def {
   mps_signal *friction_factor; /* times `friction` at the beginning of each step, kept alive: a
                                   number in time (MPS_SIGNAL_QUANTITY_VALUE), >= 0, or the step
                                   is MPS_ERROR_ARGUMENT. NULL (default): 1 */
+  double inset; /* m, >= 0: how far before the edges of a polygon its faces end for the particles,
+                   so that the ground feels a face as wide as the edges say, wherever these lie on
+                   the grid: 0.6 cells in clay, 0.75 to 0.9 in sand. Particles beyond are moved out
+                   of the body without a force. 0 (default): not at all. In the plane and in
+                   axisymmetry; not for METHOD_PENALTY, nor with `corner` */
 } mps_contact_def;
 
 static inline mps_contact_def mps_contact_defaults(void) {

@@ -27,6 +27,18 @@ const char *mpm_model_refuse_stiffness(const option *table, int contact) {
   return NULL;
 }
 
+const char *mpm_model_settle_edges(const option *table, int contact, double usual, double *corner,
+                                   double *inset) {
+  const bool rounded = options_given(table, "corner"), ended = options_given(table, "inset");
+  if (ended && *inset > 0.0 && contact == MPS_CONTACT_METHOD_PENALTY)
+    return "--inset is for --contact impulse";
+  if (ended && *inset > 0.0 && rounded && *corner > 0.0)
+    return "--corner and --inset exclude each other";
+  if (!ended) *inset = rounded || contact == MPS_CONTACT_METHOD_PENALTY ? 0.0 : usual;
+  if (*inset > 0.0) *corner = 0.0;
+  return NULL;
+}
+
 const char *mpm_model_too_large(double particles) {
   return particles <= 1e8 ? NULL
                           : "more than 1e8 particles: take a coarser --cell, or a smaller model";

@@ -102,6 +102,10 @@ mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_
 #define MPM_MODEL_CONTACT(value) OPTION_CHOICE("contact", value, NULL)
 /* Why an option of penalty contact alone, --k or --xi, cannot be given; NULL where it can. */
 const char *mpm_model_refuse_stiffness(const option *table, int contact);
+/* Settles --corner and --inset (cells), of which one is 0; `usual`: --inset where neither is given.
+ * Returns what they exclude, or NULL. */
+const char *mpm_model_settle_edges(const option *table, int contact, double usual, double *corner,
+                                   double *inset);
 
 /* Why a model of so many particles is not begun; NULL where it is. */
 const char *mpm_model_too_large(double particles);

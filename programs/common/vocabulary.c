@@ -194,6 +194,9 @@ static const struct {
     NUMBER("initial", "Pa", FROM_TO(100.0, 1e9),
            "mcc: vertical effective stress before the load, the largest so far"),
     NUMBER("inner-diameter", "m", LENGTH, "inner diameter of the pile"),
+    NUMBER("inset", "1", FROM_TO(0.0, 2.0),
+           "how far before edges of a body its faces end for the soil, in cells; in place of "
+           "--corner"),
     CHOICE("integrator", "verlet|leapfrog|euler", "time integration"),
     NUMBER("ir", "1", FROM_TO(1.0, 1e5),
            "rigidity index G/su instead of --young; clay, tresca, mcc; su, which N_kt refers to "

@@ -27,6 +27,7 @@ typedef struct settings {
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
   double courant;
+  double inset;                                          /* of its base, cells */
   double h, mu, corner, rate, half_width, k, settlement; /* m, 1, cells, m/s, m, N/m, m */
   double flip_time;                                      /* s */
   double section;                                        /* m: x of a vertical line; NaN: none */

@@ -58,6 +58,11 @@ const char *footing_settle(settings *s, const option *table) {
   if (cone && s->shape == CIRCLE) return "--shape circle is for --law vonmises";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
+  const bool point = s->volumetric == MPS_MPM_VOLUMETRIC_POINT;
+  const double ended = cone ? (s->surcharge > 0.0 ? 0.65 : 0.75) : point ? 0.9 : 0.6;
+  const double inset = s->eccentricity > 0.0 || s->settled ? 0.0 : ended;
+  const char *edges = mpm_model_settle_edges(table, s->contact, inset, &s->corner, &s->inset);
+  if (edges) return edges;
   const double cells = (footing_is_whole(s) ? 2.0 : 1.0) * s->width * s->depth / (s->h * s->h);
   const char *large = mpm_model_too_large(cells * (double)s->ppc);
   if (large) return large;
@@ -157,6 +162,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   contact.method = s->contact;
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k;
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = s->corner * s->h;
+  contact.inset = s->inset * s->h;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 

@@ -202,6 +202,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   sand_write(&f, &s->voids, s->model == DRUCKER_PRAGER ? s->psi : 0.0);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
+  if (s->inset > 0.0) json_number(&f, "inset", s->inset);
   json_number(&f, "rate", s->rate);
   if (footing_is_whole(s)) {
     mps_body_state body;

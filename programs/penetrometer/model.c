@@ -52,10 +52,18 @@ static double flip_time_of(const pen_settings *s) {
   return none ? 0.0 : s->diameter / (40.0 * s->rate);
 }
 
+static const char *settle_edges(pen_settings *s, const option *table) {
+  const bool has = s->axisymmetric && s->law != PEN_ELASTIC;
+  const double usual = has ? (s->law == PEN_SAND ? 0.75 : 0.6) : 0.0;
+  if (s->inset > 0.0 && !s->axisymmetric) return "--inset is for --axisymmetric";
+  return mpm_model_settle_edges(table, s->contact, usual, &s->corner, &s->inset);
+}
+
 const char *pen_check(penetrometer *p, const option *table) {
   pen_settings *s = &p->s;
   if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   const char *reason = check_tip(s);
+  if (!reason) reason = settle_edges(s, table);
   if (reason) return reason;
   s->width = s->breadth = 6.0 * s->diameter, s->height = 4.0 * s->diameter;
   double *const sides[] = {&s->width, &s->breadth, &s->height};
@@ -244,6 +252,7 @@ static mps_status add_contact(const penetrometer *p, pen_run *r) {
   r->penalty = penalty_of(p, r);
   contact.method = p->s.contact;
   if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
+  contact.inset = p->s.inset * p->s.h;
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
   return mps_mpm_add_contact(r->m.mpm, r->m.body[0], &contact, NULL);
 }

@@ -25,13 +25,13 @@ typedef struct pen_settings {
   int spline;  /* degree of the weights less 2 */
   int contact; /* mps_contact_method */
   const char *mesh;
-  double scale;                            /* m per unit of the mesh */
-  double diameter, angle;                  /* m, degrees */
-  double depth, rate, friction;            /* m, m/s, 1 */
-  double start;                            /* m, depth at the beginning; 0: above the ground */
-  double alpha;                            /* of the cohesion; NaN: no bound */
-  double corner;                           /* radius of the tip's edges, cells */
-  const char *soil;                        /* "WxWxD" in diameters */
+  double scale;                 /* m per unit of the mesh */
+  double diameter, angle;       /* m, degrees */
+  double depth, rate, friction; /* m, m/s, 1 */
+  double start;                 /* m, depth at the beginning; 0: above the ground */
+  double alpha;                 /* of the cohesion; NaN: no bound */
+  double corner, inset; /* radius of the tip's edges; how far before them faces end; cells */
+  const char *soil;     /* "WxWxD" in diameters */
   double width, breadth, height;           /* m, what `soil` says */
   double e_max;                            /* of sand */
   double cohesion, phi, psi;               /* Pa, degrees */

@@ -103,6 +103,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_number(f, "friction", s->friction);
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(f, "corner", s->corner);
+  if (s->inset > 0.0) json_number(f, "inset", s->inset);
   json_number(f, "half_width", p->run[0].size[0]);
   json_number(f, "soil_height",
               p->run[0].size[p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1]);

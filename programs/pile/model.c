@@ -132,6 +132,7 @@ static mps_status add_contact(pile *p) {
   contact.friction = p->s.friction;
   contact.method = p->s.contact;
   if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
+  contact.inset = p->s.inset * p->s.h;
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
   return mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL);
 }

@@ -17,8 +17,8 @@
 typedef struct pile_settings {
   double inner_diameter, wall;        /* m */
   double friction, rate, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
-  double corner;                      /* radius of its edges, cells */
-  int contact;                        /* mps_contact_method */
+  double corner, inset;           /* radius of its edges; how far before them faces end; cells */
+  int contact;                    /* mps_contact_method */
   double xi, k;                   /* contact stiffness by Nakamura (58), or in N/m; NaN: not so */
   const char *soil;               /* "WxH" */
   double width, height;           /* m, what `soil` says */

@@ -171,6 +171,7 @@ mps_status wall_build(mps_context *context, void *user) {
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->friction;
   contact.corner = s->corner * s->h;
+  contact.inset = s->inset * s->h;
   if (status == MPS_OK) status = mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
   return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }

@@ -26,7 +26,7 @@ typedef struct settings {
   double phi, psi, cohesion, k0;           /* degrees, degrees, Pa, - */
   double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
   double courant;
-  double friction, corner, path, rate, h; /* -, cells, m, m/s, m */
+  double friction, corner, inset, path, rate, h; /* -, cells, cells, m, m/s, m */
   double surcharge, sheet; /* Pa on the ground behind; m of the wall below the ground in front */
   double water;            /* m, depth of the water table below the surface; NaN: none */
   double heaviest;         /* kg/m3 of the layers */

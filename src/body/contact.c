@@ -38,7 +38,8 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
                             const mps_contact_def *user, const mpsi_contact_owner *kind,
                             void *owner, mps_contact **out) {
   mps_contact_def def;
-  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS(context, function, mps_contact_def, user, &def));
+  MPSI_TRY(MPSI_DEF_READ_OR_DEFAULTS_IN(context, function, mps_contact_def, user,
+                                        mpsi_scene_of(body->dim), &def));
   MPSI_TRY(mpsi_fail_of(
       context, mpsi_signal_check(context, function, MPSI_SIGNAL_NUMBER, 1, &def.friction_factor),
       "friction_factor"));
@@ -79,6 +80,7 @@ void mpsi_contact_release(mps_contact *contact) {
   mpsi_body_free_source(contact->body, &contact->source);
   mpsi_body_release(contact->body);
   mps_signal_destroy(&contact->def.friction_factor);
+  mpsi_free(context, contact->inset);
   mpsi_free(context, contact);
   mpsi_context_release(context);
 }

@@ -34,10 +34,12 @@ struct mps_contact {
   mps_contact_def def; /* friction_factor: a share in the signal */
   double friction;     /* mu in the step being made: mpsi_contact_set_friction */
   mps_body *body;
-  double extent; /* m: see mpsi_body_extent */
-  bool thin;     /* the solver separates both sides of a thin wall */
-  bool convex;   /* whether the body is known to be */
-  int32_t parts; /* of the body's surface, in the step being made */
+  double extent;      /* m: see mpsi_body_extent */
+  bool thin;          /* the solver separates both sides of a thin wall */
+  bool convex;        /* whether the body is known to be */
+  int32_t parts;      /* of the body's surface, in the step being made */
+  double (*inset)[2]; /* m, of each edge of a polygon at both of its ends: contact/edge.h. NULL:
+                         faces end at their edges */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */
   mpsi_body_source source;

@@ -17,11 +17,11 @@ static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
   if (options & STANDARD) OK(mps_experimental_mpm_standard(s->mpm, 0.9));
 }
 
-/* A plate of a fifth of a cell in the block, up to its middle. */
+/* A plate of a fifth of a cell in the block, up to its middle; its end bears in the middle. */
 static void add_fin(mpm_scene *s) {
   DEF(body, body, .position[0] = 0.505, .position[1] = 0.5);
   MAKE(body, fin, create_box, s->context, &body, 0.004, 0.4);
-  mpm_scene_contact(s, fin, 0.4);
+  USING(contact, mps_mpm_add_contact(s->mpm, fin, &given, NULL), .friction = 0.4, .inset = 0.012);
 }
 
 /* A block that falls on a rough floor while a free rough disc hits its side (a ring its top): many

@@ -70,6 +70,7 @@ typedef struct plan {
   int32_t sweeps; /* of its contact, with the tolerance: so that images agree (docs/limits.md) */
   double tolerance;
   double size, place[3], angle, velocity[3], spin, friction; /* of the body */
+  double inset;                                              /* of a box, cells */
   bool load;
   double traction[3];
   event event;

@@ -147,6 +147,7 @@ static void choose_body(uint64_t *r, plan *p) {
   p->place[1] = fine(top + (p->body == 2 ? 1.6 : 1.0) * p->size + 0.6 * CELL / p->per_cell);
   p->place[2] = p->dim == 3 ? fine(CELL * uniform(r, -0.3, 0.3)) : 0.0;
   if (p->dim == 3) p->velocity[2] = 0.0;
+  p->inset = p->body == 2 && p->count % 2 == 0 ? 0.6 : 0.0;
 }
 
 void make_plan(uint64_t seed, plan *p) {
@@ -194,7 +195,10 @@ void print_plan(const plan *p) {
   if (p->water) printf(", water%s", p->flows ? " that flows" : ", undrained");
   if (p->body)
     printf(", %s %s%s, mu %g", p->free_body ? "free" : "driven", p->body == 2 ? "box" : "ball",
-           p->penalty ? " by penalty" : "", p->friction);
+           p->penalty       ? " by penalty"
+           : p->inset > 0.0 ? " with inset edges"
+                            : "",
+           p->friction);
   if (p->load) printf(", a load");
   printf("; then %s; steps %d %d %d\n", events[p->event], (int)p->steps[0], (int)p->steps[1],
          (int)p->steps[2]);

@@ -238,6 +238,7 @@ static mps_status make_body(scene *s) {
   contact.friction = p->friction;
   if (p->penalty) contact.method = MPS_CONTACT_METHOD_PENALTY;
   if (!p->penalty) contact.sweeps = p->sweeps, contact.tolerance = p->tolerance;
+  contact.inset = p->inset * CELL * by->length;
   contact.inside = MPS_CONTACT_INSIDE_PUSH;
   TRY(mps_mpm_add_contact(s->mpm, s->body, &contact, &s->contact));
   return status;

@@ -19,6 +19,9 @@ in_range "$work/active/summary.json" K_theory 0.33333 0.33334
 in_range "$work/active/summary.json" force_height 0.32 0.35
 wall passive --pressure passive --length 3
 in_range "$work/passive/summary.json" K 2.91 3.09
+wall toe --pressure passive --length 3 --below-toe 0.5 # which a sharp toe presses too
+in_range "$work/toe/summary.json" K 2.85 3.15
+in_range "$work/toe/summary.json" K_along -0.003 0.003
 wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
 in_range "$work/clay/summary.json" K 2.09 2.18 # 1 + 4 c/(gamma H) = 2.133
 wall cohesive --phi 25 --cohesion 1413Pa # 0.08002 gamma H

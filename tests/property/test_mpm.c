@@ -379,10 +379,10 @@ static void body_momentum(mps_body *body, double mass, double inertia, double *o
       inertia * b.spin[2] + mass * (b.position[0] * b.velocity[1] - b.position[1] * b.velocity[0]);
 }
 
-/* A lump thrown at two free rough bodies, whose edges are rounded by `corner` (m): what the
- * particles lose the bodies get, to the last bits of linear and, without flip_time, of angular
- * momentum. */
-static void check_momentum(double corner, double flip_time) {
+/* A lump thrown at two free rough bodies, whose edges are rounded by `corner` or whose faces end
+ * `inset` (m) before them: what the particles lose the bodies get, to the last bits of linear and,
+ * without flip_time, of angular momentum. */
+static void check_momentum(double corner, double inset, double flip_time) {
   scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   const double v0[] = {2.0, -0.5}, L[] = {0.0, -3.0, 3.0, 0.0};
   mpm_scene_ball(&s, 0.0, 0.0, 0.1);
@@ -396,7 +396,7 @@ static void check_momentum(double corner, double flip_time) {
   OK(mps_body_create_disc(context, &body, 0.08, &bodies[1]));
   OK(mps_body_name_part(bodies[0], "face", 3, 1, NULL));
   for (int b = 0; b < 2; b++) {
-    DEF(contact, contact, .friction = b == 0 ? 0.4 : 0.1, .corner = corner);
+    DEF(contact, contact, .friction = b == 0 ? 0.4 : 0.1, .corner = corner, .inset = inset);
     OK(mps_mpm_add_contact(s.mpm, bodies[b], &contact, NULL));
   }
   /* One step: what is written beside a body is a slope, not yet the moment of nodes. */
@@ -413,17 +413,19 @@ static void check_momentum(double corner, double flip_time) {
   assert_true(all.impulse[0] > 1.0); /* it has hit */
   assert_true(face.impulse[0] > 0.0);
   for (int b = 0; b < 2; b++) body_momentum(bodies[b], 20.0, 0.2, after);
-  print_message("corner %g m: linear %.2g %.2g, angular %.2g\n", corner, after[0] - before[0],
-                after[1] - before[1], after[2] - before[2]);
+  print_message("corner %g m, inset %g m: linear %.2g %.2g, angular %.2g\n", corner, inset,
+                after[0] - before[0], after[1] - before[1], after[2] - before[2]);
   const double scale = hypot(before[0], before[1]);
   for (int c = 0; c < (flip_time > 0.0 ? 2 : 3); c++) NEAR(after[c], before[c], 1e-11 * scale);
   for (int b = 0; b < 2; b++) mps_body_destroy(&bodies[b]);
 }
 
 TEST(contact_keeps_momentum) {
-  check_momentum(0.0, 0.0);
-  check_momentum(0.012, 0.0);
-  check_momentum(0.012, 0.005);
+  check_momentum(0.0, 0.0, 0.0);
+  check_momentum(0.012, 0.0, 0.0);
+  check_momentum(0.012, 0.0, 0.005);
+  check_momentum(0.0, 0.012, 0.0);
+  check_momentum(0.0, 0.012, 0.005);
 }
 
 /* The same in space: a ball of particles against a free rough sphere and a free rough plane. */

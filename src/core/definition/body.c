@@ -69,15 +69,19 @@ MPSI_DEFINITION_RULED(mps_body_motion, "body_motion", BODY_MOTION, BODY_MOTION_R
   X(S, REAL, strength,  1, "Pa",  OR_NAN ABOVE(0, MPSI_BODY_HEAVY),                  UNSET, OWN) \
   X(S, REAL, corner,    1, "m",   IN(0, MPSI_BODY_FAR),                              0,     OWN) \
   X(S, REAL, tolerance, 1, "",    OR_NAN BELOW(0, 1),                                UNSET, OWN) \
-  X(S, ADDRESS, friction_factor, 1, "", ANY, NULL, OWN)
+  X(S, ADDRESS, friction_factor, 1, "", ANY, NULL, OWN) \
+  X(S, REAL, inset,     1, "m",   IN(0, MPSI_BODY_FAR),                              0,     OWN)
 
 #define IMPULSE(S) IS(S, method, MPS_CONTACT_METHOD_IMPULSE), BECAUSE("impulses have no stiffness")
-#define PENALTY(S) IS(S, method, MPS_CONTACT_METHOD_PENALTY), BECAUSE("it has Coulomb friction alone, and rounds no corners")
+#define PENALTY(S) IS(S, method, MPS_CONTACT_METHOD_PENALTY), BECAUSE("it has Coulomb friction alone, and takes corners as they are")
 #define CONTACT_RULES(X, S) \
   X(S, xi,       NOT_GIVEN, IMPULSE(S)) \
   X(S, penalty,  NOT_GIVEN, IMPULSE(S)) \
   X(S, penalty,  NOT_GIVEN, WITH(S, xi)) \
   X(S, corner,   NOT_GIVEN, PENALTY(S)) \
+  X(S, inset,    NOT_GIVEN, PENALTY(S)) \
+  X(S, inset,    NOT_GIVEN, WITH(S, corner)) \
+  X(S, inset,    NOT_GIVEN, IN_SPACE, BECAUSE("the edges of a solid can be rounded by `corner`")) \
   X(S, adhesion, NOT_GIVEN, PENALTY(S)) \
   X(S, strength, NOT_GIVEN, PENALTY(S))
 MPSI_DEFINITION_RULED(mps_contact_def, "contact", CONTACT, CONTACT_RULES)

@@ -52,8 +52,9 @@ double mpsi_mpm_dt(const mps_mpm *mpm);
 
 /* While the ground settles nothing is kept: how it moves until it rests has no meaning. */
 static inline double mpsi_kept_velocity(const mps_mpm *mpm) {
-  return mpm->settling.on ? 0.0 : mpsi_kept_fraction(&mpm->def, &mpm->p, mpm->run.dt,
-                                                      mpsi_wave_time(&mpm->run, mpm->grid.cell));
+  return mpm->settling.on ? 0.0
+                          : mpsi_kept_fraction(&mpm->def, &mpm->p, mpm->run.dt,
+                                               mpsi_wave_time(&mpm->run, mpm->grid.cell));
 }
 
 /* The transfer of a solver, of no block of cells yet. */
@@ -161,6 +162,9 @@ mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
 /* ready.c: sorts the particles by blocks and rebuilds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* strips.c: once particles and bodies have moved, moves particles in the strips beyond inset edges
+ * off their bodies. */
+void mpsi_mpm_clear_strips(mps_mpm *mpm);
 /* cut.c: before a step, pairs of blocks and bodies, nodes inside bodies, and which blocks are cut
  * and split (contact/pairs.h). `status`: of the step so far on this rank; collective where there
  * are bodies. */

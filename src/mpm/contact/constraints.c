@@ -137,7 +137,7 @@ static int64_t share_candidates(const mpsi_grid *grid, const mpsi_contacts *cont
     mpsi_cell_pair *pair = &contacts->cell_pair[t];
     const mpsi_cell_block *cells = &grid->cells[pair->cells];
     pair->first_candidate = count;
-    pair->candidates = 0;
+    pair->candidates = pair->strips = 0;
     /* also for blocks that are scattered after the contacts are solved (step.c) */
     pair->in_contact = false;
     pair->deepest = 0.0;
@@ -222,7 +222,9 @@ static int by_place(const void *a, const void *b) {
   return (s->body > t->body) - (s->body < t->body);
 }
 
-static void begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t k,
+/* Contact of particle k with the body of pair t; false: it lies in the strip beyond an inset edge,
+ * where it has none. */
+static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t k,
                              const int64_t *id, mpsi_constraint *out) {
   mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
   const mps_contact *contact = stage->contact->handle[pair->body];
@@ -232,28 +234,87 @@ static void begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
       mpsi_mpm_bearing(stage->transfer.grid, stage->transfer.p, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
+  double shift[3] = {0.0};
+  if (-bearing.outside > pair->deepest) {
+    pair->in_contact = true;
+    pair->deepest = -bearing.outside, pair->deep = k;
+  }
+  if (contact->inset) {
+    const mpsi_edge_place place = mpsi_edge_find(contact->body, (const double(*)[2])contact->inset,
+                                                 contact->def.offset, &foot, shift);
+    if (place == MPSI_EDGE_STRIP) return false;
+    out->at_point = place == MPSI_EDGE_AT;
+  }
   for (int a = 0; a < stage->transfer.grid->dim; a++) c->normal[a] = foot.normal[a];
   out->part = mpsi_contact_part(contact, foot.face);
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
   for (int a = 0; a < stage->transfer.grid->dim; a++)
-    c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+    c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]) + shift[a];
   c->aim =
       mpsi_impulse_aim(foot.distance - bearing.half, stage->transfer.run->dt,
                        fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);
   c->friction = contact->friction;
   c->strength = INFINITY;
-  if (-bearing.outside > pair->deepest) {
-    pair->in_contact = true;
-    pair->deepest = -bearing.outside, pair->deep = k;
+  return true;
+}
+
+/* Value of the B-spline r cells from its middle. */
+static double spline_at(int spline, double r) {
+  r = fabs(r);
+  if (spline == 2) return r < 0.5 ? 0.75 - r * r : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0;
+  if (r < 1.0) return 2.0 / 3.0 - r * r + 0.5 * r * r * r;
+  return r < 2.0 ? (2.0 - r) * (2.0 - r) * (2.0 - r) / 6.0 : 0.0;
+}
+
+/* Solution q of the moment equations M q = (1, 0, 0), M positive definite; false where the nodes
+ * hardly determine it. */
+static bool solve_moments(double (*M)[4], double *q) {
+  M[0][3] = 1.0;
+  for (int i = 0; i < 3; i++) {
+    if (!(M[i][i] > 1e-3)) return false;
+    for (int k = i + 1; k < 3; k++)
+      for (int j = 3; j >= i; j--) M[k][j] -= M[k][i] / M[i][i] * M[i][j];
+  }
+  for (int i = 2; i >= 0; i--) {
+    q[i] = M[i][3];
+    for (int j = i + 1; j < 3; j++) q[i] -= M[i][j] * q[j];
+    q[i] /= M[i][i];
+  }
+  return true;
+}
+
+/* Shape functions of the least-squares fit at the point x in the plane over the active nodes of a
+ * particle near it, in place of those extrapolated from the particle: an impulse at an inset edge
+ * then acts on the same nodes, whichever particle it stands for. */
+static void fit_at_point(const mpsi_transfer *work, const double *x, mpsi_foot_weights *out) {
+  const mpsi_grid *grid = work->grid;
+  double r[MPSI_STENCIL][2], w[MPSI_STENCIL], M[3][4] = {{0.0}}, q[3];
+  for (uint64_t left = out->active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    const double local[3] = {out->at[0] + s % 4, out->at[1] + s / 4 % 4, 0.0};
+    double node[3];
+    mpsi_node_position(grid, work->cells->at, local, node);
+    for (int c = 0; c < 2; c++) r[s][c] = (node[c] - x[c]) * grid->inverse;
+    w[s] = spline_at(grid->spline, r[s][0]) * spline_at(grid->spline, r[s][1]);
+    const double base[3] = {1.0, r[s][0], r[s][1]};
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) M[i][j] += w[s] * base[i] * base[j];
+  }
+  if (!solve_moments(M, q)) return;
+  for (uint64_t left = out->active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    out->psi[s] = w[s] * (q[0] + q[1] * r[s][0] + q[2] * r[s][1]);
   }
 }
 
-/* Extrapolated shape functions psi at the nodes of the constraint's stencil. */
+/* Shape functions psi, extrapolated to the point where the impulse acts, at the nodes of the
+ * constraint's stencil. */
 static void find_psi(const mpsi_kernels *kernels, const mpsi_transfer *work,
                      const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
   for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
   kernels->foot(work, constraint->particle, d, out);
+  if (constraint->at_point) fit_at_point(work, constraint->impulse.at, out);
 }
 
 /* Tile node of stencil node s. */
@@ -382,21 +443,37 @@ void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage) {
                       (void *)stage);
 }
 
-static void fit_block(void *data, int64_t unit, int32_t worker) {
-  const mpsi_contact_stage *stage = data;
+/* Makes the constraints of a block's candidates. Those in the strips beyond inset edges get none:
+ * their places in the list, after the groups, stay empty. */
+static void begin_block(const mpsi_contact_stage *stage, const mpsi_cell_block *cells,
+                        mpsi_constraint_block *block) {
   mpsi_impulses *all = &stage->contact->impulses;
-  const mpsi_constraint_block *block = &all->block[unit];
-  const mpsi_transfer work = mpsi_contact_transfer(stage, block->cells, worker);
-  const mpsi_cell_block *cells = work.cells;
   const int64_t *id = mpsi_particles_integers(stage->transfer.p->set, "id");
   int64_t n = block->first;
   for (int32_t q = 0; q < cells->pairs && block->count > 0; q++) {
     const int64_t t = cells->first_pair + q;
-    const mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
-    const int32_t *candidate = all->candidate + pair->first_candidate;
+    mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
+    int32_t *candidate = all->candidate + pair->first_candidate;
     for (int64_t i = 0; i < pair->candidates; i++)
-      begin_constraint(stage, t, cells->begin + candidate[i], id, &all->constraint[n++]);
+      if (begin_constraint(stage, t, cells->begin + candidate[i], id, &all->constraint[n]))
+        n++;
+      else
+        candidate[pair->strips++] = candidate[i];
   }
+  const int64_t made = n - block->first;
+  if (made < block->count)
+    memset(all->constraint + n + block->groups, 0,
+           (size_t)(block->count - made) * sizeof *all->constraint);
+  block->count = made;
+}
+
+static void fit_block(void *data, int64_t unit, int32_t worker) {
+  const mpsi_contact_stage *stage = data;
+  mpsi_impulses *all = &stage->contact->impulses;
+  mpsi_constraint_block *block = &all->block[unit];
+  const mpsi_transfer work = mpsi_contact_transfer(stage, block->cells, worker);
+  int64_t n;
+  begin_block(stage, work.cells, block);
   if (block->count > 0)
     qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
   find_states(&work, all, block);

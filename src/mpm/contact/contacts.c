@@ -123,6 +123,19 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
   return status;
 }
 
+/* Where the faces of the body end for particles. */
+static mps_status find_insets(mps_context *context, const mpsi_grid *grid, const char *function,
+                              mps_contact *contact) {
+  const mps_body *body = contact->body;
+  if (!(contact->def.inset > 0.0) || body->shape != MPSI_POLYGON) return MPS_OK;
+  contact->inset = mpsi_alloc(context, body->edges, sizeof *contact->inset);
+  if (!contact->inset)
+    return mpsi_fail_memory(context, function, (size_t)body->edges * sizeof *contact->inset);
+  mpsi_edge_insets(body, contact->def.inset, grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC,
+                   contact->inset);
+  return MPS_OK;
+}
+
 /* Warns of a spacing of particles for which areas (area.c) are too small on curved surfaces. */
 static void warn_of_areas(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                           const mpsi_contacts *contacts, const mps_contact *contact) {
@@ -157,6 +170,7 @@ static mps_status compare_ranks(mpsi_partition *partition, const char *function,
     MPSI_GIVE(&given, d, strength);
     MPSI_GIVE(&given, d, corner);
     MPSI_GIVE(&given, d, tolerance);
+    MPSI_GIVE(&given, d, inset);
     mpsi_body_give(&given, contact->body);
   }
   return mpsi_domain_agree_given(partition->domain, function, status, &given);
@@ -289,6 +303,7 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
     status = check_overlap(setup->context, setup->grid, setup->contact, function, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(setup->context, function, body, def, owner, self, &contact);
+  if (status == MPS_OK) status = find_insets(setup->context, setup->grid, function, contact);
   if (status == MPS_OK) status = ensure_contact(setup->context, setup->contact, function);
   if (status == MPS_OK && setup->partition)
     status = mpsi_mpm_begin_partners(&setup->contact->partners, setup->partition->domain, function);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/corner.h"
+#include "contact/edge.h"
 #include "contact/impulse.h"
 #include "mpm/base/parts.h"
 #include "mpm/grid/blocks.h"
@@ -29,6 +30,7 @@ typedef struct mpsi_constraint {
                         (exchange.h) */
   int32_t body, part, nodes;
   bool even;
+  bool at_point; /* the weights are those of a fit at the point where the impulse acts */
   int32_t areas; /* number of nodes, in around[], whose areas it has a part of (area.c) */
 } mpsi_constraint;
 

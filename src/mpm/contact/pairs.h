@@ -23,6 +23,7 @@ typedef struct mpsi_cell_pair {
   int64_t first_load; /* index in contact.load, one load for each part of the body */
   int64_t first_candidate,
       candidates; /* contact by impulses: range of impulses.candidate (constraints.c) */
+  int64_t strips; /* of these, now at the beginning of the range: beyond an inset edge */
 } mpsi_cell_pair;
 
 /* Load of a pair's particles on one part of the body, and the number of particles in contact. */

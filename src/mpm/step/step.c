@@ -72,6 +72,14 @@ static bool on_ranks(const step *s) { return s->mpm->partition != NULL; }
 static bool has_water(const step *s) { return s->mpm->water != NULL; }
 static bool has_bodies(const step *s) { return s->mpm->contact.bodies > 0; }
 static bool has_bodies_on_ranks(const step *s) { return on_ranks(s) && has_bodies(s); }
+
+static bool has_strips(const step *s) {
+  const mpsi_contacts *contacts = &s->mpm->contact;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    if (contacts->handle[b]->inset) return true;
+  return false;
+}
+
 static bool has_lists(const step *s) { return s->mpm->prescribed.on; }
 static bool predicts(const step *s) { return mpsi_pore_predicts(s->mpm); }
 static bool is_in_contact(const step *s) { return s->in_contact; }
@@ -451,6 +459,7 @@ static const step_stage stages[] = {
     {"bound of the energy", .when = is_accepted, .act = mpsi_bound_check},
     {"refusal", .run = refuse, .exchange = within},
     {"bodies, energy, time", .run = complete},
+    {"strips at edges", .when = has_strips, .act = mpsi_mpm_clear_strips},
     {"water", .when = is_complete, .act = mpsi_pore_update},
     {"speeds, particles that leave", .run = collect, .exchange = within},
 };

@@ -1,0 +1,16 @@
+#!/bin/sh
+# cone_long.sh DIRECTORY: cones in clay whose faces end before their edges change little from D/8 to D/16 (minutes).
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+
+for angle in 30 60; do
+  for cell in 0.0125 0.00625; do
+    "$1/mps-penetrometer" --axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle $angle --cell $cell \
+      --out "$work/$angle/$cell" >/dev/null
+    in_range "$work/$angle/$cell/summary.json" particles_inside 0 0
+  done
+done
+in_range "$work/30/0.0125/summary.json" n_factor 4.10 4.26
+in_range "$work/30/0.00625/summary.json" n_factor 3.96 4.04 # -4.3 %
+in_range "$work/60/0.0125/summary.json" n_factor 6.66 6.79
+in_range "$work/60/0.00625/summary.json" n_factor 6.65 6.78 # -0.1 %
