@@ -230,6 +230,8 @@ int64_t flume_count_water(const flume *m);
 mps_status flume_refill(flume *m, double dt);
 /* warnings.c: of waves, gauges and shapes that a run makes little of. */
 void flume_warn(app *a, const flume *m);
+/* After the run. */
+void flume_warn_of_collisions(app *a, const flume *m);
 /* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a
  * checkpoint. */
 double flume_maker_place(const flume *m);

@@ -56,7 +56,7 @@ static option table[] = {
     OPTION_NUMBERS("focus", 2, model.s.focus, NULL),
     OPTION_TEXT("levels", &model.s.file, NULL),
     OPTION_TEXT("levels-column", &model.s.column, NULL),
-    OPTION_CHOICE_OF("order", "second|linear|narrow", &model.s.order, NULL),
+    OPTION_CHOICE_OF("order", "second|linear|narrow|stream", &model.s.order, NULL),
     OPTION_NUMBER("ramp", &model.s.ramp, "default 2 periods"),
     OPTION_NUMBER("stroke", &model.s.stroke, NULL),
     OPTION_NUMBER("speed", &model.s.speed, NULL),
