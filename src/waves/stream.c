@@ -8,7 +8,7 @@
  * Newton's method, in steps of the height from linear waves on; units of d and g.
  *
  * The piston has the depth-averaged velocity of the water at its face, dX/dt = c eta/(d + eta) at x
- * = X (Goring 1978): with xi = X - c t, d X + int_0^xi eta = 0. That holds for long waves: of low
+ * = X (Goring 1979): with xi = X - c t, d X + int_0^xi eta = 0. That holds for long waves: of low
  * ones its first and second harmonics are a/(k d) and (b - a^2/d)/(2 k d), a and b the harmonics of
  * the level, for the a/c0 of Biesel and the second order of second_order.c. X has its harmonics
  * times the ratio of the latter to the former. SPDX-License-Identifier: BSD-3-Clause */

@@ -59,7 +59,7 @@ typedef enum mps_waves_theory {
   MPS_WAVES_THEORY_NARROW = 2, /* differences alone, by the limit of a narrow band: for more
                                   components than SECOND takes */
   MPS_WAVES_THEORY_STREAM = 3  /* REGULAR, k depth <= 1: waves of the stream function (Rienecker and
-                                  Fenton 1981), and the piston by their flux (Goring 1978) */
+                                  Fenton 1981), and the piston by their flux (Goring 1979) */
 } mps_waves_theory;
 
 /** Definition of a sea; always start from mps_waves_defaults. */
