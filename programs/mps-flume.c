@@ -25,8 +25,7 @@ static void describe(const flume *m) {
       (long long)r.components, m->wave_length, r.period, r.stroke[0], r.stroke[1], r.speed);
   if (m->maker && mps_absorber_get_reflection(m->maker, m->s.period, &R) == MPS_OK)
     printf("an absorbing piston reflects %.3f of waves of that period, by linear theory\n", R);
-  printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
-         mps_fluid_dt(m->fluid));
+  printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water), flume_dt(m));
   fflush(stdout);
 }
 

@@ -250,7 +250,7 @@ static const struct {
     NUMBER("offset", "cells", FROM_TO(-1.0, 1.0), "shift of the grid along x and y"),
     CHOICE("order", NULL,
            "theory of the maker: sums and differences of all pairs of components; linear; "
-           "differences alone, as of a narrow band"),
+           "differences alone, as of a narrow band; the stream function, of regular long waves"),
     TEXT("out", "DIR", "directory of the results"),
     NUMBER("p0", "Pa", FROM_TO(0.0, 1e11),
            "first mean effective pressure; laws of F or V/V0 begin without stress"),

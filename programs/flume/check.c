@@ -6,6 +6,10 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Steps over (spacing/g)^1/2. */
+#define USUAL_STEP 0.2
+#define MOST_STEP 0.3
+
 /* ---- numbers --------------------------------------------------------------------------------- */
 
 static int complete(const options_program *program, flume *m) {
@@ -25,6 +29,7 @@ static int complete(const options_program *program, flume *m) {
   if (own && !s->closed) s->length = m->shape.structure_point[0][0];
   if (isnan(s->length)) s->length = ceil(3.0 * m->wave_length / s->spacing) * s->spacing;
   if (!own || s->closed) options_whole("length", &s->length, "--spacing", s->spacing);
+  if (isnan(s->dt)) s->dt = USUAL_STEP * sqrt(s->spacing / WAVES_G);
   if (isnan(s->ramp)) s->ramp = 2.0 * s->period;
   if (isnan(s->duration)) s->duration = 20.0 * s->period;
   if (isnan(s->sample)) s->sample = s->period / 60.0;
@@ -41,6 +46,8 @@ static int complete(const options_program *program, flume *m) {
 
 static int check_times(const options_program *program, const flume *m) {
   const flume_settings *s = &m->s;
+  if (s->dt > MOST_STEP * sqrt(s->spacing / WAVES_G))
+    return flume_refuse(program, m, "--dt must be at most .3 (spacing/g)^1/2");
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
     return flume_refuse(program, m,
                         "--sample must be between a millionth of --duration and all of it");

@@ -192,6 +192,7 @@ static void find_means(app *a, const flume *m, flume_figures *f) {
              "the maker stood %.3g m from its place in the mean, more than %g of the waves' height",
              f->mean_maker, MEAN_OF_MAKER);
   if (m->filled > 0) f->water = water / samples;
+  flume_warn_of_collisions(a, m);
 }
 
 static void find_discharge(app *a, const flume *m, flume_figures *f) {

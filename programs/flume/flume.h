@@ -60,6 +60,7 @@ typedef struct flume_settings {
   double zone, rate;                            /* wave lengths; 1/period */
   double crest, cotangent, width;               /* m, 1, m: of the wall */
   double density, friction;                     /* kg/m3, 1: of the caisson */
+  double dt;                                    /* s, at most */
   double duration, sample, disturb;             /* s, s, spacings */
   double gauge[FLUME_GAUGES], window[2];        /* m, s */
   flume_rock rock;                              /* of --rock, and what others have by default */
@@ -131,6 +132,7 @@ typedef struct flume {
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
   double offset;            /* m: mean level at the face of the maker in its middle place */
+  double middle;            /* m: mean place of the far piston */
   double due;               /* part of the next particle that returns, 0 to 1 */
   flume_look look;          /* of the largest force */
   flume_look *frame;        /* of the animation */
@@ -228,10 +230,14 @@ int64_t flume_count_water(const flume *m);
 mps_status flume_refill(flume *m, double dt);
 /* warnings.c: of waves, gauges and shapes that a run makes little of. */
 void flume_warn(app *a, const flume *m);
+/* After the run. */
+void flume_warn_of_collisions(app *a, const flume *m);
 /* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a
  * checkpoint. */
 double flume_maker_place(const flume *m);
 mps_status flume_run(app *a, flume *m);
+/* Size (s) of the next step: that asked for, or less where the water is fast. */
+double flume_dt(const flume *m);
 /* restart.c. flume_peek compares the options of the file with these before the model is built. */
 mps_status flume_save(void *user);
 mps_status flume_peek(mps_context *context, flume *m);

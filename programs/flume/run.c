@@ -10,23 +10,41 @@
 #include <stdio.h>
 
 #define MEAN 1.0        /* periods over which the mean level at the maker is taken */
+#define SLOPE_FROM 2.5  /* spacings from a piston's face, of the other end of the slope there */
+#define MIDDLE 3.0      /* periods over which the place of the far piston is */
 #define LAST_STEPS 32.0 /* that are equal, and shorter, to end the run at its duration */
 
 /* ---- pistons --------------------------------------------------------------------------------- */
 
-static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double face, double dt,
-                              double *moved, double *level) {
-  const double t = mps_fluid_time(m->fluid), mean = piston == m->maker ? m->offset : 0.0;
-  double u;
-  mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, level);
-  *level -= m->s.depth;
-  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, *level - mean, moved, &u);
-  return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
+/* Level (m above the water at rest) `place` m behind the face of a piston at `face`, where it is in
+ * its middle place: eta(0) = eta(X) - X eta_x, by the theory of the piston. Mean and slow part of X
+ * eta_x, of second order, would move pistons off and send long waves. `inward`: sign of x into the
+ * water. */
+static mps_status level_behind(const flume *m, double face, double place, double inward,
+                               double *level) {
+  const double near = 0.5 * m->s.spacing, far = SLOPE_FROM * m->s.spacing;
+  const double at[2] = {face + inward * near, face + inward * far};
+  double eta[2];
+  const mps_status status = mps_fluid_get_levels(m->fluid, 2, at, eta);
+  const double slope = isnan(eta[1]) ? 0.0 : (eta[1] - eta[0]) / (far - near);
+  *level = eta[0] - m->s.depth - place * slope;
+  return status;
 }
 
 static double place_of(const mps_absorber *piston) {
   mps_absorber_report r = {.displacement = 0.0};
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
+}
+
+static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double dt,
+                              double *moved, double *level) {
+  const bool maker = piston == m->maker;
+  const double t = mps_fluid_time(m->fluid), mean = maker ? m->offset : 0.0, s = place_of(piston);
+  double u;
+  mps_status status = maker ? level_behind(m, s, s, 1.0, level)
+                            : level_behind(m, m->outlet - s, s - m->middle, -1.0, level);
+  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, *level - mean, moved, &u);
+  return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
 }
 
 /* Before a wall the maker would not stay: the mean level of standing waves at its face is some mm
@@ -41,6 +59,7 @@ static double place_of(const mps_absorber *piston) {
  */
 static void follow_mean(flume *m, double level, double dt) {
   mps_absorber_report r;
+  m->middle += -expm1(-dt / (MIDDLE * m->s.period)) * (place_of(m->end) - m->middle);
   if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
   const double through = m->toe / sqrt(WAVES_G * m->s.depth);
   const double part = -expm1(-dt / fmax(MEAN * m->s.period, through));
@@ -58,9 +77,7 @@ double flume_maker_place(const flume *m) {
 static mps_status move_maker(flume *m, double dt, double *level) {
   const double t = mps_fluid_time(m->fluid) + dt;
   double s, u;
-  if (m->maker)
-    return move_piston(m, m->maker, FLUME_MAKER, place_of(m->maker) + 0.5 * m->s.spacing, dt, &s,
-                       level);
+  if (m->maker) return move_piston(m, m->maker, FLUME_MAKER, dt, &s, level);
   const mps_status status = mps_waves_get_piston(m->waves, 1, &t, &s, &u, NULL, NULL);
   return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, FLUME_MAKER, &s, &u) : status;
 }
@@ -69,9 +86,25 @@ static mps_status keep_memory(const mps_absorber *piston, double *memory) {
   return piston ? mps_absorber_get_memory(piston, memory) : MPS_OK;
 }
 
+/* The library's limit is .1 (l0/g)^1/2, and where the water is fast a quarter of the spacing over
+ * its speed. Waves keep their height with twice the first; the second holds for any flow. */
+double flume_dt(const flume *m) {
+  mps_view u;
+  double square = 0.0, porosity = 1.0;
+  const double most = 0.1 * sqrt(m->s.spacing / WAVES_G), limit = mps_fluid_limit(m->fluid);
+  if (limit < most * (1.0 - 1e-9)) return fmin(limit, m->s.dt);
+  if (mps_particles_view(m->water, "velocity", &u) != MPS_OK) return fmin(limit, m->s.dt);
+  for (int64_t i = 0; i < u.shape[0]; i++) {
+    const double x = *mps_view_f64(&u, i, 0), y = *mps_view_f64(&u, i, 1);
+    square = fmax(square, x * x + y * y);
+  }
+  for (int k = 0; k < m->shape.rocks; k++) porosity = fmin(porosity, m->shape.rock[k].porosity);
+  return fmin(m->s.dt, 0.25 * m->s.spacing * porosity / (sqrt(square) + 1e-300));
+}
+
 /* As of mps_fluid_run: the last steps, or all of fewer, are equal. */
 static double step_size(const flume *m) {
-  const double dt = mps_fluid_dt(m->fluid), left = m->s.duration - mps_fluid_time(m->fluid);
+  const double dt = flume_dt(m), left = m->s.duration - mps_fluid_time(m->fluid);
   const double count = ceil(left / dt * (1.0 - 1e-9));
   return count <= LAST_STEPS ? fmin(left / fmax(count, 1.0), dt) : dt;
 }
@@ -80,9 +113,7 @@ static mps_status make_step(flume *m) {
   const double dt = step_size(m);
   double s, level = 0.0, far;
   mps_status status = move_maker(m, dt, &level);
-  if (status == MPS_OK && m->end)
-    status = move_piston(m, m->end, FLUME_END, m->outlet - place_of(m->end) - 0.5 * m->s.spacing,
-                         dt, &s, &far);
+  if (status == MPS_OK && m->end) status = move_piston(m, m->end, FLUME_END, dt, &s, &far);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
   if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);

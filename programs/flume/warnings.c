@@ -9,9 +9,10 @@
 /* Heights of waves in spacings. Heads of less than some .7 spacings do not pass a crest. */
 #define LEAST_OF_WAVES 3.0
 #define LEAST_OF_DISCHARGE 4.0
-#define HIGHEST_OF_SEA 1.8 /* highest of some hundred waves over Hm0 */
-#define LEAST_OF_BAND 0.95 /* of the height of a record */
-#define LONGEST 26.3       /* Ursell's number up to which second order holds, 8 pi^2/3 */
+#define HIGHEST_OF_SEA 1.8       /* highest of some hundred waves over Hm0 */
+#define LEAST_OF_BAND 0.95       /* of the height of a record */
+#define LEAST_OF_COLLISIONS 0.05 /* a step */
+#define LONGEST 26.3             /* Ursell's number up to which second order holds, 8 pi^2/3 */
 
 static void warn_of_spacing(app *a, const flume *m) {
   const flume_settings *s = &m->s;
@@ -39,10 +40,27 @@ static void warn_of_length(app *a, const flume *m) {
 }
 
 /* Miche (1944), as for regular waves, which the library refuses then. */
+static double breaking_height(const flume *m) {
+  return 0.142 * m->wave_length * tanh(2.0 * WAVES_PI / m->wave_length * m->s.depth);
+}
+
+/* Waves that do not break have none; some pairs at the surface do not part again by themselves. */
+void flume_warn_of_collisions(app *a, const flume *m) {
+  const flume_settings *s = &m->s;
+  const double highest = s->waves == FLUME_REGULAR || s->waves == FLUME_FOCUSED
+                             ? s->height
+                             : HIGHEST_OF_SEA * s->height;
+  const double count = (double)m->report.collisions, steps = (double)mps_fluid_steps(m->fluid);
+  if (flume_is_loaded(m) || m->shape.bed > 0 || m->shape.rocks > 0 || s->waves == FLUME_FILE)
+    return;
+  if (highest > breaking_height(m) || count < LEAST_OF_COLLISIONS * steps) return;
+  app_warn(a, "%.0f collisions of particles in %.0f steps, in waves that do not break", count,
+           steps);
+}
+
 static void warn_of_breaking(app *a, const flume *m) {
   const flume_settings *s = &m->s;
-  const double k = 2.0 * WAVES_PI / m->wave_length,
-               most = 0.142 * m->wave_length * tanh(k * s->depth);
+  const double most = breaking_height(m);
   if ((s->waves == FLUME_JONSWAP || s->waves == FLUME_PM) && HIGHEST_OF_SEA * s->height > most)
     app_warn(a,
              "the highest waves of this sea, some %.2g m (1.8 Hm0), are above the breaking height "

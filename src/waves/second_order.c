@@ -163,7 +163,7 @@ static mps_status push_all(mps_waves *w) {
 }
 
 mps_status mpsi_waves_find_push(mps_waves *w) {
-  if (w->def.theory == MPS_WAVES_THEORY_SECOND) return push_all(w);
+  if (w->def.theory != MPS_WAVES_THEORY_NARROW) return push_all(w);
   push_narrow(w);
   return MPS_OK;
 }
@@ -172,6 +172,9 @@ void mpsi_waves_add_bound(const mps_waves *w, double x, double complex *eta) {
   const double g = w->def.gravity, d = w->def.depth;
   const bool all = w->def.theory == MPS_WAVES_THEORY_SECOND;
   double group;
+  for (int64_t n = 2; w->shape && n <= w->bins; n++)
+    eta[n] += w->shape[n] * cexp(-I * (double)n * w->wave[0].k * x);
+  if (w->shape) return;
   const double G = narrow(w, &group);
   for (int64_t p = 0; w->bins > 0 && p < w->count; p++) {
     const mpsi_wave *a = &w->wave[p];

@@ -61,6 +61,9 @@ static mps_status check_sea(const mps_waves *w, const double *levels) {
 /* Breaking, and crests of the second order's own. */
 static mps_status check_height(const mps_waves *w) {
   const mps_waves_def *d = &w->def;
+  if (d->theory == MPS_WAVES_THEORY_STREAM && d->kind != MPS_WAVES_REGULAR)
+    return mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
+                     "theory MPS_WAVES_THEORY_STREAM is for MPS_WAVES_REGULAR");
   if (d->kind != MPS_WAVES_REGULAR) return MPS_OK;
   const double k = w->wave[0].k, L = 2.0 * MPSI_WAVES_PI / k,
                most = BREAKING * L * tanh(k * d->depth);
@@ -74,7 +77,7 @@ static mps_status check_height(const mps_waves *w) {
   if (d->theory == MPS_WAVES_THEORY_SECOND && ratio >= 8.0 / 3.0 * MPSI_WAVES_PI * MPSI_WAVES_PI)
     return mpsi_fail(w->context, "mps_waves_create", MPS_ERROR_ARGUMENT,
                      "height %g m of the waves: height L^2/depth^3 is %g, must be below 26.3 with "
-                     "MPS_WAVES_THEORY_SECOND",
+                     "MPS_WAVES_THEORY_SECOND: longer waves are of MPS_WAVES_THEORY_STREAM",
                      d->height, ratio);
   return MPS_OK;
 }
@@ -135,19 +138,27 @@ static void summarise(mps_waves *w) {
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static void release(mps_waves *w) { MPSI_FREE(w->context, w->wave, w->push, w->bound, w); }
+static void release(mps_waves *w) {
+  MPSI_FREE(w->context, w->wave, w->push, w->bound, w->shape, w);
+}
 
 static mps_status make_second_order(mps_waves *w) {
   if (w->def.theory == MPS_WAVES_THEORY_LINEAR) return MPS_OK;
-  const int64_t bins = 2 * w->wave[w->count - 1].bin;
+  const bool stream = w->def.theory == MPS_WAVES_THEORY_STREAM;
+  const int64_t bins = stream ? MPSI_WAVES_HARMONICS : 2 * w->wave[w->count - 1].bin;
   const size_t bytes = (size_t)(bins + 1) * sizeof *w->push;
   w->push = mpsi_alloc(w->context, bins + 1, sizeof *w->push);
   if (!w->push) return mpsi_fail_memory(w->context, "mps_waves_create", bytes);
   w->bound = mpsi_alloc(w->context, bins + 1, sizeof *w->bound);
   if (!w->bound) return mpsi_fail_memory(w->context, "mps_waves_create", bytes);
+  if (stream) w->shape = mpsi_alloc(w->context, bins + 1, sizeof *w->shape);
+  if (stream && !w->shape) return mpsi_fail_memory(w->context, "mps_waves_create", bytes);
   w->bins = bins;
+  MPSI_TRY(mpsi_waves_find_push(w));
+  if (stream) MPSI_TRY(mpsi_waves_make_stream(w));
+  if (stream) w->report.wave_number = w->wave[0].k;
   mpsi_waves_add_bound(w, 0.0, w->bound);
-  return mpsi_waves_find_push(w);
+  return MPS_OK;
 }
 
 mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def, mps_waves **out) {

@@ -9,6 +9,7 @@
 #include <complex.h>
 #include <math.h>
 
+#define MPSI_WAVES_HARMONICS 32 /* of the stream function */
 #define MPSI_WAVES_PI 3.14159265358979323846
 
 /* Whether a member of a definition is in 1e-12 to 1e12, of which products and ratios are numbers
@@ -35,6 +36,7 @@ struct mps_waves {
   /* bins + 1 amplitudes (m): of the second-order displacement of the piston, of bound waves at x =
    * 0 */
   double complex *push, *bound;
+  double complex *shape; /* THEORY_STREAM: harmonics of the level, m; NULL: another theory */
   mps_waves_report report;
 };
 
@@ -48,6 +50,10 @@ mps_status mpsi_waves_make_components(mps_waves *w, const mps_waves_def *def);
 mps_status mpsi_waves_find_push(mps_waves *w);
 /* Adds the bound waves at x (m) to `eta`, bins + 1 amplitudes. */
 void mpsi_waves_add_bound(const mps_waves *w, double x, double complex *eta);
+
+/* stream.c: the harmonics of a regular wave and of its piston, in place of those of second order.
+ */
+mps_status mpsi_waves_make_stream(mps_waves *w);
 
 /* motion.c: displacement, velocity, acceleration and level at the piston; `eta`: bound waves of x =
  * 0 or NULL. */

@@ -98,6 +98,15 @@ has "$work/log" "0.36 m (1.8 Hm0), are above the breaking height 0.27 m"
 "$1/mps-flume" $short --waves focused --height 0.1 --focus 3,4 >"$work/log" 2>&1
 has "$work/log" "the focus at 4 s is too early: the waves of the peak need 5"
 
+# Regular waves too long for second order; steps.
+"$1/mps-flume" $short --order stream --height 0.08 --period 3 --depth 0.25 >"$work/log" 2>&1
+has "$work/log" "1 components, wave length 4.902 m"
+has "$work/log" "dt 0.01428 s" # .2 (.05 m/g)^1/2
+"$1/mps-flume" $short --dt 5ms >"$work/log" 2>&1
+has "$work/log" "dt 0.005 s"
+! "$1/mps-flume" $short --dt 30ms >"$work/log" 2>&1 || fail "a step of .42 (l0/g)^1/2"
+has "$work/log" "--dt must be at most .3 (spacing/g)^1/2"
+
 # Waves through a block of rock: the gauges before and behind it are analysed apart. Energy is lost.
 "$1/mps-flume" $coarse --height 0.05 --period 1.5 --length 6 --rock 3,0,3.4,0,3.4,0.8,3,0.8 --stone 2cm --rock-beta 0 \
   --gauge 1,1.25,1.75,2.25,3.2,4,4.25,4.75 --duration 16 --frames 0 --out "$work/block" >"$work/log" 2>&1

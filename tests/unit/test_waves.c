@@ -264,6 +264,104 @@ TEST(the_piston_of_long_waves_is_that_of_madsen) {
   }
 }
 
+/* ---- the stream function --------------------------------------------------------------------- */
+
+static mps_waves_def stream(double depth, double height, double period) {
+  mps_waves_def def = regular(depth, height, period);
+  def.theory = MPS_WAVES_THEORY_STREAM, def.ramp = 0.0;
+  return def;
+}
+
+/* raschii 2.0.0, another program of Fenton's method, 30 harmonics: height, depth, length, flux Q in
+ * the frame of the wave, levels of crest, quarter and trough. The period without transport of water
+ * is length depth/Q. */
+TEST(waves_of_the_stream_function_are_those_of_another_program) {
+  static const double table[][7] = {{0.02, 0.4, 4.0, 0.746511281, 0.010608, -0.000605, -0.009392},
+                                    {0.1, 0.4, 3.0, 0.723340811, 0.059989, -0.009198, -0.040011},
+                                    {0.16, 0.4, 4.0, 0.773198815, 0.111531, -0.023995, -0.048469},
+                                    {0.08, 0.4, 8.0, 0.805427844, 0.059928, -0.013990, -0.020072},
+                                    {0.16, 0.4, 8.0, 0.843416622, 0.131372, -0.025303, -0.028628},
+                                    {0.2, 0.4, 6.0, 0.834245893, 0.159753, -0.032220, -0.040247},
+                                    {2.0, 5.0, 60.0, 35.12274246, 1.459758, -0.325078, -0.540242}};
+  for (size_t n = 0; n < sizeof table / sizeof *table; n++) {
+    const double *row = table[n], T = row[2] * row[1] / row[3];
+    const mps_waves_def def = stream(row[1], row[0], T);
+    scoped_waves *s = make(&def);
+    mps_waves_report report;
+    OK(mps_waves_get_report(s, &report));
+    NEAR(2.0 * PI / report.wave_number, row[2], 1e-7 * row[2]);
+    for (int k = 0; k < 3; k++) {
+      const double t = 0.0;
+      double level;
+      OK(mps_waves_get_levels(s, 0.25 * k * row[2], 1, &t, NULL, &level));
+      NEAR(level, row[4 + k], 2e-6 * row[1]);
+    }
+  }
+}
+
+/* What the piston moves is what passes: its velocity is the mean of the water's over the depth at
+ * its face, c eta/(depth + eta), as long as the waves are long; its way back is its way out. */
+TEST(the_piston_of_long_waves_moves_with_their_flux) {
+  static const double length[] = {60.0, 90.0, 120.0}; /* depths */
+  for (int n = 0; n < 3; n++) {
+    const double d = 0.4, L = length[n] * d, T = L / sqrt(G * d), H = 0.02;
+    const mps_waves_def def = stream(d, H, T);
+    scoped_waves *s = make(&def);
+    mps_waves_report report;
+    double worst = 0.0, fastest = 0.0, sum = 0.0;
+    OK(mps_waves_get_report(s, &report));
+    const double c = 2.0 * PI / T / report.wave_number;
+    enum { M = 64 };
+    for (int m = 0; m < M; m++) {
+      const double t = T * m / M;
+      double x, u, level;
+      OK(mps_waves_get_piston(s, 1, &t, &x, &u, NULL, NULL));
+      const double there = fabs(x), then = t - (x < 0.0 ? 2.0 * x / c : 0.0); /* station >= 0 */
+      OK(mps_waves_get_levels(s, there, 1, &then, NULL, &level));
+      worst = fmax(worst, fabs(u - c * level / (d + level)));
+      fastest = fmax(fastest, fabs(u)), sum += u / M;
+    }
+    print_message("L/d %g: velocity of the piston within %.2g of the flux's\n", length[n],
+                  worst / fastest);
+    assert_true(worst < 0.01 * fastest && fabs(sum) < 1e-9);
+  }
+}
+
+/* Low waves have the piston of second order, at any length. */
+TEST(low_waves_of_the_stream_function_are_of_second_order) {
+  static const double kd[] = {0.3, 0.6, 0.9};
+  for (int n = 0; n < 3; n++) {
+    const double d = 0.4, T = period_of(kd[n], d), H = 0.02 * d * kd[n] * kd[n];
+    mps_waves_def def = stream(d, H, T);
+    scoped_waves *s = make(&def);
+    def.theory = MPS_WAVES_THEORY_SECOND;
+    scoped_waves *low = make(&def);
+    double difference = 0.0, most = 0.0;
+    for (int m = 0; m < 64; m++) {
+      const double t = T * m / 64;
+      double x, y;
+      OK(mps_waves_get_piston(s, 1, &t, &x, NULL, NULL, NULL));
+      OK(mps_waves_get_piston(low, 1, &t, &y, NULL, NULL, NULL));
+      difference = fmax(difference, fabs(x - y)), most = fmax(most, fabs(y));
+    }
+    print_message("kd %g: pistons differ by %.2g\n", kd[n], difference / most);
+    assert_true(difference < 2e-3 * most);
+  }
+}
+
+TEST(waves_beyond_the_stream_function_are_refused) {
+  mps_waves_def def = stream(0.4, 0.08, period_of(1.2, 0.4));
+  mps_waves *w = NULL;
+  REFUSES(mps_waves_create(context, &def, &w), "is for k depth <= 1");
+  def = stream(0.4, 0.34, 4.0);
+  REFUSES(mps_waves_create(context, &def, &w), "the stream function has no such waves");
+  def = stream(0.4, 0.2, 40.0);
+  REFUSES(mps_waves_create(context, &def, &w), "height 0.2 m of waves of 40 s");
+  def = sea(MPS_WAVES_JONSWAP, 0.4, 0.04, 2.0);
+  def.theory = MPS_WAVES_THEORY_STREAM;
+  REFUSES(mps_waves_create(context, &def, &w), "is for MPS_WAVES_REGULAR");
+}
+
 /* Two waves as a record, of 40 and 41 (or more) cycles. */
 static mps_waves *pair(double d, double a, double kd, int first, int second, int32_t theory) {
   enum { N = 4096 };

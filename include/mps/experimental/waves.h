@@ -56,8 +56,10 @@ typedef enum mps_waves_theory {
   MPS_WAVES_THEORY_SECOND = 0, /* sums and differences of all pairs of components, and the piston's
                                   motion that makes no free waves with them (Schaeffer 1996) */
   MPS_WAVES_THEORY_LINEAR = 1, /* the piston by its linear transfer alone */
-  MPS_WAVES_THEORY_NARROW = 2  /* differences alone, by the limit of a narrow band: for more
+  MPS_WAVES_THEORY_NARROW = 2, /* differences alone, by the limit of a narrow band: for more
                                   components than SECOND takes */
+  MPS_WAVES_THEORY_STREAM = 3  /* REGULAR, k depth <= 1: waves of the stream function (Rienecker and
+                                  Fenton 1981), and the piston by their flux (Goring 1979) */
 } mps_waves_theory;
 
 /** Definition of a sea; always start from mps_waves_defaults. */
@@ -166,7 +168,8 @@ MPS_API MPS_NODISCARD mps_status mps_signal_create_waves(mps_context *context, m
  * either end; displacement and velocity count into the water. The caller advances it each step:
  *
  *   mps_fluid_get_levels(fluid, 1, &station, &level);          half a spacing before its face
- *   mps_absorber_advance(absorber, t, dt, level - depth, &s, &u);
+ *   mps_absorber_advance(absorber, t, dt, level - depth, &s, &u);   less s times its slope into
+ *                                     the water: else its mean and slow part move the piston off
  *   mps_fluid_set_boundary_motion(fluid, wall, &s, &u);
  *   mps_fluid_step(fluid, 1); */
 

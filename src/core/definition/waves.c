@@ -9,7 +9,7 @@
 #define WAVES(X, S) \
   X(S, INT,     kind,      1, "",     ONE_OF(MPS_WAVES_, "REGULAR|JONSWAP|PIERSON_MOSKOWITZ|SPECTRUM|RECORD"), 0,     OWN) \
   X(S, INT,     phases,    1, "",     ONE_OF(MPS_WAVES_PHASES_, "RANDOM|AMPLITUDES|FOCUSED"),                       0,     OWN) \
-  X(S, INT,     theory,    1, "",     ONE_OF(MPS_WAVES_THEORY_, "SECOND|LINEAR|NARROW"),                            0,     OWN) \
+  X(S, INT,     theory,    1, "",     ONE_OF(MPS_WAVES_THEORY_, "SECOND|LINEAR|NARROW|STREAM"),                     0,     OWN) \
   X(S, REAL,    depth,     1, "m",    IN(1e-12, 1e12),                                                              UNSET, OWN) \
   X(S, REAL,    gravity,   1, "m/s2", IN(1e-12, 1e12),                                                              9.81,  OWN) \
   X(S, REAL,    height,    1, "m",    OR_NAN IN(1e-12, 1e12),                                                       UNSET, OWN) \

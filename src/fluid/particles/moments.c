@@ -6,7 +6,8 @@
  *
  * A particle is at the free surface where |m| > .15 n0 l0 and no particle is within 2.1 l0 inside
  * the cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but
- * not where e points into an acute corner between a body and a boundary (sight.c). At a rock's face
+ * not where e points into an acute corner between a body and a boundary (sight.c), nor deep in the
+ * wake of a body's corner. At a rock's face
  * the lattices of water and rock may part, so that n is small within the fluid: there the cone
  * alone decides, as long as the larger spacing asks. The surface then lies at x + h e, h = l0 (1/2
  * + (n - n_half)/n_slope): in an undisturbed lattice half a spacing outside. A particle with n <
@@ -29,6 +30,10 @@
 #define FEW 0.72       /* n/n0 */
 #define LEVEL 0.35     /* n/n0: below, spray, without a level */
 #define ONE_SIDED 0.15 /* |m|/(n0 l0) */
+#define WAKE 6.0       /* l0, from a corner of a body */
+#define DEEP 6.0       /* l0, below the level of the water at rest */
+#define PRESSED 3.0    /* rho g l0, in the last step */
+#define GAP 0.5        /* n/n0, of a gap in a wake at least */
 #define CONE_REACH 2.1 /* l0 */
 #define CONE 0.70710678118654752
 #define LEAST_RATIO 0.1 /* of the eigenvalues of M */
@@ -71,6 +76,16 @@ static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
   return true;
 }
 
+/* Deep beside a body's corner and under pressure in the last step. Where water parts from a corner
+ * its particles do too, and a gap between them passed for the surface: no pressure in one place for
+ * a step. */
+static bool in_wake(const mps_fluid *f, int64_t i) {
+  const double unit = f->def.density * f->g * f->l0;
+  const double head = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]); /* f->q: of the last step */
+  return -head > DEEP * unit && f->q[i] - head > PRESSED * unit &&
+         mpsi_fluid_within(f, i, WAKE * f->l0);
+}
+
 static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m, double length) {
   if (!(length > 0.0)) return false;
   const double e[2] = {-m[0] / length, -m[1] / length};
@@ -78,6 +93,7 @@ static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m,
   const double spacing = f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
   const bool few = n < FEW * n0;
   if (!few && !(length > ONE_SIDED * n0 * spacing)) return false;
+  if (f->faces && n > GAP * n0 && in_wake(f, i)) return false;
   const bool wedge = f->company[i] & MPSI_FLUID_NEAR_WEDGE;
   const bool sure = few && !mpsi_fluid_is_mixed(f, i); /* lattices part at a rock's face */
   return (sure || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
