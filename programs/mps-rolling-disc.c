@@ -268,21 +268,13 @@ static bool write_motion(app *a, const settings *s, const simulation *sim) {
 }
 
 static bool draw(app *a, const settings *s) {
-  output f;
-  if (!plot_open(&f, a, s->out, "motion", 1000, 640)) return false;
-  output_text(&f,
-              "set title \"%s disc on %s slope of %g degrees\\n{/*0.85 h = %g R, {/Symbol m} = "
-              "%g, %d particles a cell, %s}\"\n"
-              "set xlabel 'time (s)'\nset ylabel \"path along the slope x'_c (m)\"\n"
-              "set key left top opaque\n"
-              "plot 'motion.csv' every ::1 using 1:3 with lines linecolor rgb '#c0392b' title "
-              "'theory, Nakamura (51)', \\\n"
-              "  '' every 4::1 using 1:2 with points pointtype 6 linecolor rgb '#1f4e8c' title "
-              "'WLS-MPM'\n",
-              s->body == BODY_SLOPE ? "An elastic" : "A rigid",
-              s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
-              (int)s->ppc, s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
-  return plot_close(&f, s->out, "motion");
+  return plot_draw(a, s->out, "motion", "rolling-disc",
+                   "first = '%s disc on %s slope of %g degrees'\n"
+                   "second = 'h = %g R, {/Symbol m} = %g, %d particles a cell, %s'",
+                   s->body == BODY_SLOPE ? "An elastic" : "A rigid",
+                   s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
+                   (int)s->ppc,
+                   s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
 }
 
 /* The largest relative difference from the path (51) on the way, and when, s. */

@@ -91,7 +91,7 @@ void app_leave_at_once(app *a, bool on);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);
-/* "Results: DIR/ (files)" on stdout: the files written. */
-void app_tell_results(const app *a, const char *directory);
+/* Writes index.html of the files written, and prints "Results: DIR/ (files)". */
+void app_tell_results(app *a, const char *directory);
 
 #endif

@@ -37,6 +37,15 @@ typedef struct area_def {
  * Errors are those of output_close. */
 void area_write(output *file, const area_def *def, int64_t count, const double *row, area *out);
 
+/* The same as a file of its own. */
+bool area_image(app *a, const char *directory, const char *file, const area_def *def, int64_t count,
+                const double *row, area *out);
+
+/* Variables of the template maps.gp that follow from `count` images of one size in `file`: lengths
+ * divided by `length` (m). */
+void area_set(output *script, const char *file, const area_def *def, int64_t count,
+              const area *images, double length);
+
 /* The element of a gnuplot `plot` that draws it from the file of that name: lengths divided by
  * `length` (m). Values are read as they are: an expression for each pixel takes ten times as long.
  */

@@ -128,6 +128,9 @@ void options_whole(const char *name, double *length, const char *of, double part
  */
 int options_refuse(const options_program *program, const char *reason);
 
+/* The k-th word of the command line as a shell reads it; false: there are no more. */
+bool options_word(int k, char *out, size_t size);
+
 /* The value of an option as JSON, in the unit of the table: a number, text, true or false,
  * [numbers]; null where there is none. */
 void options_json(const option *o, char *out, size_t size);

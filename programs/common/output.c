@@ -145,6 +145,11 @@ bool output_close(output *file) {
   return ok;
 }
 
+void output_discard(output *file) {
+  if (file->stream) fclose(file->stream), unlink(file->temporary);
+  forget(file);
+}
+
 bool output_reserve(output *file) {
   if (!file->stream) return false;
   char *path = file->path, *temporary = file->temporary;
@@ -165,11 +170,15 @@ bool output_reserve(output *file) {
   return ok;
 }
 
+void output_list(output *file, const char *format, va_list args) {
+  if (file->stream && vfprintf(file->stream, format, args) < 0 && !file->error)
+    file->error = errno ? errno : EIO;
+}
+
 void output_text(output *file, const char *format, ...) {
-  if (!file->stream) return;
   va_list args;
   va_start(args, format);
-  if (vfprintf(file->stream, format, args) < 0 && !file->error) file->error = errno ? errno : EIO;
+  output_list(file, format, args);
   va_end(args);
 }
 

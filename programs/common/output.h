@@ -33,6 +33,9 @@ bool output_open(output *file, app *a, const char *directory, const char *name);
  * unchanged. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
+/* Leaves out the file: DIR/NAME is unchanged. */
+void output_discard(output *file);
+
 /* Ends the file as output_close does, but leaves it under its temporary name: for results that are
  * written where Ctrl-C ends the program at once, see app_leave_at_once. */
 bool output_reserve(output *file);
@@ -40,6 +43,7 @@ bool output_reserve(output *file);
 /* The writers keep the first error for output_close. No result file holds a NaN or an infinity: a
  * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
+void output_list(output *file, const char *format, va_list args);
 
 /* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may lack
  * numbers in some rows. An empty cell of the others is a warning, which names the column. */

@@ -158,37 +158,27 @@ static bool write_summary(app *a, const simulation *sim) {
 }
 
 static bool draw_profile(app *a, const simulation *sim) {
-  static const char *const colours[] = {"#1f4e8c", "#c0392b", "#2e7d32", "#8e44ad",
-                                        "#d68910", "#117a65", "#5d4037", "#34495e"};
   static const char *const titles[] = {"Terzaghi", "Xie and Leo", "Cam-Clay", "Mandel",
                                        "Cryer",    "Strip load",  "Barron"};
   static const char *const depths[] = {"depth/H", "depth/H", "depth/H", "1 - x/a",
                                        "1 - r/a", "z/B",     "1 - r/a"};
-  const int column = sim->s.loads ? 2 : 1; /* of T */
   output f;
-  if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
-  output_text(&f,
-              "set title 'Pore pressure: %s, %g cells'\nset xlabel 'u/u_0'\nset ylabel '%s'\n"
-              "set yrange [*:*] reverse\nset xrange [0:*]\nset key outside right top\nplot ",
-              titles[sim->s.kase], sim->s.cells, depths[sim->s.kase]);
-  for (int r = 0; r < sim->rows; r++) {
-    const char *colour = colours[r % 8];
-    char title[48] = "strip";
+  if (!plot_begin(&f, a, sim->s.out, "profile")) return false;
+  output_text(
+      &f,
+      "first = 'Pore pressure: %s, %g cells'; y_name = '%s'\nrows = %d; points = %d; column = "
+      "%d\narray names[rows]\n",
+      titles[sim->s.kase], sim->s.cells, depths[sim->s.kase], (int)sim->rows, (int)sim->points,
+      sim->s.loads ? 2 : 1);
+  for (int r = 0; r < sim->rows; r++)
     if (sim->s.loads)
-      snprintf(title, sizeof title, "%g kPa, T = %g", 1e-3 * sim->load[sim->row[r].step + 1],
-               sim->row[r].T);
-    else if (sim->s.kase != STRIP)
-      snprintf(title, sizeof title, "T = %g", sim->row[r].T);
-    output_text(&f,
-                "%s'profile.csv' every ::%d::%d using %d:%d with points pointtype 7 pointsize 0.7 "
-                "linecolor rgb '%s' title '%s', \\\n  '' every ::%d::%d using %d:%d with lines "
-                "linecolor rgb '%s' title '%s'",
-                r ? ", \\\n  " : "", r * sim->points + 1, (r + 1) * sim->points, column + 2,
-                column + 1, colour, title, r * sim->points + 1, (r + 1) * sim->points, column + 3,
-                column + 1, colour, r + 1 < sim->rows ? "" : "exact");
-  }
-  output_text(&f, "\n");
-  return plot_close(&f, sim->s.out, "profile");
+      output_text(&f, "names[%d] = '%g kPa, T = %g'\n", r + 1,
+                  1e-3 * sim->load[sim->row[r].step + 1], sim->row[r].T);
+    else if (sim->s.kase == STRIP)
+      output_text(&f, "names[%d] = 'strip'\n", r + 1);
+    else
+      output_text(&f, "names[%d] = 'T = %g'\n", r + 1, sim->row[r].T);
+  return plot_end(&f, sim->s.out, "profile", "consolidation");
 }
 
 bool consolidation_finish(app *a, void *user) {

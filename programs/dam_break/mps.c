@@ -157,23 +157,9 @@ static bool write_gauge(app *a, const simulation *sim) {
 }
 
 static bool draw_gauge(app *a, const settings *s) {
-  output f;
-  if (!plot_open(&f, a, s->out, "pressure", 1000, 520)) return false;
-  output_text(
-      &f,
-      "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset "
-      "xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
-      "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4<*]\nset samples 2000\nset key top left reverse "
-      "Left\n"
-      "set object 1 rectangle from 3.3,graph 0 to 4.9,graph 1 fillcolor rgb '#eef3fa' "
-      "fillstyle solid noborder behind clip\n"
-      "plot 'pressure.csv' every ::1 using 2:4 with lines linecolor rgb '#8fb3dd' linewidth 0.7 "
-      "title "
-      "'MPS', '' every ::1 using 2:5 with lines linecolor rgb '#1f4e8c' linewidth 1.6 title 'mean "
-      "over 0.1', x < 3.3 || x > 4.9 ? NaN : 0.545 with lines dashtype '--' linecolor rgb "
-      "'#c0392b' title 'mean of Buchner 2002'\n",
-      s->h / column_height(s), s->duration * sqrt(G / column_height(s)));
-  return plot_close(&f, s->out, "pressure");
+  const double H = column_height(s);
+  return plot_draw(a, s->out, "pressure", "dam-break/pressure", "spacing = %.9g; end = %.9g",
+                   s->h / H, s->duration * sqrt(G / H));
 }
 
 bool dam_guards_write(app *a, const simulation *sim, output *f) {

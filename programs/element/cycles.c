@@ -145,21 +145,7 @@ bool element_write_cycles(element *x) {
 /* u over the first effective stress, or the drained volume strain, against the cycles. */
 bool element_draw_cycles(element *x) {
   const settings *s = &x->s;
-  output f;
   if (!element_is_cyclic(s) || !(s->p0 > 0.0)) return true;
-  if (!plot_open(&f, &x->a, s->out, "cycles", 900, 640)) return false;
-  output_text(&f, "set title '%s'\nset xlabel 'cycles'\nset key off\n",
-              s->drained ? "Volume strain over cycles of shear"
-                         : "Excess pore pressure over cycles of shear");
-  if (s->drained)
-    output_text(&f, "set ylabel 'contraction of the volume (%%)'\nset yrange [0:*]\n"
-                    "plot 'path.csv' every ::1 using 18:(-100*log($15)) with lines linewidth 2 "
-                    "linecolor rgb '#1f4e8c'\n");
-  else
-    output_text(&f,
-                "set ylabel 'r_u, excess pressure over the first effective stress'\n"
-                "set yrange [0:1.05]\nplot 'path.csv' every ::1 using 18:($8/%.9g) with lines "
-                "linewidth 2 linecolor rgb '#1f4e8c'\n",
-                element_reference(x));
-  return plot_close(&f, s->out, "cycles");
+  return plot_draw(&x->a, s->out, "cycles", "element/cycles", "drained = %d; first = %.9g",
+                   s->drained, element_reference(x));
 }

@@ -153,7 +153,7 @@ bool results_write(app *a, const settings *s, const results *x, const mps_signal
   return output_close(&file);
 }
 
-void results_print(const app *a, const settings *s, const results *x) {
+void results_print(app *a, const settings *s, const results *x) {
   const bool diverged = x->end == OUTCOME_DIVERGED;
   app_tell_results(a, s->out);
   if (diverged) return;

@@ -25,6 +25,6 @@ bool results_find(app *a, const settings *s, const column *c, const receivers *r
 bool results_write(app *a, const settings *s, const results *x, const mps_signal *signal);
 /* wave.png, as the paper's Figure 2. */
 bool results_draw(app *a, const settings *s, const column *c, const receivers *r, const results *x);
-void results_print(const app *a, const settings *s, const results *x);
+void results_print(app *a, const settings *s, const results *x);
 
 #endif
