@@ -353,9 +353,10 @@ static comparison compare_height(const settings *s, const column_case *c) {
 static bool write_cases(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "cases.csv")) return false;
-  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law?,height?,height_law?,"
-                 "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?");
+  if (!csv_open(&f, a, s->out, "cases.csv",
+                "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law?,height?,height_law?,"
+                "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?"))
+    return false;
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const comparison far = compare_runout(s, c), high = compare_height(s, c);
@@ -379,12 +380,9 @@ static bool write_case(app *a, const settings *s, const column_case *c) {
   output f;
   char name[64];
   snprintf(name, sizeof name, "front_%s.csv", c->name);
-  if (!output_open(&f, a, s->out, name)) return false;
-  csv_header(&f, "t_s,runout,height,kinetic_J_m");
+  if (!csv_open(&f, a, s->out, name, "t_s,runout,height,kinetic_J_m")) return false;
   for (int k = 0; k < c->rows; k++) {
-    const double row[] = {c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width,
-                          c->kinetic[k]};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width, c->kinetic[k]);
   }
   snprintf(name, sizeof name, "particles_%s.csv", c->name);
   return output_close(&f) &&
@@ -444,24 +442,17 @@ static void summarise(output *f, const simulation *sim) {
   }
   const comparison far = compare_runout(s, c), high = compare_height(s, c);
   json_integer(f, "columns", sim->count);
-  json_number(f, "h", s->h);
-  json_number(f, "aspect", c->aspect);
-  json_number(f, "phi", c->phi);
-  json_number(f, "cohesion", c->cohesion);
-  json_number(f, "runout", runout(s, c));
+  JSON_NUMBERS(f, {"h", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
+               {"runout", runout(s, c)});
   json_comparison(f, "runout_law", &far);
-  json_number(f, "runout_error", compare_error(&far));
-  json_number(f, "runout_error_worst", worst);
-  json_number(f, "runout_98", runout_98(s, c));
-  json_number(f, "runout_thick", runout_thick(s, c));
-  json_number(f, "flip_time", s->flip_time);
+  JSON_NUMBERS(f, {"runout_error", compare_error(&far)}, {"runout_error_worst", worst},
+               {"runout_98", runout_98(s, c)}, {"runout_thick", runout_thick(s, c)},
+               {"flip_time", s->flip_time});
   sand_write(f, &s->voids, s->psi);
   json_number(f, "height", final_height(s, c));
   json_comparison(f, "height_law", &high);
-  json_number(f, "time_at_rest", c->time_at_rest);
-  json_number(f, "volume_ratio_max", c->volume_ratio);
-  json_number(f, "detached", c->detached);
-  json_number(f, "mass_error", c->mass / c->mass_start - 1.0);
+  JSON_NUMBERS(f, {"time_at_rest", c->time_at_rest}, {"volume_ratio_max", c->volume_ratio},
+               {"detached", c->detached}, {"mass_error", c->mass / c->mass_start - 1.0});
 }
 
 static bool finish(app *a, void *user) {

@@ -198,32 +198,22 @@ static bool write_front(app *a, const simulation *sim, double T, double tau) {
   const settings *s = &sim->s;
   const series *z = &fronts[s->n2 - 1], *h = &heights[s->n2 - 1];
   output f;
-  if (!output_open(&f, a, s->out, "front.csv")) return false;
-  csv_header(&f, "t_s,T,Z,Z_experiment?,tau,H,H_experiment?,mass_kg_m,volume_m2,kinetic_J_m,"
-                 "potential_J_m,detached");
+  if (!csv_open(&f, a, s->out, "front.csv",
+                "t_s,T,Z,Z_experiment?,tau,H,H_experiment?,mass_kg_m,volume_m2,kinetic_J_m,"
+                "potential_J_m,detached"))
+    return false;
   for (int k = 0; k < sim->rows; k++) {
     const mpm_heap *p = &sim->heap[k];
     const double t = sim->t[k];
-    const double row[] = {t,
-                          t * T,
-                          sim->Z[k],
-                          interpolate(z->count, z->t, z->value, t * T),
-                          t * tau,
-                          sim->H[k],
-                          interpolate(h->count, h->t, h->value, t * tau),
-                          p->mass,
-                          p->volume,
-                          p->kinetic,
-                          p->potential,
-                          p->detached};
-    csv_row(&f, 12, row);
+    CSV_LINE(&f, t, t * T, sim->Z[k], interpolate(z->count, z->t, z->value, t * T), t * tau,
+             sim->H[k], interpolate(h->count, h->t, h->value, t * tau), p->mass, p->volume,
+             p->kinetic, p->potential, p->detached);
   }
-  if (!output_close(&f) || !output_open(&f, a, s->out, "experiment.csv")) return false;
-  csv_header(&f, "T?,Z?,tau?,H?");
+  if (!output_close(&f) || !csv_open(&f, a, s->out, "experiment.csv", "T?,Z?,tau?,H?"))
+    return false;
   for (int k = 0; k < z->count || k < h->count; k++) {
-    const double row[] = {k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
-                          k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
+             k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN);
   }
   return output_close(&f);
 }
@@ -321,15 +311,12 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   json_number(f, "h", s->h);
   json_integer(f, "n2", s->n2);
   if (s->method == METHOD_MPM) json_number(f, "sound_speed", speed_of_sound(s));
-  json_number(f, "mass", last->mass);
-  json_number(f, "mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0);
-  json_number(f, "volume_drift", volume);
-  json_number(f, "energy_max", energy);
-  json_number(f, "energy_end", (last->kinetic + last->potential) / scale);
-  json_number(f, "kinetic_max", kinetic);
+  JSON_NUMBERS(f, {"mass", last->mass},
+               {"mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0},
+               {"volume_drift", volume}, {"energy_max", energy},
+               {"energy_end", (last->kinetic + last->potential) / scale}, {"kinetic_max", kinetic});
   if (s->rest) {
-    json_number(f, "pressure_error", rest_error(sim));
-    json_number(f, "height_end", sim->H[sim->rows - 1]);
+    JSON_NUMBERS(f, {"pressure_error", rest_error(sim)}, {"height_end", sim->H[sim->rows - 1]});
     return;
   }
   const misfit front = compare(sim, z, sim->Z, T, 0.0), wall = compare(sim, h, sim->H, tau, 0.0);

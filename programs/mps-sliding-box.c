@@ -217,11 +217,9 @@ static comparison compare_force(const settings *s, double fy, double smooth) {
 
 static bool write_forces(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "forces.csv")) return false;
-  csv_header(&f, "t_s,Fx_N_m,Fy_N_m");
+  if (!csv_open(&f, a, sim->s.out, "forces.csv", "t_s,Fx_N_m,Fy_N_m")) return false;
   for (int k = 0; k < rows_of(sim); k++) {
-    const double row[] = {row_of(sim, k)->t, row_of(sim, k)->fx, row_of(sim, k)->fy};
-    csv_row(&f, 3, row);
+    CSV_LINE(&f, row_of(sim, k)->t, row_of(sim, k)->fx, row_of(sim, k)->fy);
   }
   return output_close(&f);
 }
@@ -245,9 +243,8 @@ static bool finish(app *a, void *user) {
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
   const comparison force = compare_force(s, count > 0 ? fy : NAN, smooth);
   json_comparison(&f, "Fy_smooth", &force);
-  json_number(&f, "Fy", count > 0 ? fy : NAN);
-  json_number(&f, "Fy_over_smooth", count > 0 ? fy / smooth : NAN);
-  json_number(&f, "Fx_over_Fy", count > 0 ? fx / fy : NAN);
+  JSON_NUMBERS(&f, {"Fy", count > 0 ? fy : NAN}, {"Fy_over_smooth", count > 0 ? fy / smooth : NAN},
+               {"Fx_over_Fy", count > 0 ? fx / fy : NAN});
   json_end(&f);
   if (!output_close(&f) || !draw(a, s, smooth)) return false;
   app_tell_results(a, s->out);

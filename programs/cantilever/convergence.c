@@ -73,9 +73,10 @@ static bool run_size(app *a, const beam *base, int64_t nx, int64_t ny, double ro
 
 static bool write_table(app *a, const char *directory, int count, double row[][COLUMNS]) {
   output table;
-  if (!output_open(&table, a, directory, "convergence.csv")) return false;
-  csv_header(&table, "particles,nx,ny,conservative_percent,published_3_percent,"
-                     "published_2_1_percent,fem_percent");
+  if (!csv_open(&table, a, directory, "convergence.csv",
+                "particles,nx,ny,conservative_percent,published_3_percent,"
+                "published_2_1_percent,fem_percent"))
+    return false;
   for (int k = 0; k < count; k++) csv_row(&table, COLUMNS, row[k]);
   return output_close(&table);
 }

@@ -13,15 +13,14 @@
 
 static bool write_deflection(const model *m, const char *directory) {
   output f;
-  if (!output_open(&f, m->a, directory, "deflection.csv")) return false;
-  csv_header(&f, "x_m,y_m,v_m,v_reference_m,error_percent?");
+  if (!csv_open(&f, m->a, directory, "deflection.csv", "x_m,y_m,v_m,v_reference_m,error_percent?"))
+    return false;
   for (int64_t i = 0; i < m->nx; i++) {
     elastic_point p;
     double u[2];
     if (!model_get(m, i, m->ny / 2, &p)) return output_close(&f) && false;
     model_reference(m, p.x, u);
-    const double row[] = {p.x[0], p.x[1], p.u[1], u[1], 100.0 * (p.u[1] / u[1] - 1.0)};
-    csv_row(&f, 5, row);
+    CSV_LINE(&f, p.x[0], p.x[1], p.u[1], u[1], 100.0 * (p.u[1] / u[1] - 1.0));
   }
   return output_close(&f);
 }
@@ -30,18 +29,18 @@ static bool write_deflection(const model *m, const char *directory) {
 static bool write_stress(const model *m, const char *directory, const char *name, int64_t i0,
                          int64_t i1, int64_t j0, int64_t j1) {
   output f;
-  if (!output_open(&f, m->a, directory, name)) return false;
-  csv_header(&f, "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
-                 "v_m");
+  if (!csv_open(&f, m->a, directory, name,
+                "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
+                "v_m"))
+    return false;
   for (int64_t i = i0; i <= i1; i++)
     for (int64_t j = j0; j <= j1; j++) {
       elastic_point p;
       double e[3];
       if (!model_get(m, i, j, &p)) return output_close(&f) && false;
       beam_stress(m->problem, p.x[0], p.x[1], e);
-      const double row[] = {p.x[0],      p.x[1], p.stress[0], e[0],   p.stress[1], e[1],
-                            p.stress[2], e[2],   p.mises,     p.u[0], p.u[1]};
-      csv_row(&f, 11, row);
+      CSV_LINE(&f, p.x[0], p.x[1], p.stress[0], e[0], p.stress[1], e[1], p.stress[2], e[2], p.mises,
+               p.u[0], p.u[1]);
     }
   return output_close(&f);
 }
@@ -57,8 +56,7 @@ static bool open_summary(output *out, const model *m, const elastic_method *meth
   json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");
   json_integer(&f, "particles", m->nx * m->ny);
   json_integer_if(&f, known, "unknowns", m->report.unknowns);
-  json_number(&f, "length", m->problem->length);
-  json_number(&f, "height", m->problem->height);
+  JSON_NUMBERS(&f, {"length", m->problem->length}, {"height", m->problem->height});
   json_number_if(&f, known, "tip", m->tip);
   json_number_if(&f, known, "tip_exact", m->tip_exact);
   json_number_if(&f, known, "tip_error", m->tip_error);

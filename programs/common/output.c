@@ -201,6 +201,12 @@ void csv_header(output *file, const char *columns) {
   output_text(file, "\n");
 }
 
+bool csv_open(output *file, app *a, const char *directory, const char *name, const char *columns) {
+  if (!output_open(file, a, directory, name)) return false;
+  csv_header(file, columns);
+  return true;
+}
+
 /* The name of column `k`, without its question mark; true where it has one. */
 static bool find_column(const output *file, int64_t k, char name[64]) {
   const char *at = file->columns ? file->columns : "";
@@ -258,6 +264,10 @@ void json_number(output *file, const char *key, double value) {
   char text[32];
   json_key(file, key);
   output_text(file, "%s", isfinite(value) ? output_number(text, value) : "null");
+}
+
+void json_numbers(output *file, int64_t count, const json_pair *pairs) {
+  for (int64_t k = 0; k < count; k++) json_number(file, pairs[k].key, pairs[k].value);
 }
 
 void json_integer(output *file, const char *key, int64_t value) {

@@ -48,8 +48,13 @@ void output_list(output *file, const char *format, va_list args);
 /* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may lack
  * numbers in some rows. An empty cell of the others is a warning, which names the column. */
 void csv_header(output *file, const char *columns);
+/* output_open and csv_header. */
+bool csv_open(output *file, app *a, const char *directory, const char *name, const char *columns);
 /* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);
+#define CSV_LINE(file, ...)                                                                        \
+  csv_row((file), (int64_t)(sizeof((double[]){__VA_ARGS__}) / sizeof(double)),                     \
+          (const double[]){__VA_ARGS__})
 /* Writes the same after `text`, one or more columns separated by commas. */
 void csv_named_row(output *file, const char *text, int64_t count, const double *values);
 
@@ -57,6 +62,15 @@ void csv_named_row(output *file, const char *text, int64_t count, const double *
 void json_begin(output *file);
 /* null where the number does not exist: NaN, or an infinity. */
 void json_number(output *file, const char *key, double value);
+/* Several: JSON_NUMBERS(file, {"x", x}, {"y", y}). */
+typedef struct json_pair {
+  const char *key;
+  double value;
+} json_pair;
+void json_numbers(output *file, int64_t count, const json_pair *pairs);
+#define JSON_NUMBERS(file, ...)                                                                    \
+  json_numbers((file), (int64_t)(sizeof((json_pair[]){__VA_ARGS__}) / sizeof(json_pair)),          \
+               (const json_pair[]){__VA_ARGS__})
 void json_integer(output *file, const char *key, int64_t value);
 void json_text(output *file, const char *key, const char *text);
 void json_end(output *file);

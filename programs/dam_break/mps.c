@@ -145,13 +145,13 @@ static impact find_impact(const simulation *sim) {
 static bool write_gauge(app *a, const simulation *sim) {
   const double H = column_height(&sim->s), unit = DENSITY * G * H, clock = sqrt(G / H);
   output f;
-  if (!output_open(&f, a, sim->s.out, "pressure.csv")) return false;
-  csv_header(&f, "t_s,t_scaled,pressure_Pa,pressure_scaled,mean_scaled?");
+  if (!csv_open(&f, a, sim->s.out, "pressure.csv",
+                "t_s,t_scaled,pressure_Pa,pressure_scaled,mean_scaled?"))
+    return false;
   for (int64_t k = 0; k < sim->gauges; k++) {
     const double t = sim->gauge_t[k], p = sim->gauge_p[k];
     const double mean = mean_between(sim, t - MEAN / clock, t + MEAN / clock) / unit;
-    const double row[] = {t, t * clock, p, p / unit, mean};
-    csv_row(&f, 5, row);
+    CSV_LINE(&f, t, t * clock, p, p / unit, mean);
   }
   return output_close(&f);
 }
@@ -175,13 +175,9 @@ bool dam_impact_write(app *a, simulation *sim) {
   const impact i = find_impact(sim);
   output f;
   if (!write_gauge(a, sim) || !mpm_model_summary(a, &sim->m, sim->s.out, &f)) return false;
-  json_number(&f, "impact_mean", i.mean);
-  json_number(&f, "impact_mean_buchner", 0.545);
-  json_number(&f, "impact_rise", i.rise);
-  json_number(&f, "impact_first", i.first);
-  json_number(&f, "impact_first_time", i.first_at);
-  json_number(&f, "impact_second", i.second);
-  json_number(&f, "impact_second_time", i.second_at);
+  JSON_NUMBERS(&f, {"impact_mean", i.mean}, {"impact_mean_buchner", 0.545}, {"impact_rise", i.rise},
+               {"impact_first", i.first}, {"impact_first_time", i.first_at},
+               {"impact_second", i.second}, {"impact_second_time", i.second_at});
   if (!dam_guards_write(a, sim, &f)) return false;
   json_end(&f);
   if (!output_close(&f) || !draw_gauge(a, &sim->s)) return false;

@@ -121,22 +121,18 @@ static double stress_of(const element *x, int64_t k) {
 bool element_write_cycles(element *x) {
   output f;
   if (!element_is_cyclic(&x->s)) return true;
-  if (!output_open(&f, &x->a, x->s.out, "cycles.csv")) return false;
-  csv_header(&f, "cycles,strain_amplitude,stress_amplitude,u,ru?,volume_strain,contraction?");
+  if (!csv_open(&f, &x->a, x->s.out, "cycles.csv",
+                "cycles,strain_amplitude,stress_amplitude,u,ru?,volume_strain,contraction?"))
+    return false;
   int64_t from = 0;
   for (int n = 0; n < x->stage_count; n++) {
     const int64_t to = from + x->stages[n].steps;
     if (to >= x->rows) break;
     const row *a = &x->table[from], *b = &x->table[to];
     const double reference = element_reference(x);
-    const double cells[] = {b->cycles,
-                            0.5 * fabs(b->strain - a->strain),
-                            0.5 * fabs(stress_of(x, to) - stress_of(x, from)),
-                            b->u,
-                            reference > 0.0 ? b->u / reference : NAN,
-                            log(b->volume_ratio),
-                            b->contraction};
-    csv_row(&f, 7, cells);
+    CSV_LINE(&f, b->cycles, 0.5 * fabs(b->strain - a->strain),
+             0.5 * fabs(stress_of(x, to) - stress_of(x, from)), b->u,
+             reference > 0.0 ? b->u / reference : NAN, log(b->volume_ratio), b->contraction);
     from = to;
   }
   return output_close(&f);

@@ -27,16 +27,15 @@ static const char *path_name(const settings *s) {
 
 static bool write_path(element *x) {
   output f;
-  if (!output_open(&f, &x->a, x->s.out, "path.csv")) return false;
-  csv_header(&f, "strain,sxx,syy,szz,sxy,p,q,u,void_ratio?,pc?,exx,eyy,ezz,gxy,volume_ratio,"
-                 "plastic_strain?,contraction?,cycles?");
+  if (!csv_open(&f, &x->a, x->s.out, "path.csv",
+                "strain,sxx,syy,szz,sxy,p,q,u,void_ratio?,pc?,exx,eyy,ezz,gxy,volume_ratio,"
+                "plastic_strain?,contraction?,cycles?"))
+    return false;
   for (int64_t k = 0; k < x->rows; k++) {
     const row *r = &x->table[k];
-    const double cells[] = {
-        r->strain, r->stress[0], r->stress[1],    r->stress[2], r->stress[3],   r->p,
-        r->q,      r->u,         r->void_ratio,   r->pc,        r->e[0],        r->e[1],
-        r->e[2],   r->e[3],      r->volume_ratio, r->plastic,   r->contraction, r->cycles};
-    csv_row(&f, 18, cells);
+    CSV_LINE(&f, r->strain, r->stress[0], r->stress[1], r->stress[2], r->stress[3], r->p, r->q,
+             r->u, r->void_ratio, r->pc, r->e[0], r->e[1], r->e[2], r->e[3], r->volume_ratio,
+             r->plastic, r->contraction, r->cycles);
   }
   return output_close(&f);
 }
@@ -70,24 +69,16 @@ static bool write_summary(element *x) {
   json_number(&f, "strain", last->strain);
   static const char *const components[] = {"sxx", "syy", "szz", "sxy"};
   for (int c = 0; c < 4; c++) json_number(&f, components[c], last->stress[c]);
-  json_number(&f, "p", last->p);
-  json_number(&f, "q", last->q);
-  json_number(&f, "u", last->u);
-  json_number(&f, "void_ratio", last->void_ratio);
-  json_number(&f, "pc", last->pc);
-  json_number(&f, "volume_strain", log(last->volume_ratio));
-  json_number(&f, "q_peak", peak->q);
-  json_number(&f, "strain_at_peak", peak->strain);
-  json_number(&f, "q_limit", element_limit(x));
-  json_number(&f, "k0_normal", mps_material_normal_k0(x->material));
+  JSON_NUMBERS(&f, {"p", last->p}, {"q", last->q}, {"u", last->u}, {"void_ratio", last->void_ratio},
+               {"pc", last->pc}, {"volume_strain", log(last->volume_ratio)}, {"q_peak", peak->q},
+               {"strain_at_peak", peak->strain}, {"q_limit", element_limit(x)},
+               {"k0_normal", mps_material_normal_k0(x->material)});
   double modulus = NAN, damping = NAN;
   (void)element_loop(x, &modulus, &damping);
-  json_number(&f, "secant_modulus", modulus);
-  json_number(&f, "damping_ratio", damping);
-  json_number(&f, "contraction", last->contraction);
-  json_number(&f, "cycles", last->cycles);
-  json_number(&f, "ru", element_is_cyclic(&x->s) ? last->u / element_reference(x) : NAN);
-  json_number(&f, "cycles_to_liquefaction", element_liquefied(x));
+  JSON_NUMBERS(&f, {"secant_modulus", modulus}, {"damping_ratio", damping},
+               {"contraction", last->contraction}, {"cycles", last->cycles},
+               {"ru", element_is_cyclic(&x->s) ? last->u / element_reference(x) : NAN},
+               {"cycles_to_liquefaction", element_liquefied(x)});
   json_end(&f);
   return output_close(&f);
 }

@@ -13,17 +13,17 @@
 
 static bool write_particles(const plate *p, const char *directory) {
   output f;
-  if (!output_open(&f, p->a, directory, "particles.csv")) return false;
-  csv_header(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
-                 "von_mises_Pa");
+  if (!csv_open(&f, p->a, directory, "particles.csv",
+                "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
+                "von_mises_Pa"))
+    return false;
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
     elastic_point at;
     double e[3];
     if (!plate_get(p, k, &at)) return output_close(&f) && false;
     plate_exact_stress(p->def, at.x, e);
-    const double row[] = {at.x[0],      at.x[1], at.u[0],      at.u[1], at.stress[0], e[0],
-                          at.stress[1], e[1],    at.stress[2], e[2],    at.mises};
-    csv_row(&f, 11, row);
+    CSV_LINE(&f, at.x[0], at.x[1], at.u[0], at.u[1], at.stress[0], e[0], at.stress[1], e[1],
+             at.stress[2], e[2], at.mises);
   }
   return output_close(&f);
 }
@@ -31,9 +31,9 @@ static bool write_particles(const plate *p, const char *directory) {
 /* The line that is drawn: the middle row of the plate in tension (u), or the ligament (xx). */
 static bool write_line(const plate *p, const char *directory) {
   output f;
-  if (!output_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv"))
+  if (!csv_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv",
+                p->def->hole ? "y_m,xx_Pa,xx_exact_Pa" : "x_m,u_m,u_exact_m"))
     return false;
-  csv_header(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa" : "x_m,u_m,u_exact_m");
   const double centre[2] = {p->wall, 0.0};
   elastic_point middle = {{0}, {0}, {0}, 0};
   const int64_t id = mps_particles_nearest(p->particles, centre);

@@ -161,13 +161,11 @@ static pressure measure(const simulation *sim) {
 static bool write_pressure(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
-  csv_header(&f, "path_over_height,force_kN_m,K,K_along");
+  if (!csv_open(&f, a, s->out, "pressure.csv", "path_over_height,force_kN_m,K,K_along"))
+    return false;
   for (int k = 0; k < wall_rows(sim); k++) {
-    const double row[] = {wall_row_of(sim, k)->path / s->height, 1e-3 * wall_row_of(sim, k)->across,
-                          wall_row_of(sim, k)->across / wall_unit(s),
-                          wall_row_of(sim, k)->along / wall_unit(s)};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, wall_row_of(sim, k)->path / s->height, 1e-3 * wall_row_of(sim, k)->across,
+             wall_row_of(sim, k)->across / wall_unit(s), wall_row_of(sim, k)->along / wall_unit(s));
   }
   return output_close(&f);
 }
@@ -178,15 +176,11 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
   sand_write(&f, &s->voids, largest_dilation(s));
-  json_number(&f, "flip_time", s->flip_time);
-  json_number(&f, "K", p->across);
-  json_number(&f, "K_along", p->along);
-  json_number(&f, "K_resultant", hypot(p->across, p->along));
-  json_number(&f, "force_height", p->height);
+  JSON_NUMBERS(&f, {"flip_time", s->flip_time}, {"K", p->across}, {"K_along", p->along},
+               {"K_resultant", hypot(p->across, p->along)}, {"force_height", p->height});
   json_comparison(&f, "K_theory", &p->theory);
-  json_number(&f, "K_cracked", p->cracked);
-  json_number(&f, "K_reduced", p->reduced);
-  json_number(&f, "force", p->across * wall_unit(s));
+  JSON_NUMBERS(&f, {"K_cracked", p->cracked}, {"K_reduced", p->reduced},
+               {"force", p->across * wall_unit(s)});
   json_number_if(&f, !isnan(s->water), "water_force", wall_water(s));
   json_end(&f);
   return output_close(&f);

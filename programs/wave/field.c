@@ -49,8 +49,7 @@ static bool write_table(app *a, const settings *s, const field *f, mps_particles
   if (columns && !app_check(a, mps_particles_view(whole, "free_field", &mark))) return false;
   double *rows = malloc((size_t)f->count * 3 * sizeof *rows);
   if (!rows) return app_no_memory(a);
-  if (!output_open(&file, a, s->out, "peaks.csv")) return free(rows), false;
-  csv_header(&file, "x_m,y_m,peak_m_s2");
+  if (!csv_open(&file, a, s->out, "peaks.csv", "x_m,y_m,peak_m_s2")) return free(rows), false;
   int64_t count = 0;
   for (int64_t k = 0; k < f->count; k++) {
     if (columns && *mps_view_i64(&mark, k, 0) != 0) continue;
