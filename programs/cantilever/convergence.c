@@ -1,6 +1,6 @@
 /* convergence.c - tip error against the number of particles, the paper's Figure 6.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "cantilever.h"
 
 #include "common/plot.h"
 

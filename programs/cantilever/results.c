@@ -1,6 +1,6 @@
 /* results.c - tables, summary and the paper's Figures 5, 7 and 8 of mps-cantilever.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "cantilever.h"
 
 #include "common/area.h"
 #include "common/frame.h"

@@ -198,6 +198,15 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
   free(c.state);
 }
 
+/* Least and greatest value of all images. */
+static void area_range(int64_t count, const area *images, double *least, double *most) {
+  *least = *most = 0.0;
+  for (int64_t k = 0; k < count; k++) {
+    *least = k ? fmin(*least, images[k].least) : images[k].least;
+    *most = k ? fmax(*most, images[k].most) : images[k].most;
+  }
+}
+
 void area_set(output *script, const char *file, const area_def *def, int64_t count,
               const area *images, double length) {
   const double step = images->pixel / length;
@@ -233,12 +242,4 @@ void area_plot(output *script, const char *name, const area *image, double lengt
               name, (long long)image->offset, (long long)image->columns, (long long)image->rows,
               image->lower[0] / length + 0.5 * step, image->lower[1] / length + 0.5 * step, step,
               step);
-}
-
-void area_range(int64_t count, const area *images, double *least, double *most) {
-  *least = *most = 0.0;
-  for (int64_t k = 0; k < count; k++) {
-    *least = k ? fmin(*least, images[k].least) : images[k].least;
-    *most = k ? fmax(*most, images[k].most) : images[k].most;
-  }
 }

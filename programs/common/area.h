@@ -2,8 +2,7 @@
  * particle; narrow slits between particles, and between them and solids, are closed, the outline
  * runs half a spacing beyond the outermost particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_AREA_H
-#define EXAMPLES_AREA_H
+#pragma once
 
 #include "output.h"
 
@@ -50,8 +49,3 @@ void area_set(output *script, const char *file, const area_def *def, int64_t cou
  * `length` (m). Values are read as they are: an expression for each pixel takes ten times as long.
  */
 void area_plot(output *script, const char *name, const area *image, double length);
-
-/* Least and greatest value of all images. */
-void area_range(int64_t count, const area *images, double *least, double *most);
-
-#endif

@@ -11,8 +11,7 @@
  * an option given twice is an error. Numbers are read strictly, and always with a point; they are
  * in the unit that --help shows or have one of their own (units.h). SPDX-License-Identifier:
  * BSD-3-Clause */
-#ifndef EXAMPLES_OPTIONS_H
-#define EXAMPLES_OPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -142,5 +141,3 @@ bool options_number(const char *text, double *out);
 /* Reads `count` numbers > 0, in `unit` or with one of their own, with an x between them, such as
  * 5x2; false when `text` is not that. */
 bool options_lengths(const char *text, const char *unit, int count, double *const *out);
-
-#endif

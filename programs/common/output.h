@@ -1,8 +1,7 @@
 /* output.h - result files: the directory, CSV and JSON. A file is written under a temporary name
  * and takes its own only when it is complete, so that a full disk never spoils an older result.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_OUTPUT_H
-#define EXAMPLES_OUTPUT_H
+#pragma once
 
 #include "app.h"
 
@@ -88,5 +87,3 @@ bool summary_reserve(app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */
 const char *output_number(char text[32], double value);
-
-#endif

@@ -4,7 +4,6 @@
 #include "plot.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -109,30 +108,7 @@ bool plot_open(output *script, app *a, const char *directory, const char *name, 
   return true;
 }
 
-bool plot_open_animation(output *script, app *a, const char *directory, const char *name, int width,
-                         int height, double step) {
-  char file[80];
-  const int hundredths = (int)(100.0 * step + 0.5);
-  snprintf(file, sizeof file, "%s.gif", name);
-  if (!plot_begin(script, a, directory, file)) return false;
-  output_text(script, "width = %d\nheight = %d\n", width, height);
-  (void)append(script, "style.gp");
-  output_text(script,
-              "set output\nset terminal gif animate delay %d loop 0 optimize size %d,%d enhanced "
-              "font 'DejaVu Sans,11'\nset output picture\nunset datafile columnheaders\n",
-              hundredths > 2 ? hundredths : 2, width, height);
-  return true;
-}
-
-/* 1, 2 or 5 times a power of ten, at least `value`. */
-static double round_up(double value) {
-  const double power = pow(10.0, floor(log10(value))), lead = value / power;
-  return (lead > 5.0 ? 10.0 : lead > 2.0 ? 5.0 : lead > 1.0 ? 2.0 : 1.0) * power;
-}
-
 void plot_key_below(output *script) { output_text(script, "eval below\n"); }
-
-double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }
 
 void plot_colours(output *script, double least, double most, double lowest, double highest) {
   output_text(
@@ -251,10 +227,4 @@ bool plot_close(output *script, const char *directory, const char *name) {
   progress_clear(&a->bar);
   fflush(stdout);
   return draw(a, directory, stem, animated ? "gif" : "png");
-}
-
-bool plot_close_animation(output *script, const char *directory, const char *name) {
-  char file[80];
-  snprintf(file, sizeof file, "%s.gif", name);
-  return plot_close(script, directory, file);
 }

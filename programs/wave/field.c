@@ -1,6 +1,6 @@
 /* field.c - peak acceleration at every particle of a slope: where the ground amplifies the wave.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "field.h"
+#include "wave.h"
 
 #include "common/area.h"
 #include "common/plot.h"

@@ -1,6 +1,6 @@
 /* picture.c - wave.png: acceleration against time and depth, as the paper's Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "wave.h"
 
 #include "common/plot.h"
 

@@ -1,6 +1,6 @@
 /* results.c - peaks, travel time and energy of a run, against theory.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "wave.h"
 
 #include "common/record.h"
 
