@@ -10,7 +10,7 @@ set(link_dir ${CMAKE_INSTALL_LIBDIR}/${series})
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
-install(DIRECTORY share/models share/umat DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
+install(DIRECTORY share/models share/plots share/umat DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
 install(FILES share/umat/ABA_PARAM.INC DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps/umat RENAME aba_param.inc)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})

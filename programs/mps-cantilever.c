@@ -1,6 +1,6 @@
 /* mps-cantilever - rectangular cantilever of particles under an end load, Chikazawa, Figures 4
  * to 8. SPDX-License-Identifier: BSD-3-Clause */
-#include "cantilever/results.h"
+#include "cantilever/cantilever.h"
 #include "common/output.h"
 
 #include <math.h>

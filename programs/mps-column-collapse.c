@@ -353,9 +353,10 @@ static comparison compare_height(const settings *s, const column_case *c) {
 static bool write_cases(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "cases.csv")) return false;
-  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law?,height?,height_law?,"
-                 "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?");
+  if (!csv_open(&f, a, s->out, "cases.csv",
+                "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law?,height?,height_law?,"
+                "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?"))
+    return false;
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const comparison far = compare_runout(s, c), high = compare_height(s, c);
@@ -379,19 +380,16 @@ static bool write_case(app *a, const settings *s, const column_case *c) {
   output f;
   char name[64];
   snprintf(name, sizeof name, "front_%s.csv", c->name);
-  if (!output_open(&f, a, s->out, name)) return false;
-  csv_header(&f, "t_s,runout,height,kinetic_J_m");
+  if (!csv_open(&f, a, s->out, name, "t_s,runout,height,kinetic_J_m")) return false;
   for (int k = 0; k < c->rows; k++) {
-    const double row[] = {c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width,
-                          c->kinetic[k]};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width, c->kinetic[k]);
   }
   snprintf(name, sizeof name, "particles_%s.csv", c->name);
   return output_close(&f) &&
          mpm_snapshots_write(a, s->out, name, "plastic_strain", FRAMES, c->shot);
 }
 
-/* A row of pictures for each column, lengths in L0: the start, one and two falls later, at rest. */
+/* The start, one and two falls later, at rest, of each column; lengths in L0. */
 static bool draw_columns(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   double width = 1.0, height = 0.0;
@@ -400,91 +398,36 @@ static bool draw_columns(app *a, const simulation *sim) {
     width = fmax(width, 1.05 * c->front[c->rows - 1] / s->width);
     height = fmax(height, 1.1 * c->aspect);
   }
-  const int panel = 330, panel_height = (int)(panel * height / width), edge = 78, gap = 46;
-  const double x = FRAMES * (panel + gap) + edge - gap + 135.0;
-  const double y = sim->count * (panel_height + 84.0) + 28.0;
   const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
                         .slit = AREA_SLIT_SHEARED,
                         .upper = {width * s->width, height * s->width},
                         .walled = true,
-                        .side = 2 * panel};
-  area image[CASES_MAX][FRAMES];
-  double least, most = 0.0;
-  for (int k = 0; k < sim->count; k++) {
-    char name[64];
-    snprintf(name, sizeof name, "columns_%s.bin", sim->column[k].name);
-    if (!mpm_snapshots_image(a, s->out, name, FRAMES, sim->column[k].shot, &def, image[k]))
-      return false;
-    double greatest;
-    area_range(FRAMES, image[k], &least, &greatest);
-    most = fmax(most, greatest);
-  }
+                        .side = 800};
+  area image[CASES_MAX * FRAMES];
+  const int count = sim->count * FRAMES;
   output f;
-  if (!plot_open(&f, a, s->out, "columns", (int)x, (int)y)) return false;
-  output_text(&f,
-              "set multiplot layout %d,%d margins screen %.4f, screen %.4f, screen %.4f, screen "
-              "%.4f spacing screen %.4f, screen %.4f\n"
-              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
-              "set palette defined (0 '#f3e3bd', 0.4 '#c98f4a', 1 '#5b2c12')\n"
-              "set xtics 1\nset ytics %g\n"
-              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-              "set cblabel 'plastic strain (-)'\n",
-              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x,
-              84.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
-  plot_colours(&f, 0.0, fmin(2.0, most), 0.0, most);
-  for (int k = 0; k < sim->count; k++)
-    for (int shot = 0; shot < FRAMES; shot++) {
-      const column_case *c = &sim->column[k];
-      if (k + shot == 1) output_text(&f, "unset colorbox\n");
-      output_text(&f, "set xlabel '%s' offset 0,0.6\nset ylabel '%s' offset 1.3\n",
-                  k == sim->count - 1 ? "x/L_0" : "", shot == 0 ? "y/L_0" : "");
-      if (c->shot[shot].count == 0) { /* the run ended before */
-        output_text(&f, "set multiplot next\n");
-        continue;
-      }
-      output_text(&f, "set title '%s%st = %.2f s' offset 0,-0.7\nplot ",
-                  sim->count > 1 ? c->name : "", sim->count > 1 ? ", " : "", c->shot[shot].time);
-      char name[64];
-      snprintf(name, sizeof name, "columns_%s.bin", c->name);
-      area_plot(&f, name, &image[k][shot], s->width);
-      output_text(&f, "\n");
-    }
-  output_text(&f, "unset multiplot\n");
-  return plot_close(&f, s->out, "columns");
+  if (!output_open(&f, a, s->out, "columns.bin")) return false;
+  for (int k = 0; k < count; k++)
+    area_write(&f, &def, sim->column[k / FRAMES].shot[k % FRAMES].count,
+               sim->column[k / FRAMES].shot[k % FRAMES].row, &image[k]);
+  if (!output_close(&f) || !plot_begin(&f, a, s->out, "columns")) return false;
+  area_set(&f, "columns.bin", &def, count, image, s->width);
+  for (int k = 0; k < count; k++) {
+    const column_case *c = &sim->column[k / FRAMES];
+    if (c->shot[k % FRAMES].count > 0) /* none: the run ended before */
+      output_text(&f, "titles[%d] = '%s%st = %.2f s'\n", k + 1, sim->count > 1 ? c->name : "",
+                  sim->count > 1 ? ", " : "", c->shot[k % FRAMES].time);
+  }
+  output_text(&f, "x_name = 'x/L_0'; y_name = 'y/L_0'; cb_name = 'plastic strain (-)'\n"
+                  "palette = 'sand'; cb_least = 0; cb_most = cb_highest < 2 ? cb_highest : 2\n");
+  return plot_end(&f, s->out, "columns", "maps");
 }
 
 static bool draw_law(app *a, const simulation *sim) {
   const settings *s = &sim->s;
-  const bool ring = s->axisymmetric;
-  const char *laws =
-      ring ? "low(x) = x < 1.7 ? 1.24*x : NaN\nhigh(x) = x > 1.7 ? 1.6*sqrt(x) : NaN\n"
-             "top(x) = x < 0.85 ? x : 0.88*x**(1.0/6)"
-           : "low(x) = x < 1.8 ? 1.2*x : NaN\nhigh(x) = x > 2.8 ? 1.9*x**(2.0/3) : NaN\n"
-             "beads(x) = x < 3 ? 1.8*x : 2.3*x**(2.0/3)\ntop(x) = x < 1 ? x : x**0.4";
-  const char *beads = ring ? ""
-                           : "beads(x) with lines dashtype '--' linecolor rgb '#888888' title "
-                             "'glass beads, Lajeunesse et al. 2005', \\\n";
-  const char *sand = ring ? "sand, Lube et al. 2004" : "sand, Lube et al. 2005";
-  output f;
-  if (!plot_open(&f, a, s->out, "runout", 1200, 560)) return false;
-  output_text(
-      &f,
-      "set multiplot layout 1,2 title \"Collapse of a column on a bed\\n{/*0.8 {/Symbol f} = %g°, "
-      "h = L_0/%.3g}\"\n"
-      "%s\n"
-      "set logscale xy\nset xtics (0.5, 1, 2, 5, 10)\nset ytics (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, "
-      "20)\nset xrange [0.3:10]\nset samples 400\nset key left top reverse Left samplen 2.5 font "
-      "',13'\n"
-      "set xlabel 'a = H_0/L_0'\nset ylabel 'run-out (L - L_0)/L_0'\nset yrange [*<0.2:20]\n"
-      "law = \"linecolor rgb '#c0392b'\"\n"
-      "dots = \"with points pointtype 7 pointsize 1.4 linecolor rgb '#1f4e8c' title 'WLS-MPM'\"\n"
-      "plot %s  low(x) with lines @law title '%s', high(x) with lines @law notitle, "
-      "\\\n  'cases.csv' every ::1 using 2:5 @dots\n"
-      "set ylabel 'final height H/L_0'\nset yrange [0.2:5]\n"
-      "plot top(x) with lines @law title '%s', 'cases.csv' every ::1 using 2:7 "
-      "@dots\nunset multiplot\n",
-      s->phi, s->width / s->h, laws, beads, sand, sand);
-  return plot_close(&f, s->out, "runout");
+  return plot_draw(a, s->out, "runout", "column-collapse/runout",
+                   "second = '{/Symbol f} = %g°, h = L_0/%.3g'\nring = %d", s->phi, s->width / s->h,
+                   s->axisymmetric);
 }
 
 /* Keys of the column requested; of a sweep, the last one and the worst misfit of all. */
@@ -499,24 +442,17 @@ static void summarise(output *f, const simulation *sim) {
   }
   const comparison far = compare_runout(s, c), high = compare_height(s, c);
   json_integer(f, "columns", sim->count);
-  json_number(f, "h", s->h);
-  json_number(f, "aspect", c->aspect);
-  json_number(f, "phi", c->phi);
-  json_number(f, "cohesion", c->cohesion);
-  json_number(f, "runout", runout(s, c));
+  JSON_NUMBERS(f, {"h", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
+               {"runout", runout(s, c)});
   json_comparison(f, "runout_law", &far);
-  json_number(f, "runout_error", compare_error(&far));
-  json_number(f, "runout_error_worst", worst);
-  json_number(f, "runout_98", runout_98(s, c));
-  json_number(f, "runout_thick", runout_thick(s, c));
-  json_number(f, "flip_time", s->flip_time);
+  JSON_NUMBERS(f, {"runout_error", compare_error(&far)}, {"runout_error_worst", worst},
+               {"runout_98", runout_98(s, c)}, {"runout_thick", runout_thick(s, c)},
+               {"flip_time", s->flip_time});
   sand_write(f, &s->voids, s->psi);
   json_number(f, "height", final_height(s, c));
   json_comparison(f, "height_law", &high);
-  json_number(f, "time_at_rest", c->time_at_rest);
-  json_number(f, "volume_ratio_max", c->volume_ratio);
-  json_number(f, "detached", c->detached);
-  json_number(f, "mass_error", c->mass / c->mass_start - 1.0);
+  JSON_NUMBERS(f, {"time_at_rest", c->time_at_rest}, {"volume_ratio_max", c->volume_ratio},
+               {"detached", c->detached}, {"mass_error", c->mass / c->mass_start - 1.0});
 }
 
 static bool finish(app *a, void *user) {

@@ -198,116 +198,63 @@ static bool write_front(app *a, const simulation *sim, double T, double tau) {
   const settings *s = &sim->s;
   const series *z = &fronts[s->n2 - 1], *h = &heights[s->n2 - 1];
   output f;
-  if (!output_open(&f, a, s->out, "front.csv")) return false;
-  csv_header(&f, "t_s,T,Z,Z_experiment?,tau,H,H_experiment?,mass_kg_m,volume_m2,kinetic_J_m,"
-                 "potential_J_m,detached");
+  if (!csv_open(&f, a, s->out, "front.csv",
+                "t_s,T,Z,Z_experiment?,tau,H,H_experiment?,mass_kg_m,volume_m2,kinetic_J_m,"
+                "potential_J_m,detached"))
+    return false;
   for (int k = 0; k < sim->rows; k++) {
     const mpm_heap *p = &sim->heap[k];
     const double t = sim->t[k];
-    const double row[] = {t,
-                          t * T,
-                          sim->Z[k],
-                          interpolate(z->count, z->t, z->value, t * T),
-                          t * tau,
-                          sim->H[k],
-                          interpolate(h->count, h->t, h->value, t * tau),
-                          p->mass,
-                          p->volume,
-                          p->kinetic,
-                          p->potential,
-                          p->detached};
-    csv_row(&f, 12, row);
+    CSV_LINE(&f, t, t * T, sim->Z[k], interpolate(z->count, z->t, z->value, t * T), t * tau,
+             sim->H[k], interpolate(h->count, h->t, h->value, t * tau), p->mass, p->volume,
+             p->kinetic, p->potential, p->detached);
   }
-  if (!output_close(&f) || !output_open(&f, a, s->out, "experiment.csv")) return false;
-  csv_header(&f, "T?,Z?,tau?,H?");
+  if (!output_close(&f) || !csv_open(&f, a, s->out, "experiment.csv", "T?,Z?,tau?,H?"))
+    return false;
   for (int k = 0; k < z->count || k < h->count; k++) {
-    const double row[] = {k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
-                          k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
+             k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN);
   }
   return output_close(&f);
 }
 
 static bool draw_front(app *a, const settings *s, double shift) {
-  output f;
+  const bool mps = s->method == METHOD_MPS;
   char how[80];
-  const char *name = s->method == METHOD_MPS ? "MPS" : "WLS-MPM";
-  if (s->method == METHOD_MPS)
+  if (mps)
     snprintf(how, sizeof how, "particles every %.4g m", s->h);
   else
     snprintf(how, sizeof how, "h = %.4g m, c = %.3g m/s", s->h, speed_of_sound(s));
-  if (!plot_open(&f, a, s->out, "front", 1200, 560)) return false;
-  output_text(&f,
-              "set multiplot layout 1,2 title \"Collapse of a water column, n^2 = %d\\n{/*0.8 base "
-              "%.4g m, %s}\"\n"
-              "set key left top reverse Left\nset xrange [0:4.2]\nset yrange [1:5.2]\n"
-              "set xlabel 'T = t (n^2 g/a)^{1/2}'\nset ylabel 'front Z = x/a'\n"
-              "plot 'experiment.csv' every ::1 using 1:2 with points pointtype 6 pointsize 1.2 "
-              "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
-              "  'front.csv' every ::1 using 2:3 with lines linecolor rgb '#1f4e8c' title "
-              "'%s'",
-              (int)s->n2, s->base, how, name);
-  if (isfinite(shift))
-    output_text(&f,
-                ", \\\n  'front.csv' every ::1 using ($2%+.4f):3 with lines dashtype '--' "
-                "linecolor rgb '#1f4e8c' title 'clock set at Z = 1.44'",
-                shift);
-  output_text(&f,
-              "\nset key right top reverse Left\nset xrange [0:6]\nset yrange [0:1.05]\n"
-              "set xlabel '{/Symbol t} = t (g/a)^{1/2}'\nset ylabel 'height at the wall H = "
-              "y/(n^2 a)'\n"
-              "plot 'experiment.csv' every ::1 using 3:4 with points pointtype 6 pointsize 1.2 "
-              "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
-              "  'front.csv' every ::1 using 5:6 with lines linecolor rgb '#1f4e8c' title "
-              "'%s'\nunset multiplot\n",
-              name);
-  return plot_close(&f, s->out, "front");
+  return plot_draw(a, s->out, "front", "dam-break/front",
+                   "n2 = %d; base = %.9g; how = '%s'; method = '%s'; shift = %.9g", (int)s->n2,
+                   s->base, how, mps ? "MPS" : "WLS-MPM", shift);
 }
 
-/* Frames in one scale, lengths in bases: flat ones in two columns, a tank at rest in a row. */
+/* Frames in one scale, lengths in bases. */
 static bool draw_water(app *a, const simulation *sim, double T) {
   const settings *s = &sim->s;
   const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (s->impact ? 1.0 : (double)s->n2);
-  const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
-  const int panel_height = (int)(panel * height / width), edge = 78, gap = 46;
-  const double x = across * (panel + gap) + edge - gap + 160.0;
-  const double y = down * (panel_height + 84.0) + 28.0;
   const bool mps = s->method == METHOD_MPS;
   const area_def def = {.spacing = s->h / (mps ? 1.0 : sqrt((double)s->ppc)),
                         .slit = mps ? AREA_SLIT : AREA_SLIT_SHEARED,
                         .upper = {width * s->base, height * s->base},
                         .walled = true,
-                        .side = 2 * panel,
+                        .side = 1600,
                         .factor = 1e-3};
   area image[FRAMES];
-  double least, most;
-  if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, &def, image)) return false;
-  area_range(FRAMES, image, &least, &most);
   output f;
-  if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
+  if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, &def, image) ||
+      !plot_begin(&f, a, s->out, "water"))
+    return false;
+  area_set(&f, "water.bin", &def, FRAMES, image, s->base);
+  for (int k = 0; k < FRAMES; k++)
+    if (sim->shot[k].count > 0) /* none: the run ended before */
+      output_text(&f, "titles[%d] = 'T = %.2f'\n", k + 1, sim->shot[k].time * T);
   output_text(&f,
-              "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
-              "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
-              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
-              "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-              "set xtics 1\nset ytics 1\n"
-              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-              "set cblabel 'pressure (kPa)'\n",
-              down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x, 84.0 / y,
-              width, height, (x - 145.0) / x);
-  plot_colours(&f, 0.0, 0.9e-3 * DENSITY * G * column_height(s), least, most);
-  for (int k = 0; k < FRAMES; k++) {
-    if (sim->shot[k].count == 0) continue; /* the run ended before */
-    output_text(&f,
-                "%sset xlabel '%s' offset 0,0.6\nset ylabel '%s' offset 1.3\n"
-                "set title 'T = %.2f' offset 0,-0.7\nplot ",
-                k == 1 ? "unset colorbox\n" : "", k % down == down - 1 ? "x/a" : "",
-                k < down ? "y/a" : "", sim->shot[k].time * T);
-    area_plot(&f, "water.bin", &image[k], s->base);
-    output_text(&f, "\n");
-  }
-  output_text(&f, "unset multiplot\n");
-  return plot_close(&f, s->out, "water");
+              "x_name = 'x/a'; y_name = 'y/a'; cb_name = 'pressure (kPa)'; palette = 'water'\n"
+              "cb_least = 0; cb_most = %.9g\n",
+              0.9e-3 * DENSITY * G * column_height(s));
+  return plot_end(&f, s->out, "water", "maps");
 }
 
 /* Pressure against rho g depth at the end, over that at the bed: RMS. */
@@ -364,15 +311,12 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   json_number(f, "h", s->h);
   json_integer(f, "n2", s->n2);
   if (s->method == METHOD_MPM) json_number(f, "sound_speed", speed_of_sound(s));
-  json_number(f, "mass", last->mass);
-  json_number(f, "mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0);
-  json_number(f, "volume_drift", volume);
-  json_number(f, "energy_max", energy);
-  json_number(f, "energy_end", (last->kinetic + last->potential) / scale);
-  json_number(f, "kinetic_max", kinetic);
+  JSON_NUMBERS(f, {"mass", last->mass},
+               {"mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0},
+               {"volume_drift", volume}, {"energy_max", energy},
+               {"energy_end", (last->kinetic + last->potential) / scale}, {"kinetic_max", kinetic});
   if (s->rest) {
-    json_number(f, "pressure_error", rest_error(sim));
-    json_number(f, "height_end", sim->H[sim->rows - 1]);
+    JSON_NUMBERS(f, {"pressure_error", rest_error(sim)}, {"height_end", sim->H[sim->rows - 1]});
     return;
   }
   const misfit front = compare(sim, z, sim->Z, T, 0.0), wall = compare(sim, h, sim->H, tau, 0.0);

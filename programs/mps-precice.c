@@ -109,8 +109,7 @@ static bool write_summary(app *a, const settings *s, const records *r,
   json_integer(&f, "windows", result->windows);
   json_integer(&f, "steps", result->steps);
   json_integer(&f, "windows_repeated", result->repeats);
-  json_number(&f, "tip_largest_m", r->largest);
-  json_number(&f, "tip_largest_time_s", r->at);
+  JSON_NUMBERS(&f, {"tip_largest_m", r->largest}, {"tip_largest_time_s", r->at});
   json_end(&f);
   return output_close(&f);
 }

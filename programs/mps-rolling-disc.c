@@ -257,32 +257,22 @@ static mps_status march(void *user) {
 
 static bool write_motion(app *a, const settings *s, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, s->out, "motion.csv")) return false;
-  csv_header(&f, "t_s,x_m,x_theory_m,v_m_s,omega_rad_s");
+  if (!csv_open(&f, a, s->out, "motion.csv", "t_s,x_m,x_theory_m,v_m_s,omega_rad_s")) return false;
   for (int k = 0; k < rows_of(sim); k++) {
     const motion *m = row_of(sim, k);
-    const double row[] = {m->t, m->x - row_of(sim, 0)->x, theory(s, m->t), m->v, m->omega};
-    csv_row(&f, 5, row);
+    CSV_LINE(&f, m->t, m->x - row_of(sim, 0)->x, theory(s, m->t), m->v, m->omega);
   }
   return output_close(&f);
 }
 
 static bool draw(app *a, const settings *s) {
-  output f;
-  if (!plot_open(&f, a, s->out, "motion", 1000, 640)) return false;
-  output_text(&f,
-              "set title \"%s disc on %s slope of %g degrees\\n{/*0.85 h = %g R, {/Symbol m} = "
-              "%g, %d particles a cell, %s}\"\n"
-              "set xlabel 'time (s)'\nset ylabel \"path along the slope x'_c (m)\"\n"
-              "set key left top opaque\n"
-              "plot 'motion.csv' every ::1 using 1:3 with lines linecolor rgb '#c0392b' title "
-              "'theory, Nakamura (51)', \\\n"
-              "  '' every 4::1 using 1:2 with points pointtype 6 linecolor rgb '#1f4e8c' title "
-              "'WLS-MPM'\n",
-              s->body == BODY_SLOPE ? "An elastic" : "A rigid",
-              s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
-              (int)s->ppc, s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
-  return plot_close(&f, s->out, "motion");
+  return plot_draw(a, s->out, "motion", "rolling-disc",
+                   "first = '%s disc on %s slope of %g degrees'\n"
+                   "second = 'h = %g R, {/Symbol m} = %g, %d particles a cell, %s'",
+                   s->body == BODY_SLOPE ? "An elastic" : "A rigid",
+                   s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
+                   (int)s->ppc,
+                   s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
 }
 
 /* The largest relative difference from the path (51) on the way, and when, s. */
@@ -327,9 +317,7 @@ static bool finish(app *a, void *user) {
   output f;
   if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
-  json_number(&f, "h", s->h);
-  json_number(&f, "mu", s->mu);
-  json_number(&f, "x", x);
+  JSON_NUMBERS(&f, {"h", s->h}, {"mu", s->mu}, {"x", x});
   json_comparison(&f, "x_theory", &path);
   json_number(&f, "x_error_05", compare_error(&path)); /* at the end */
   json_number_if(&f, !isnan(worst_at), "x_error_worst", worst);

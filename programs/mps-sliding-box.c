@@ -199,26 +199,12 @@ static mps_status march(void *user) {
 /* ---- results --------------------------------------------------------------------------------- */
 
 static bool draw(app *a, const settings *s, double fy_exact) {
-  output f;
   char contact[48] = "impulses";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY)
     snprintf(contact, sizeof contact, "springs k = %g kN/m", 1e-3 * s->k);
-  if (!plot_open(&f, a, s->out, "forces", 1000, 640)) return false;
-  output_text(
-      &f,
-      "set title \"Forces on the lower plate\\n{/*0.85 h = %g m, %s, {/Symbol m} "
-      "= %g}\"\n"
-      "set xlabel 'time (s)'\nset ylabel 'force (N/m)'\nset key at graph 0.97,0.6 right opaque\n"
-      "set yrange [-0.05*%.9g:1.15*%.9g]\n"
-      "exact = %.9g\nmu = %.9g\n"
-      "plot 'forces.csv' every ::1 using 1:3 with lines linecolor rgb '#1f4e8c' title "
-      "'normal force F_y', \\\n"
-      "  '' every ::1 using 1:2 with lines linecolor rgb '#c0392b' title 'friction F_x', "
-      "\\\n"
-      "  exact dashtype '--' linecolor rgb '#1f4e8c' title 'exact without friction', \\\n"
-      "  mu*exact dashtype '--' linecolor rgb '#c0392b' title '{/Symbol m} times it'\n",
-      s->h, contact, s->mu, fy_exact, fy_exact, fy_exact, s->mu);
-  return plot_close(&f, s->out, "forces");
+  return plot_draw(a, s->out, "forces", "sliding-box",
+                   "second = 'h = %g m, %s, {/Symbol m} = %g'\nexact = %.9g; mu = %.9g", s->h,
+                   contact, s->mu, fy_exact, s->mu);
 }
 
 /* The confined block without friction. */
@@ -231,11 +217,9 @@ static comparison compare_force(const settings *s, double fy, double smooth) {
 
 static bool write_forces(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "forces.csv")) return false;
-  csv_header(&f, "t_s,Fx_N_m,Fy_N_m");
+  if (!csv_open(&f, a, sim->s.out, "forces.csv", "t_s,Fx_N_m,Fy_N_m")) return false;
   for (int k = 0; k < rows_of(sim); k++) {
-    const double row[] = {row_of(sim, k)->t, row_of(sim, k)->fx, row_of(sim, k)->fy};
-    csv_row(&f, 3, row);
+    CSV_LINE(&f, row_of(sim, k)->t, row_of(sim, k)->fx, row_of(sim, k)->fy);
   }
   return output_close(&f);
 }
@@ -259,9 +243,8 @@ static bool finish(app *a, void *user) {
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
   const comparison force = compare_force(s, count > 0 ? fy : NAN, smooth);
   json_comparison(&f, "Fy_smooth", &force);
-  json_number(&f, "Fy", count > 0 ? fy : NAN);
-  json_number(&f, "Fy_over_smooth", count > 0 ? fy / smooth : NAN);
-  json_number(&f, "Fx_over_Fy", count > 0 ? fx / fy : NAN);
+  JSON_NUMBERS(&f, {"Fy", count > 0 ? fy : NAN}, {"Fy_over_smooth", count > 0 ? fy / smooth : NAN},
+               {"Fx_over_Fy", count > 0 ? fx / fy : NAN});
   json_end(&f);
   if (!output_close(&f) || !draw(a, s, smooth)) return false;
   app_tell_results(a, s->out);

@@ -147,16 +147,11 @@ static bool open_case(output *out, app *a, const settings *s, const stability_ca
   if (!summary_open(&f, a, s->out)) return false;
   json_text(&f, "wave", wave);
   json_text(&f, "integrator", integrators[x->integrator]);
-  json_number(&f, "spacing", x->radius);
-  json_number(&f, "vs", case_vs(x));
-  json_number(&f, "vp", case_vp(x));
-  json_number(&f, "damping", x->damping);
+  JSON_NUMBERS(&f, {"spacing", x->radius}, {"vs", case_vs(x)}, {"vp", case_vp(x)},
+               {"damping", x->damping});
   json_integer_if(&f, known, "particles", x->particles);
-  json_number(&f, "f1", s->m.f1);
-  json_number(&f, "f2", s->m.f2);
-  json_number(&f, "criterion", s->m.criterion);
-  json_number(&f, "accuracy", s->m.accuracy);
-  json_number(&f, "duration", method_duration(&s->m, x->velocity));
+  JSON_NUMBERS(&f, {"f1", s->m.f1}, {"f2", s->m.f2}, {"criterion", s->m.criterion},
+               {"accuracy", s->m.accuracy}, {"duration", method_duration(&s->m, x->velocity)});
   const comparison linear = compare_linear(s, x), table2 = compare_table2(s, x);
   if (known)
     json_comparison(&f, "dt_linear", &linear);

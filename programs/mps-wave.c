@@ -3,11 +3,7 @@
 #include "common/output.h"
 #include "common/parts.h"
 #include "common/resume.h"
-#include "wave/field.h"
-#include "wave/files.h"
-#include "wave/receivers.h"
-#include "wave/results.h"
-#include "wave/settings.h"
+#include "wave/wave.h"
 
 #include <mps/experimental/papers.h>
 

@@ -116,9 +116,14 @@ All results are written below the directory of `--out`.
 |---|---|
 | `summary.json` | program, version, options, derived numbers, warnings and outcome of the run |
 | `*.csv` | tables, with a unit in each heading |
-| `*.png`, `*.gif` | pictures, drawn by gnuplot from `*.gp` where it is installed |
+| `index.html` | pictures, numbers, command line and links to the files, to be read in a browser |
+| `*.png`, `*.gif` | pictures, drawn by gnuplot where it is installed |
+| `*.gp` | script of each picture: variables of the run, then its template and style; `gnuplot NAME.gp` draws it again |
 | `*.vtkhdf`, `*.xdmf` | the particles for ParaView ([how](../paraview.md)) |
 | `checkpoint.h5` | the state from which `--restart` continues, of programs that have that option |
+
+Templates and the common `style.gp` lie in `share/libmps/plots`. A file of the same name in the folder of the environment variable
+`MPS_PLOTS` takes precedence.
 
 ## Exit status
 

@@ -1,6 +1,6 @@
 /* beam.c - the exact solution of the cantilever, Chikazawa (11) (Timoshenko and Goodier, article
  * 21). SPDX-License-Identifier: BSD-3-Clause */
-#include "beam.h"
+#include "cantilever.h"
 
 /* In plane strain E and nu are replaced by E / (1 - nu^2) and nu / (1 - nu). */
 static double plane_young(const beam *b) {

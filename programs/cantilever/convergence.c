@@ -1,6 +1,6 @@
 /* convergence.c - tip error against the number of particles, the paper's Figure 6.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "cantilever.h"
 
 #include "common/plot.h"
 
@@ -46,20 +46,9 @@ static bool fem_error(app *a, const beam *base, int64_t nx, int64_t ny, double *
 }
 
 static bool draw(app *a, const char *directory) {
-  output f;
-  if (!plot_open(&f, a, directory, "convergence", 900, 600)) return false;
-  output_text(&f, "set title 'Tip deflection against the number of particles or nodes'\n"
-                  "set xlabel 'particles or nodes'\nset ylabel 'tip error (%%)'\n"
-                  "set logscale x\nset key top right\nset xzeroaxis linewidth 1.2\n"
-                  "set offsets 0, 0, graph 0.05, graph 0.05\nplot ");
-  static const char *const colour[METHODS] = {"#c0392b", "#2980b9", "#16a085", "#7f8c8d"};
-  for (int k = 0; k < METHODS; k++)
-    output_text(&f,
-                "%s'convergence.csv' using 1:%d skip 1 with linespoints pointtype %d linewidth 1.6 "
-                "linecolor rgb '%s' title '%s'",
-                k ? ", \\\n     " : "", k + 4, 7 - 2 * (k % 3), colour[k], names[k]);
-  output_text(&f, "\n");
-  return plot_close(&f, directory, "convergence");
+  return plot_draw(a, directory, "convergence", "cantilever/convergence",
+                   "array names[4] = ['%s', '%s', '%s', '%s']", names[0], names[1], names[2],
+                   names[3]);
 }
 
 enum { COLUMNS = 3 + METHODS };
@@ -84,9 +73,10 @@ static bool run_size(app *a, const beam *base, int64_t nx, int64_t ny, double ro
 
 static bool write_table(app *a, const char *directory, int count, double row[][COLUMNS]) {
   output table;
-  if (!output_open(&table, a, directory, "convergence.csv")) return false;
-  csv_header(&table, "particles,nx,ny,conservative_percent,published_3_percent,"
-                     "published_2_1_percent,fem_percent");
+  if (!csv_open(&table, a, directory, "convergence.csv",
+                "particles,nx,ny,conservative_percent,published_3_percent,"
+                "published_2_1_percent,fem_percent"))
+    return false;
   for (int k = 0; k < count; k++) csv_row(&table, COLUMNS, row[k]);
   return output_close(&table);
 }

@@ -1,7 +1,7 @@
 /* model.c - see model.h. The wall passes through its layer of particles (half cells); the loaded
  * and the free surfaces lie half a spacing outside the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "model.h"
+#include "cantilever.h"
 
 #include <math.h>
 #include <stdlib.h>

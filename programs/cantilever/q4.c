@@ -1,7 +1,7 @@
 /* q4.c - bilinear quadrilaterals on a regular grid, full 2 x 2 integration, banded Cholesky by
  * LAPACK.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "q4.h"
+#include "cantilever.h"
 
 #include <lapacke.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* results.c - tables, summary and the paper's Figures 5, 7 and 8 of mps-cantilever.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "cantilever.h"
 
 #include "common/area.h"
 #include "common/frame.h"
@@ -13,15 +13,14 @@
 
 static bool write_deflection(const model *m, const char *directory) {
   output f;
-  if (!output_open(&f, m->a, directory, "deflection.csv")) return false;
-  csv_header(&f, "x_m,y_m,v_m,v_reference_m,error_percent?");
+  if (!csv_open(&f, m->a, directory, "deflection.csv", "x_m,y_m,v_m,v_reference_m,error_percent?"))
+    return false;
   for (int64_t i = 0; i < m->nx; i++) {
     elastic_point p;
     double u[2];
     if (!model_get(m, i, m->ny / 2, &p)) return output_close(&f) && false;
     model_reference(m, p.x, u);
-    const double row[] = {p.x[0], p.x[1], p.u[1], u[1], 100.0 * (p.u[1] / u[1] - 1.0)};
-    csv_row(&f, 5, row);
+    CSV_LINE(&f, p.x[0], p.x[1], p.u[1], u[1], 100.0 * (p.u[1] / u[1] - 1.0));
   }
   return output_close(&f);
 }
@@ -30,18 +29,18 @@ static bool write_deflection(const model *m, const char *directory) {
 static bool write_stress(const model *m, const char *directory, const char *name, int64_t i0,
                          int64_t i1, int64_t j0, int64_t j1) {
   output f;
-  if (!output_open(&f, m->a, directory, name)) return false;
-  csv_header(&f, "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
-                 "v_m");
+  if (!csv_open(&f, m->a, directory, name,
+                "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
+                "v_m"))
+    return false;
   for (int64_t i = i0; i <= i1; i++)
     for (int64_t j = j0; j <= j1; j++) {
       elastic_point p;
       double e[3];
       if (!model_get(m, i, j, &p)) return output_close(&f) && false;
       beam_stress(m->problem, p.x[0], p.x[1], e);
-      const double row[] = {p.x[0],      p.x[1], p.stress[0], e[0],   p.stress[1], e[1],
-                            p.stress[2], e[2],   p.mises,     p.u[0], p.u[1]};
-      csv_row(&f, 11, row);
+      CSV_LINE(&f, p.x[0], p.x[1], p.stress[0], e[0], p.stress[1], e[1], p.stress[2], e[2], p.mises,
+               p.u[0], p.u[1]);
     }
   return output_close(&f);
 }
@@ -57,8 +56,7 @@ static bool open_summary(output *out, const model *m, const elastic_method *meth
   json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");
   json_integer(&f, "particles", m->nx * m->ny);
   json_integer_if(&f, known, "unknowns", m->report.unknowns);
-  json_number(&f, "length", m->problem->length);
-  json_number(&f, "height", m->problem->height);
+  JSON_NUMBERS(&f, {"length", m->problem->length}, {"height", m->problem->height});
   json_number_if(&f, known, "tip", m->tip);
   json_number_if(&f, known, "tip_exact", m->tip_exact);
   json_number_if(&f, known, "tip_error", m->tip_error);
@@ -94,60 +92,22 @@ bool results_reserve(const model *m, const elastic_method *method, const char *d
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
-static const char particles_style[] =
-    "with points pointtype 7 pointsize 1.1 linecolor rgb '#c0392b'";
-static const char exact_style[] = "with lines linewidth 1.6 linecolor rgb '#2c3e50'";
-
-static bool draw_deflection(const model *m, const char *directory) {
-  output f;
-  if (!plot_open(&f, m->a, directory, "deflection", 900, 600)) return false;
-  output_text(&f,
-              "set title \"Deflection of the axis\\n{/*0.85 %lld x %lld particles, tip error "
-              "%+.2f %%}\"\n"
-              "set xlabel 'x from the loaded end (m)'\nset ylabel 'v (m)'\nset key bottom right\n"
-              "plot 'deflection.csv' using 1:4 skip 1 %s title '%s', \\\n"
-              "     '' using 1:3 skip 1 %s title 'particles'\n",
-              (long long)m->nx, (long long)m->ny, 100.0 * m->tip_error, exact_style,
-              m->reference ? "fine finite elements" : "analytic, Chikazawa (11)", particles_style);
-  return plot_close(&f, directory, "deflection");
-}
-
-/* Figure 7 (along the axis) and Figure 8 (across a section). */
-static bool draw_stress(const model *m, const char *directory, const char *name, const char *title,
-                        const char *label, int column) {
-  output f;
-  char file[40];
-  snprintf(file, sizeof file, "%s.csv", name);
-  if (!plot_open(&f, m->a, directory, name, 900, 600)) return false;
-  output_text(&f,
-              "set title \"%s\"\nset xlabel '%s'\nset ylabel 'stress (Pa)'\n"
-              "set offsets 0, 0, graph 0.08, graph 0.08\n",
-              title, label);
-  plot_key_below(&f);
-  output_text(&f,
-              "plot '%s' using %d:4 skip 1 %s dashtype 1 title '{/Symbol s}_x analytic', \\\n"
-              "     '' using %d:3 skip 1 %s title '{/Symbol s}_x particles', \\\n"
-              "     '' using %d:8 skip 1 with lines linewidth 1.6 linecolor rgb '#16a085' title "
-              "'{/Symbol t}_{xy} analytic', \\\n"
-              "     '' using %d:7 skip 1 with points pointtype 5 pointsize 1.0 linecolor rgb "
-              "'#2980b9' title '{/Symbol t}_{xy} particles'\n",
-              file, column, exact_style, column, particles_style, column, column);
-  return plot_close(&f, directory, name);
-}
-
-/* shape.bin: von Mises' stress (Pa) of the body with its displacements times `scale`. */
-static bool image_shape(const model *m, const char *directory, double scale, area *image) {
+/* von Mises' stress (Pa) of the body with its displacements times `scale`. */
+static bool draw_shape(const model *m, const char *directory) {
   const double spacing = m->problem->height / (double)m->ny;
+  const double scale = 0.25 * m->problem->length / fabs(m->tip);
+  const int64_t count = m->nx * m->ny;
   area_def def = {.spacing = spacing,
                   .slit = AREA_SLIT,
                   .lower = {INFINITY, INFINITY},
                   .upper = {-INFINITY, -INFINITY},
                   .side = AREA_SIDE};
+  area image;
   output f;
-  double *row = malloc((size_t)(m->nx * m->ny) * 3 * sizeof *row);
+  double *row = malloc((size_t)count * 3 * sizeof *row);
   if (!row) return app_no_memory(m->a);
   bool good = true;
-  for (int64_t k = 0; good && k < m->nx * m->ny; k++) {
+  for (int64_t k = 0; good && k < count; k++) {
     elastic_point p;
     good = model_get(m, k / m->ny, k % m->ny, &p);
     for (int c = 0; good && c < 2; c++) {
@@ -157,46 +117,44 @@ static bool image_shape(const model *m, const char *directory, double scale, are
     }
     if (good) row[3 * k + 2] = p.mises;
   }
-  good = good && output_open(&f, m->a, directory, "shape.bin");
-  if (good) area_write(&f, &def, m->nx * m->ny, row, image);
+  good = good && area_image(m->a, directory, "shape.bin", &def, count, row, &image);
   free(row);
-  return good && output_close(&f);
+  if (!good || !plot_begin(&f, m->a, directory, "shape")) return false;
+  area_set(&f, "shape.bin", &def, 1, &image, 1.0);
+  output_text(&f,
+              "titles[1] = 'Displacements times %.3g'\nx_name = 'x (m)'; y_name = 'y (m)'; cb_name "
+              "= \"von Mises' stress (Pa)\"\npalette = 'heat'; cb_least = 0; cb_most = "
+              "cb_highest\n",
+              scale);
+  return plot_end(&f, directory, "shape", "maps");
 }
 
-static bool draw_shape(const model *m, const char *directory) {
-  const double scale = 0.25 * m->problem->length / fabs(m->tip);
-  area image;
-  if (!image_shape(m, directory, scale, &image)) return false;
-  output f;
-  if (!plot_open(&f, m->a, directory, "shape", 1100, 520)) return false;
-  output_text(
-      &f,
-      "set title \"Displacements times %.3g\"\nset size ratio -1\nunset grid\n"
-      "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)' offset 1\n"
-      "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n",
-      scale);
-  plot_colours(&f, 0.0, image.most, image.least, image.most);
-  output_text(&f, "plot ");
-  area_plot(&f, "shape.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, directory, "shape");
+static bool draw(const model *m, const char *directory, double y, double x) {
+  return plot_draw(m->a, directory, "deflection", "cantilever/deflection",
+                   "second = '%lld x %lld particles, tip error %+.2f %%'\nreference = '%s'",
+                   (long long)m->nx, (long long)m->ny, 100.0 * m->tip_error,
+                   m->reference ? "fine finite elements" : "theory, Chikazawa (11)") &&
+         plot_draw(m->a, directory, "stress-axis", "cantilever/stress",
+                   "file = 'stress-axis.csv'; first = 'Stresses along y = %.3g m'; along = 'x_m'; "
+                   "x_name = 'x (m)'",
+                   y) &&
+         plot_draw(m->a, directory, "stress-section", "cantilever/stress",
+                   "file = 'stress-section.csv'; first = 'Stresses across the section x = %.4g m'; "
+                   "along = 'y_m'; x_name = 'y (m)'",
+                   x) &&
+         draw_shape(m, directory);
 }
 
 bool results_write(const model *m, const elastic_method *method, const char *directory) {
   /* The paper's section is at x = 2 of 4. */
   const int64_t middle = m->ny / 2, section = m->nx / 2;
   elastic_point p;
-  char title[120], axis[120];
   if (!model_get(m, section, middle, &p)) return false;
-  snprintf(axis, sizeof axis, "Stresses along y = %.3g m", p.x[1]);
-  snprintf(title, sizeof title, "Stresses across the section x = %.4g m", p.x[0]);
   return write_deflection(m, directory) &&
          write_stress(m, directory, "stress.csv", 0, m->nx - 1, 0, m->ny - 1) &&
          write_stress(m, directory, "stress-axis.csv", 0, m->nx - 1, middle, middle) &&
          write_stress(m, directory, "stress-section.csv", section, section, 0, m->ny - 1) &&
          write_summary(m, method, directory) &&
          frame_write(m->a, m->particles, directory, "cantilever.vtkhdf") &&
-         draw_deflection(m, directory) &&
-         draw_stress(m, directory, "stress-axis", axis, "x (m)", 1) &&
-         draw_stress(m, directory, "stress-section", title, "y (m)", 2) && draw_shape(m, directory);
+         draw(m, directory, p.x[1], p.x[0]);
 }

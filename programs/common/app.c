@@ -3,6 +3,7 @@
 #include "app.h"
 
 #include "options.h"
+#include "page.h"
 #include "ranks.h"
 #include "table.h"
 
@@ -249,6 +250,7 @@ void app_wrote(app *a, const char *path) {
   snprintf(a->results + used, sizeof a->results - used, "%s%s", used ? ", " : "", name);
 }
 
-void app_tell_results(const app *a, const char *directory) {
+void app_tell_results(app *a, const char *directory) {
+  if (a->rank == 0) (void)page_write(a, directory); /* an error line says why */
   printf("Results: %s/ (%s)\n", directory, a->results);
 }

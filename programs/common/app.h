@@ -1,8 +1,7 @@
 /* app.h - common parts of the example programs: the name for error lines, the library context with
  * its hooks, and exit codes.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_APP_H
-#define EXAMPLES_APP_H
+#pragma once
 
 #include "progress.h"
 
@@ -91,7 +90,5 @@ void app_leave_at_once(app *a, bool on);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);
-/* "Results: DIR/ (files)" on stdout: the files written. */
-void app_tell_results(const app *a, const char *directory);
-
-#endif
+/* Writes index.html of the files written, and prints "Results: DIR/ (files)". */
+void app_tell_results(app *a, const char *directory);

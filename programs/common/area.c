@@ -2,16 +2,17 @@
  * cover the slits; pixels within half that width of uncovered ones are removed again (a closing by
  * a disc), which keeps free surfaces in place. Solid pixels remove nothing: the gap between a body
  * and the nearest particles is closed too. That leaves shallow notches between the particles of an
- * outline, which are filled along rows and columns: a wall of a lattice is
- * straight. SPDX-License-Identifier: BSD-3-Clause */
+ * outline, which a mean over half a spacing smooths. SPDX-License-Identifier: BSD-3-Clause */
 #include "area.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { PIXELS = 12 };           /* a spacing */
-static const double own = 0.45; /* spacings: the disc that a particle alone has */
+enum { PIXELS = 24 }; /* a spacing, at most */
+static const double
+    own = 0.45,
+    kept = 0.3; /* spacings: disc that a particle alone has before and after smoothing */
 
 typedef struct canvas {
   int64_t columns, rows;
@@ -21,7 +22,7 @@ typedef struct canvas {
   char *state;     /* COVERED or not */
 } canvas;
 
-enum { BARE, COVERED, OFF, FILLED };
+enum { BARE, COVERED, OFF, SOLID };
 
 static int64_t column_of(const canvas *c, double x, int axis) {
   const double k = floor((x - c->lower[axis]) / c->pixel);
@@ -69,25 +70,46 @@ static void take_off(canvas *c, double depth, double alone) {
     }
 }
 
-/* Of a row or a column of `count` pixels, `step` apart from k on: removed pixels between two
- * covered ones are filled where they are at most `most` long. */
-static void fill_line(canvas *c, int64_t k, int64_t count, int64_t step, int64_t most) {
-  int64_t last = -1; /* the last covered one */
-  for (int64_t i = 0; i < count; i++) {
-    const char state = c->state[k + i * step];
-    if (state == BARE) last = -1;
-    if (state != COVERED) continue;
-    for (int64_t q = last + 1; last >= 0 && i - last - 1 <= most && q < i; q++)
-      c->state[k + q * step] = FILLED;
-    last = i;
+/* The outline without the scallops of single particles: a pixel belongs to the area where the mean
+ * of its neighbours, in two passes of a box of 2 n + 1, is at least a half. Solid pixels have no
+ * part in the mean, so that the outline is the same beside a wall as beside its mirror image. */
+static void add_up(const float *from, float *to, int64_t count, int64_t step, int64_t n) {
+  double sum = 0.0;
+  for (int64_t i = -n; i < count; i++) {
+    if (i + n < count) sum += (double)from[(i + n) * step];
+    if (i - n - 1 >= 0) sum -= (double)from[(i - n - 1) * step];
+    if (i >= 0) to[i * step] = (float)sum;
   }
 }
 
-static void fill_notches(canvas *c, int64_t most) {
-  for (int64_t j = 0; j < c->rows; j++) fill_line(c, j * c->columns, c->columns, 1, most);
-  for (int64_t i = 0; i < c->columns; i++) fill_line(c, i, c->rows, c->columns, most);
-  for (int64_t k = 0; k < c->columns * c->rows; k++)
-    if (c->state[k] == BARE || c->state[k] == OFF) c->value[k] = NAN;
+static void add_around(const canvas *c, float *value, float *work, int64_t n) {
+  for (int pass = 0; pass < 2; pass++) {
+    for (int64_t j = 0; j < c->rows; j++)
+      add_up(value + j * c->columns, work + j * c->columns, c->columns, 1, n);
+    for (int64_t i = 0; i < c->columns; i++) add_up(work + i, value + i, c->rows, c->columns, n);
+  }
+}
+
+/* `core` pixels around each particle stay. False: out of memory. */
+static bool smooth(canvas *c, int64_t n, double core) {
+  const int64_t size = c->columns * c->rows;
+  float *covered = malloc(3 * (size_t)size * sizeof *covered);
+  if (!covered) return false;
+  float *open = covered + size;
+  for (int64_t k = 0; k < size; k++) {
+    open[k] = c->state[k] != SOLID;
+    covered[k] = c->state[k] == COVERED;
+  }
+  add_around(c, covered, open + size, n);
+  add_around(c, open, open + size, n);
+  for (int64_t k = 0; k < size; k++) {
+    if (c->state[k] == SOLID) continue;
+    const bool inside = covered[k] >= 0.5f * open[k] || (double)c->distance[k] <= core * core;
+    c->state[k] = inside ? COVERED : BARE;
+    if (!inside) c->value[k] = NAN;
+  }
+  free(covered);
+  return true;
 }
 
 static bool is_solid(const area_def *def, double x, double y) {
@@ -104,16 +126,26 @@ static void mark_solid(canvas *c, const area_def *def) {
     for (int64_t i = 0; i < c->columns; i++) {
       const double x = c->lower[0] + ((double)i + 0.5) * p, y = c->lower[1] + ((double)j + 0.5) * p;
       if (!is_solid(def, x, y)) continue;
-      c->distance[j * c->columns + i] = 0.0f;
+      c->distance[j * c->columns + i] = -1.0f;
       if (is_solid(def, x - p, y) && is_solid(def, x + p, y) && is_solid(def, x, y - p) &&
           is_solid(def, x, y + p))
         c->value[j * c->columns + i] = NAN;
     }
 }
 
+/* The seam ends where the area beside it does. */
+static void end_seam(canvas *c) {
+  const int64_t across = c->columns, size = across * c->rows;
+  for (int64_t k = 0; k < size; k++)
+    if (c->state[k] == SOLID && !(k >= across && c->state[k - across] == COVERED) &&
+        !(k + across < size && c->state[k + across] == COVERED) &&
+        !(k > 0 && c->state[k - 1] == COVERED) && !(k + 1 < size && c->state[k + 1] == COVERED))
+      c->value[k] = NAN;
+}
+
 static void mark_covered(canvas *c) {
   for (int64_t k = 0; k < c->columns * c->rows; k++)
-    c->state[k] = isinf(c->distance[k]) ? BARE : COVERED;
+    c->state[k] = c->distance[k] < 0.0f ? SOLID : isinf(c->distance[k]) ? BARE : COVERED;
 }
 
 static void take_range(const canvas *c, area *out) {
@@ -151,7 +183,9 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
     mark_solid(&c, def);
     mark_covered(&c);
     take_off(&c, (reach - 0.5) * step, own * step);
-    fill_notches(&c, (int64_t)step);
+    const double blur = fmax(ceil(0.25 * (0.5 * def->slit + 1.0) * step), 1.0); /* half a box */
+    if (!smooth(&c, (int64_t)blur, kept * step)) file->error = ENOMEM;
+    end_seam(&c);
     for (size_t k = 0; k < size && def->factor != 0.0; k++) c.value[k] *= (float)def->factor;
     take_range(&c, out);
     out->offset = ftell(file->stream);
@@ -164,6 +198,42 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
   free(c.state);
 }
 
+/* Least and greatest value of all images. */
+static void area_range(int64_t count, const area *images, double *least, double *most) {
+  *least = *most = 0.0;
+  for (int64_t k = 0; k < count; k++) {
+    *least = k ? fmin(*least, images[k].least) : images[k].least;
+    *most = k ? fmax(*most, images[k].most) : images[k].most;
+  }
+}
+
+void area_set(output *script, const char *file, const area_def *def, int64_t count,
+              const area *images, double length) {
+  const double step = images->pixel / length;
+  double least, most;
+  area_range(count, images, &least, &most);
+  output_text(script,
+              "maps = %lld\nimage = \"'%s' binary array=(%lld,%lld) format='%%float' "
+              "origin=(%.9g,%.9g) dx=%.9g dy=%.9g\"\nimage_bytes = %lld\n",
+              (long long)count, file, (long long)images->columns, (long long)images->rows,
+              images->lower[0] / length + 0.5 * step, images->lower[1] / length + 0.5 * step, step,
+              step, (long long)(images->columns * images->rows * (int64_t)sizeof(float)));
+  output_text(script,
+              "x0 = %.9g; x1 = %.9g; y0 = %.9g; y1 = %.9g\ncb_lowest = %.9g; cb_highest = %.9g\n"
+              "array titles[maps]\ndo for [k=1:maps] { titles[k] = '' }\nheading = ''\ncover(k) = "
+              "''\nframe_of(k) = k\n",
+              def->lower[0] / length, def->upper[0] / length, def->lower[1] / length,
+              def->upper[1] / length, least, most);
+}
+
+bool area_image(app *a, const char *directory, const char *file, const area_def *def, int64_t count,
+                const double *row, area *out) {
+  output f;
+  if (!output_open(&f, a, directory, file)) return false;
+  area_write(&f, def, count, row, out);
+  return output_close(&f);
+}
+
 void area_plot(output *script, const char *name, const area *image, double length) {
   const double step = image->pixel / length;
   output_text(script,
@@ -172,12 +242,4 @@ void area_plot(output *script, const char *name, const area *image, double lengt
               name, (long long)image->offset, (long long)image->columns, (long long)image->rows,
               image->lower[0] / length + 0.5 * step, image->lower[1] / length + 0.5 * step, step,
               step);
-}
-
-void area_range(int64_t count, const area *images, double *least, double *most) {
-  *least = *most = 0.0;
-  for (int64_t k = 0; k < count; k++) {
-    *least = k ? fmin(*least, images[k].least) : images[k].least;
-    *most = k ? fmax(*most, images[k].most) : images[k].most;
-  }
 }

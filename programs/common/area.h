@@ -2,8 +2,7 @@
  * particle; narrow slits between particles, and between them and solids, are closed, the outline
  * runs half a spacing beyond the outermost particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_AREA_H
-#define EXAMPLES_AREA_H
+#pragma once
 
 #include "output.h"
 
@@ -37,12 +36,16 @@ typedef struct area_def {
  * Errors are those of output_close. */
 void area_write(output *file, const area_def *def, int64_t count, const double *row, area *out);
 
+/* The same as a file of its own. */
+bool area_image(app *a, const char *directory, const char *file, const area_def *def, int64_t count,
+                const double *row, area *out);
+
+/* Variables of the template maps.gp that follow from `count` images of one size in `file`: lengths
+ * divided by `length` (m). */
+void area_set(output *script, const char *file, const area_def *def, int64_t count,
+              const area *images, double length);
+
 /* The element of a gnuplot `plot` that draws it from the file of that name: lengths divided by
  * `length` (m). Values are read as they are: an expression for each pixel takes ten times as long.
  */
 void area_plot(output *script, const char *name, const area *image, double length);
-
-/* Least and greatest value of all images. */
-void area_range(int64_t count, const area *images, double *least, double *most);
-
-#endif

@@ -1,8 +1,7 @@
 /* column.h - the paper's soil column (Yoshida, Figure 1): a lattice of particles between two
  * vertical sides on a shaken base, in layers, level or with a slope. x to the right from the left
  * side, y upwards from the base. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_COLUMN_H
-#define EXAMPLES_COLUMN_H
+#pragma once
 
 #include "layers.h"
 
@@ -45,5 +44,3 @@ mps_status column_drive_base(const column *c, mps_dynamics *dynamics, char wave,
 /* Viscous base under an incoming wave `signal` (E), on a half space of the given layer. */
 mps_status column_viscous_base(const column *c, mps_dynamics *dynamics, char wave,
                                mps_signal *signal, const layer *half_space);
-
-#endif

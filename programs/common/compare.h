@@ -1,8 +1,7 @@
 /* compare.h - a result beside a theory, an experiment or a formula. The reference is shown where
  * its assumptions hold; elsewhere it is null in summary.json, and a line says why. What is printed
  * and what is written follow from one comparison. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_COMPARE_H
-#define EXAMPLES_COMPARE_H
+#pragma once
 
 #include "output.h"
 
@@ -29,5 +28,3 @@ void compare_tell(const comparison *c);
 void json_comparison(output *file, const char *key, const comparison *c);
 /* KEY alone: null, or the reason, of a comparison that has more numbers than one. */
 void json_reason(output *file, const char *key, const comparison *c);
-
-#endif

@@ -1,8 +1,7 @@
 /* document.h - a YAML file as a tree of texts, lists and maps, each with its line, for model files.
  * Read by libyaml, where the programs were built with it.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_DOCUMENT_H
-#define EXAMPLES_DOCUMENT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,5 +26,3 @@ void document_free(document *d);
 const document *document_find(const document *map, const char *key);
 /* "a text", "a list" or "a map", for errors. */
 const char *document_kind_name(const document *d);
-
-#endif

@@ -1,7 +1,6 @@
 /* frame.h - VTKHDF series of particles for ParaView: of a run, and of a static result as one frame.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_FRAME_H
-#define EXAMPLES_FRAME_H
+#pragma once
 
 #include "app.h"
 
@@ -16,5 +15,3 @@ bool frame_is_due(int64_t k, int64_t samples, int64_t frames);
  * `from` (s; NaN: from the start). `out` stays NULL in a libmps without HDF5. */
 mps_status frame_series(app *a, mps_particles *particles, const char *directory, const char *what,
                         double from, mps_recorder **out);
-
-#endif

@@ -4,8 +4,7 @@
  * and passes over those that only others need (LAYERS_OTHERS), so that one file may serve several.
  * Here: thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3 or density_kg_m3, damping_ratio.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_LAYERS_H
-#define EXAMPLES_LAYERS_H
+#pragma once
 
 #include "app.h"
 
@@ -44,5 +43,3 @@ int64_t layers_thin(const layers *ground, double size);
 double layers_density(const layer *l); /* kg/m3 */
 /* Time (s) that a wave 'S' or 'P' takes from depth `from` up to depth `to` (m). */
 double layers_travel_time(const layers *ground, char wave, double from, double to);
-
-#endif

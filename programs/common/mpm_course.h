@@ -2,8 +2,7 @@
  * checkpoints and restart (resume.h). A program builds its model between mpm_course_peek and
  * mpm_course_begin, and calls mpm_course_sample after each sample and mpm_course_end at last.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_MPM_COURSE_H
-#define EXAMPLES_MPM_COURSE_H
+#pragma once
 
 #include "mpm_heap.h"
 #include "mpm_model.h"
@@ -65,5 +64,3 @@ bool mpm_course_same(mpm_course *c, resume_bytes *b, bool same, const char *what
 
 /* A snapshot in the data of a checkpoint. */
 void resume_pass_snapshot(resume_bytes *b, mpm_snapshot *shot);
-
-#endif

@@ -1,8 +1,7 @@
 /* mpm_heap.h - measures of collapsing heaps on a bed y = 0 beside a wall x = 0: the front, the
  * height at the wall, the velocity, and pictures of their particles.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_MPM_HEAP_H
-#define EXAMPLES_MPM_HEAP_H
+#pragma once
 
 #include "mpm_model.h"
 #include "area.h"
@@ -54,5 +53,3 @@ bool mpm_snapshots_write(app *a, const char *directory, const char *name, const 
 /* DIR/NAME: the area of the particles of each shot. */
 bool mpm_snapshots_image(app *a, const char *directory, const char *name, int count,
                          const mpm_snapshot *shots, const area_def *def, area *images);
-
-#endif

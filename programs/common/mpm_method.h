@@ -1,7 +1,6 @@
 /* mpm_method.h - variants of WLS-MPM that programs on the grid offer beside the default: those of
  * Nakamura, and the original material point method. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_MPM_METHOD_H
-#define EXAMPLES_MPM_METHOD_H
+#pragma once
 
 #include "options.h"
 
@@ -30,5 +29,3 @@ int mpm_method_settle(const options_program *program, mpm_method *m, bool paper,
 /* Before and after mpm_model_create. */
 void mpm_method_define(const mpm_method *m, mps_mpm_def *def);
 mps_status mpm_method_choose(const mpm_method *m, mps_mpm *mpm, mps_status status);
-
-#endif

@@ -1,8 +1,7 @@
 /* mpm_model.h - common parts of the programs on the WLS-MPM solver: their objects, and the course
  * of a run from the options to the exit code.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_MPM_MODEL_H
-#define EXAMPLES_MPM_MODEL_H
+#pragma once
 
 #include "options.h"
 #include "output.h"
@@ -115,5 +114,3 @@ void mpm_model_destroy(mpm_model *model);
 
 /* Opens DIR/summary.json and writes the common part of all summaries. */
 bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, output *file);
-
-#endif

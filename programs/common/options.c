@@ -475,8 +475,24 @@ static int parse(const options_program *program, int argc, char **argv) {
   return -1;
 }
 
+static struct {
+  int count;
+  char **word;
+} typed;
+
+/* In quotes where a shell would read it otherwise. */
+bool options_word(int k, char *out, size_t size) {
+  if (k >= typed.count) return false;
+  const char *word = typed.word[k], *slash = k == 0 ? strrchr(word, '/') : NULL;
+  const bool plain = *word && strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                           "0123456789-_=+.,:/@%") == strlen(word);
+  snprintf(out, size, plain ? "%s" : "'%s'", slash ? slash + 1 : word);
+  return true;
+}
+
 int options_parse(const options_program *program, int argc, char **argv) {
   const char *name = "";
+  typed.count = argc, typed.word = argv;
   ranks_hush();
   ranks_keep_options(argc, argv);
   for (option *o = program->table; o->name || o->help; o++)

@@ -11,8 +11,7 @@
  * an option given twice is an error. Numbers are read strictly, and always with a point; they are
  * in the unit that --help shows or have one of their own (units.h). SPDX-License-Identifier:
  * BSD-3-Clause */
-#ifndef EXAMPLES_OPTIONS_H
-#define EXAMPLES_OPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -128,6 +127,9 @@ void options_whole(const char *name, double *length, const char *of, double part
  */
 int options_refuse(const options_program *program, const char *reason);
 
+/* The k-th word of the command line as a shell reads it; false: there are no more. */
+bool options_word(int k, char *out, size_t size);
+
 /* The value of an option as JSON, in the unit of the table: a number, text, true or false,
  * [numbers]; null where there is none. */
 void options_json(const option *o, char *out, size_t size);
@@ -139,5 +141,3 @@ bool options_number(const char *text, double *out);
 /* Reads `count` numbers > 0, in `unit` or with one of their own, with an x between them, such as
  * 5x2; false when `text` is not that. */
 bool options_lengths(const char *text, const char *unit, int count, double *const *out);
-
-#endif

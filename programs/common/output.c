@@ -145,6 +145,11 @@ bool output_close(output *file) {
   return ok;
 }
 
+void output_discard(output *file) {
+  if (file->stream) fclose(file->stream), unlink(file->temporary);
+  forget(file);
+}
+
 bool output_reserve(output *file) {
   if (!file->stream) return false;
   char *path = file->path, *temporary = file->temporary;
@@ -165,11 +170,15 @@ bool output_reserve(output *file) {
   return ok;
 }
 
+void output_list(output *file, const char *format, va_list args) {
+  if (file->stream && vfprintf(file->stream, format, args) < 0 && !file->error)
+    file->error = errno ? errno : EIO;
+}
+
 void output_text(output *file, const char *format, ...) {
-  if (!file->stream) return;
   va_list args;
   va_start(args, format);
-  if (vfprintf(file->stream, format, args) < 0 && !file->error) file->error = errno ? errno : EIO;
+  output_list(file, format, args);
   va_end(args);
 }
 
@@ -190,6 +199,12 @@ void csv_header(output *file, const char *columns) {
   for (const char *c = columns; *c; c++)
     if (*c != '?') output_text(file, "%c", *c);
   output_text(file, "\n");
+}
+
+bool csv_open(output *file, app *a, const char *directory, const char *name, const char *columns) {
+  if (!output_open(file, a, directory, name)) return false;
+  csv_header(file, columns);
+  return true;
 }
 
 /* The name of column `k`, without its question mark; true where it has one. */
@@ -249,6 +264,10 @@ void json_number(output *file, const char *key, double value) {
   char text[32];
   json_key(file, key);
   output_text(file, "%s", isfinite(value) ? output_number(text, value) : "null");
+}
+
+void json_numbers(output *file, int64_t count, const json_pair *pairs) {
+  for (int64_t k = 0; k < count; k++) json_number(file, pairs[k].key, pairs[k].value);
 }
 
 void json_integer(output *file, const char *key, int64_t value) {

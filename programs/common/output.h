@@ -1,8 +1,7 @@
 /* output.h - result files: the directory, CSV and JSON. A file is written under a temporary name
  * and takes its own only when it is complete, so that a full disk never spoils an older result.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_OUTPUT_H
-#define EXAMPLES_OUTPUT_H
+#pragma once
 
 #include "app.h"
 
@@ -33,6 +32,9 @@ bool output_open(output *file, app *a, const char *directory, const char *name);
  * unchanged. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
+/* Leaves out the file: DIR/NAME is unchanged. */
+void output_discard(output *file);
+
 /* Ends the file as output_close does, but leaves it under its temporary name: for results that are
  * written where Ctrl-C ends the program at once, see app_leave_at_once. */
 bool output_reserve(output *file);
@@ -40,12 +42,18 @@ bool output_reserve(output *file);
 /* The writers keep the first error for output_close. No result file holds a NaN or an infinity: a
  * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
+void output_list(output *file, const char *format, va_list args);
 
 /* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may lack
  * numbers in some rows. An empty cell of the others is a warning, which names the column. */
 void csv_header(output *file, const char *columns);
+/* output_open and csv_header. */
+bool csv_open(output *file, app *a, const char *directory, const char *name, const char *columns);
 /* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);
+#define CSV_LINE(file, ...)                                                                        \
+  csv_row((file), (int64_t)(sizeof((double[]){__VA_ARGS__}) / sizeof(double)),                     \
+          (const double[]){__VA_ARGS__})
 /* Writes the same after `text`, one or more columns separated by commas. */
 void csv_named_row(output *file, const char *text, int64_t count, const double *values);
 
@@ -53,6 +61,15 @@ void csv_named_row(output *file, const char *text, int64_t count, const double *
 void json_begin(output *file);
 /* null where the number does not exist: NaN, or an infinity. */
 void json_number(output *file, const char *key, double value);
+/* Several: JSON_NUMBERS(file, {"x", x}, {"y", y}). */
+typedef struct json_pair {
+  const char *key;
+  double value;
+} json_pair;
+void json_numbers(output *file, int64_t count, const json_pair *pairs);
+#define JSON_NUMBERS(file, ...)                                                                    \
+  json_numbers((file), (int64_t)(sizeof((json_pair[]){__VA_ARGS__}) / sizeof(json_pair)),          \
+               (const json_pair[]){__VA_ARGS__})
 void json_integer(output *file, const char *key, int64_t value);
 void json_text(output *file, const char *key, const char *text);
 void json_end(output *file);
@@ -70,5 +87,3 @@ bool summary_reserve(app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */
 const char *output_number(char text[32], double value);
-
-#endif

@@ -2,8 +2,7 @@
  * (mps_domain_create_particles), so that memory at the start falls with the number of ranks. In one
  * process, where the domain is NULL, they are the sets of mps_particles_create. All functions are
  * collective. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PARTS_H
-#define EXAMPLES_PARTS_H
+#pragma once
 
 #include <mps/experimental/domain.h>
 
@@ -18,5 +17,3 @@ mps_status parts_sum(mps_domain *domain, int64_t *value);
  * process; -1 where there is none. position[k * dim + c] is where it lies (m), on all ranks. */
 mps_status parts_nearest(mps_domain *domain, mps_particles *particles, int32_t count,
                          const double *places, int64_t *ids, double *position);
-
-#endif

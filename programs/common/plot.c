@@ -1,85 +1,120 @@
-/* plot.c - runs gnuplot on a script in its directory, without a shell, and keeps its picture only
- * when it is complete. SPDX-License-Identifier: BSD-3-Clause */
+/* plot.c - a script of variables, style and template; gnuplot runs on it in its directory, without
+ * a shell, and its picture is kept only when it is complete. SPDX-License-Identifier: BSD-3-Clause
+ */
 #include "plot.h"
 
 #include <errno.h>
-#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-static bool open_script(output *script, app *a, const char *directory, const char *name,
-                        const char *kind, const char *terminal) {
+/* ---- the script ------------------------------------------------------------------------------ */
+
+/* Opens the template NAME for reading: in the folder $MPS_PLOTS, beside the program where it is
+ * installed or built, or where it was to be installed. */
+static FILE *open_template(const char *name) {
+  char program[3000], path[4096];
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[length > 0 ? length : 0] = '\0';
+  char *slash = strrchr(program, '/');
+  if (slash) *slash = '\0';
+  const char *const folders[] = {getenv("MPS_PLOTS"), "", slash ? program : NULL, PLOTS_BESIDE,
+                                 PLOTS_INSTALLED,     ""};
+  for (int k = 0; k < 6; k += 2) {
+    if (!folders[k] || !*folders[k]) continue;
+    snprintf(path, sizeof path, "%s%s/%s", folders[k], folders[k + 1], name);
+    FILE *f = fopen(path, "r");
+    if (f) return f;
+  }
+  return NULL;
+}
+
+/* Without a template there is no picture, but the results stay. */
+static bool no_template(app *a, const char *name) {
+  if (!a->no_gnuplot)
+    printf("No pictures: the template %s of libmps is not found: set MPS_PLOTS to its folder\n",
+           name);
+  return a->no_gnuplot = true;
+}
+
+/* Appends the template; its line "load 'style.gp'" becomes the text of that file. */
+static bool append(output *script, const char *name) {
+  FILE *f = open_template(name);
+  char line[1200];
+  if (!f) return false;
+  bool good = true;
+  while (good && fgets(line, sizeof line, f))
+    if (strcmp(line, "load 'style.gp'\n") == 0)
+      good = append(script, "style.gp");
+    else
+      output_text(script, "%s", line);
+  fclose(f);
+  return good;
+}
+
+bool plot_begin(output *script, app *a, const char *directory, const char *name) {
   char file[80];
-  snprintf(file, sizeof file, "%s.gp", name);
+  *script = (output){.a = a};
+  FILE *style = open_template("style.gp");
+  if (!style) return no_template(a, "style.gp");
+  fclose(style);
+  const char *point = strchr(name, '.');
+  const int stem = (int)(point ? point - name : (ptrdiff_t)strlen(name));
+  snprintf(file, sizeof file, "%.*s.gp", stem, name);
   if (!output_open(script, a, directory, file)) return false;
   output_text(script,
-              "# Draws %s.%s from the data beside it: gnuplot %s.gp\n"
-              "reset\n"
-              "if (!exists(\"picture\")) picture = '%s.%s'\n"
-              "set terminal %s\n"
-              "set output picture\n"
-              "set encoding utf8\n"
-              "set datafile separator ','\n"
-              "set datafile missing NaN\n"
-              "set border linecolor rgb '#333333'\n"
-              "set tics nomirror out\n"
-              "set grid linecolor rgb '#dddddd' linetype 1 linewidth 0.6\n",
-              name, kind, name, name, kind, terminal);
+              "# Draws %.*s%s from the files beside it: gnuplot %s\nreset\nnan = NaN; inf = 1e308\n"
+              "if (!exists(\"picture\")) picture = '%.*s%s'\n",
+              stem, name, point ? point : ".png", file, stem, name, point ? point : ".png");
   return true;
 }
 
+bool plot_end(output *script, const char *directory, const char *name, const char *template) {
+  char file[80];
+  app *a = script->a;
+  if (!script->stream) return true; /* plot_begin has said why */
+  snprintf(file, sizeof file, "%s.gp", template);
+  if (append(script, file)) return plot_close(script, directory, name);
+  output_discard(script);
+  return no_template(a, file);
+}
+
+bool plot_draw(app *a, const char *directory, const char *name, const char *template,
+               const char *variables, ...) {
+  output script;
+  if (!plot_begin(&script, a, directory, name)) return false;
+  va_list args;
+  va_start(args, variables);
+  output_list(&script, variables, args);
+  va_end(args);
+  output_text(&script, "\n");
+  return plot_end(&script, directory, name, template);
+}
+
+/* ---- scripts that are written by the program ------------------------------------------------- */
+
 bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
                int height) {
-  char terminal[120];
-  snprintf(terminal, sizeof terminal,
-           "pngcairo size %d,%d enhanced font 'DejaVu Sans,15' linewidth 1.5", width, height);
-  return open_script(script, a, directory, name, "png", terminal);
-}
-
-bool plot_open_animation(output *script, app *a, const char *directory, const char *name, int width,
-                         int height, double step) {
-  char terminal[160];
-  const int hundredths = (int)(100.0 * step + 0.5);
-  snprintf(terminal, sizeof terminal,
-           "gif animate delay %d loop 0 optimize size %d,%d enhanced font 'DejaVu Sans,11'",
-           hundredths > 2 ? hundredths : 2, width, height);
-  return open_script(script, a, directory, name, "gif", terminal);
-}
-
-/* 1, 2 or 5 times a power of ten, at least `value`. */
-static double round_up(double value) {
-  const double power = pow(10.0, floor(log10(value))), lead = value / power;
-  return (lead > 5.0 ? 10.0 : lead > 2.0 ? 5.0 : lead > 1.0 ? 2.0 : 1.0) * power;
-}
-
-void plot_key_below(output *script) {
+  if (!plot_begin(script, a, directory, name)) return false;
+  output_text(script, "width = %d\nheight = %d\n", width, height);
+  (void)append(script, "style.gp");
   output_text(
       script,
-      "set key outside bottom center horizontal reverse Left height 1\nset xlabel offset 0,0.5\n");
+      "unset datafile columnheaders\nset key inside vertical right top noreverse Right height 0\n");
+  return true;
 }
 
-double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }
+void plot_key_below(output *script) { output_text(script, "eval below\n"); }
 
 void plot_colours(output *script, double least, double most, double lowest, double highest) {
-  if (!(most > least && isfinite(most - least))) most = least + 1.0; /* one value everywhere */
-  const double step = round_up((most - least) / 6.0), slack = 1e-6 * step;
-  const int64_t first = (int64_t)floor((least + slack) / step);
-  const int64_t last = (int64_t)ceil((most - slack) / step);
-  output_text(script, "set cbrange [%.9g:%.9g]\nset cbtics (", (double)first * step,
-              (double)last * step);
-  for (int64_t k = first; k <= last; k++) {
-    const bool below = k == first && lowest < (double)k * step - slack;
-    const bool above = k == last && highest > (double)k * step + slack;
-    output_text(script, "%s'%s%.6g' %.9g", k > first ? ", " : "",
-                below   ? "≤ "
-                : above ? "≥ "
-                        : "",
-                (double)k * step, (double)k * step);
-  }
-  output_text(script, ")\n");
+  output_text(
+      script,
+      "cb_least = %.9g; cb_most = %.9g; cb_lowest = %.9g; cb_highest = %.9g\neval colours\n", least,
+      most, lowest, highest);
 }
 
 /* ---- gnuplot --------------------------------------------------------------------------------- */
@@ -181,20 +216,15 @@ static bool draw(app *a, const char *directory, const char *name, const char *ki
                    status == 0 ? "the picture is cut off, as on a full disk" : reason_of(said));
 }
 
-static bool close_script(output *script, const char *directory, const char *name,
-                         const char *kind) {
+bool plot_close(output *script, const char *directory, const char *name) {
   app *a = script->a;
+  char stem[64];
+  const bool animated = strstr(name, ".gif") != NULL;
+  if (!script->stream) return true;
+  snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
   output_text(script, "unset output\nundefine picture\n");
   if (!output_close(script)) return false;
   progress_clear(&a->bar);
   fflush(stdout);
-  return draw(a, directory, name, kind);
-}
-
-bool plot_close(output *script, const char *directory, const char *name) {
-  return close_script(script, directory, name, "png");
-}
-
-bool plot_close_animation(output *script, const char *directory, const char *name) {
-  return close_script(script, directory, name, "gif");
+  return draw(a, directory, stem, animated ? "gif" : "png");
 }

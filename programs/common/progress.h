@@ -1,7 +1,6 @@
 /* progress.h - progress bar on a terminal and clean stop by Ctrl-C, wired to the context's hooks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PROGRESS_H
-#define EXAMPLES_PROGRESS_H
+#pragma once
 
 #include <mps/context.h>
 
@@ -58,5 +57,3 @@ void progress_by_clock(progress *bar, double seconds, const char *text);
 /* Hooks of a context; `user` is the progress (cancel: not used). */
 void progress_hook(void *user, const mps_context_progress *p);
 int32_t progress_cancel_hook(void *user);
-
-#endif

@@ -2,8 +2,7 @@
  * their number, their domain, and threads for each. The library of the domain, libmps-petsc, is
  * loaded only then: without mpirun a program uses neither MPI nor PETSc.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_RANKS_H
-#define EXAMPLES_RANKS_H
+#pragma once
 
 #include <mps/experimental/domain.h>
 #include <mps/experimental/linear_solver.h>
@@ -33,5 +32,3 @@ void ranks_drop_solver(void **petsc);
 /* Threads for this rank: the processors that it may use, divided by the number of ranks of its node
  * that may use the same ones. Collective. */
 mps_status ranks_threads(mps_domain *domain, int64_t *threads);
-
-#endif

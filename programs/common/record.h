@@ -1,7 +1,6 @@
 /* record.h - a recorded motion or level from a file, and what it was read as.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_RECORD_H
-#define EXAMPLES_RECORD_H
+#pragma once
 
 #include "output.h"
 
@@ -25,5 +24,3 @@ mps_status record_read(app *a, const char *name, const char *path, const mps_sig
 /* Members record_format, _values, _step, _length, _peak, _unit of summary.json; nothing where the
  * signal is not of a file. */
 void record_json(output *file, const mps_signal *signal);
-
-#endif

@@ -10,8 +10,7 @@
  *   }
  * and saves between steps by resume_save, to continue by resume_peek and resume_restore.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_RESUME_H
-#define EXAMPLES_RESUME_H
+#pragma once
 
 #include "app.h"
 #include "options.h"
@@ -97,5 +96,3 @@ mps_status resume_go_on(mps_context *context, const resume *r, const char *path,
                         resume_schedule *s);
 /* "To go on: ..." on stdout, after Ctrl-C, where a checkpoint was written. */
 void resume_tell(const resume_schedule *s);
-
-#endif

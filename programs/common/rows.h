@@ -1,8 +1,7 @@
 /* rows.h - rows of results of a run, kept by a history of its solver (mps/history.h): they are in
  * its checkpoints, and a restart brings them back. A row is a struct of doubles, whose first is the
  * time (s). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_ROWS_H
-#define EXAMPLES_ROWS_H
+#pragma once
 
 #include "app.h"
 
@@ -28,5 +27,3 @@ mps_status rows_add(result_rows *r, const void *row);
 /* After a restart. */
 void rows_look(result_rows *r);
 void rows_end(result_rows *r);
-
-#endif

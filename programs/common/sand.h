@@ -1,7 +1,6 @@
 /* sand.h - the void ratios between which sand dilates, of the programs whose ground has an angle of
  * dilation. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_SAND_H
-#define EXAMPLES_SAND_H
+#pragma once
 
 #include "options.h"
 #include "output.h"
@@ -40,5 +39,3 @@ static inline void sand_print(const sand_voids *v, double psi) {
     printf("dilation ends at the void ratio %.4g, from %.4g at the start (V/V0 %.4g)\n", v->e_max,
            v->e0, (1.0 + v->e_max) / (1.0 + v->e0));
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* series.h - evaluation of tables of samples: harmonics, means, decay.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_SERIES_H
-#define EXAMPLES_SERIES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -23,5 +22,3 @@ double series_mean(const series *s, double from, double to);
  * kinetic energy: half the decay rate of that, by a linear fit of the logarithms of its means over
  * a period. NaN where there are less than two periods. */
 double series_wave_decay(const series *kinetic, double period, double from, double to);
-
-#endif

@@ -1,8 +1,7 @@
 /* strip.h - a rectangular elastic structure with water on one of its faces, in plane strain: the
  * wall of mps-seawall, the plate of mps-tank.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STRIP_H
-#define EXAMPLES_STRIP_H
+#pragma once
 
 #include <mps/elastic.h>
 
@@ -42,5 +41,3 @@ mps_status strip_load(strip *s, const double *pressure);
 /* Mean of component c of the displacement (m) of the particles in a box. */
 mps_status strip_displacement(strip *s, const double *lower, const double *upper, int c,
                               double *mean);
-
-#endif

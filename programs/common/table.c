@@ -51,7 +51,8 @@ static void full_name(const table_column *c, char *out, size_t size) {
     if (out[k] == ' ' || out[k] == '/') out[k] = '_';
 }
 
-void table_names(const table_def *def, char *out, size_t size) {
+/* "thickness_m, vs_m_s": the names of the columns. */
+static void list_names(const table_def *def, char *out, size_t size) {
   size_t used = 0;
   out[0] = '\0';
   for (int k = 0; k < def->count && used < size; k++) {
@@ -135,7 +136,7 @@ static bool read_header(reader *r, char **cell, int count, const char **unknown)
   const table_def *def = r->def;
   bool given[TABLE_COLUMNS] = {false};
   char names[NAMES], name[60];
-  table_names(def, names, sizeof names);
+  list_names(def, names, sizeof names);
   *unknown = NULL;
   for (int i = 0; i < count && i <= TABLE_COLUMNS; i++) {
     int found = -1;
@@ -183,7 +184,7 @@ static bool assume(reader *r) {
   const bool header = count > 0 && read_header(r, cell, count, &unknown);
   r->why = all, r->size = size;
   if (header) return true;
-  table_names(def, names, sizeof names);
+  list_names(def, names, sizeof names);
   if (def->others) return fail(r, "a header is missing: a %s has %s", def->row, names);
   r->columns = def->count;
   for (int k = 0; k < def->count; k++) {
@@ -240,7 +241,7 @@ static bool read_value(reader *r, int k, char *cell, double factor, double *out)
 static bool read_row(reader *r, char **cell, int count) {
   const table_def *def = r->def;
   char names[NAMES];
-  table_names(def, names, sizeof names);
+  list_names(def, names, sizeof names);
   bool may_end = false; /* before the last column */
   for (int i = count; i < r->columns; i++)
     may_end = r->place[i] == OTHER || def->column[r->place[i]].optional;

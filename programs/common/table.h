@@ -5,8 +5,7 @@
  * "Vs (ft/s); thickness [ft]". Behind semicolons a comma is a decimal sign. Without a header the
  * columns are those of the definition, in its order and units, and a warning says so; a file that
  * may have columns of other programs must have one. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_TABLE_H
-#define EXAMPLES_TABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -40,7 +39,3 @@ bool table_read(const char *path, const table_def *def, double *values, int64_t 
                 size_t size);
 /* "FILE has no header ..." of the file read last, "" where it has one. */
 const char *table_note(void);
-/* "thickness_m, vs_m_s": the names of the columns, for help. */
-void table_names(const table_def *def, char *out, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* tongue.h - the end of a tongue of particles on a slope, which is thinner than a spacing there.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_TONGUE_H
-#define EXAMPLES_TONGUE_H
+#pragma once
 
 #include <mps/particles.h>
 
@@ -25,5 +24,3 @@ typedef struct tongue {
  * continued to zero, at most by its own length: before a bore it would be no tongue's. False
  * without memory. */
 bool tongue_find(mps_particles *water, const tongue_slope *slope, double spacing, tongue *out);
-
-#endif

@@ -97,8 +97,6 @@ static const quantity *find(const char *unit) {
   return NULL;
 }
 
-bool units_known(const char *unit) { return find(unit) != NULL; }
-
 /* Without blanks and signs of powers; "/" for "_", as in m_s2. */
 static bool plain(const char *text, char *out, size_t size) {
   size_t n = 0;

@@ -1,8 +1,7 @@
 /* units.h - numbers with a unit, in usual notation: 10MPa, 5mm/s, 18kN/m3. Values are in SI units,
  * angles in degrees. An option's unit, such as "Pa", says which quantity it is.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_UNITS_H
-#define EXAMPLES_UNITS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,13 +18,9 @@ units_status units_read(const char *text, const char *unit, double *value);
 /* The value in `unit`'s SI quantity ("1": a ratio) of one of the unit that `text` is, in the
  * spellings of headers: "m_s", "kN/m^3", "feet", "%". False: it is none of that quantity. */
 bool units_factor(const char *text, const char *unit, double *factor);
-/* The option's unit is one of a physical quantity. */
-bool units_known(const char *unit);
 /* True where `text` ends with a unit. */
 bool units_written(const char *text);
 /* "a pressure is wanted (Pa, kPa, MPa, GPa)", for the error about UNITS_OTHER. */
 void units_wanted(const char *unit, char *out, size_t size);
 /* "10 MPa", "0.3": up to six digits, with a prefix where the number is easier to read. */
 void units_show(double value, const char *unit, char *out, size_t size);
-
-#endif

@@ -478,7 +478,7 @@ static int find(const char *name) {
   return k < ROWS ? k : -1;
 }
 
-option_kind vocabulary_kind(const option *o) {
+static option_kind kind_of(const option *o) {
   return o->number    ? OPTION_IS_NUMBER
          : o->integer ? OPTION_IS_INTEGER
          : o->text    ? OPTION_IS_TEXT
@@ -502,7 +502,7 @@ static bool are_among(const char *words, const char *all) {
 static const char *complete(option *o) {
   const int k = find(o->name);
   if (k < 0) return "not in the table of options (common/vocabulary.c)";
-  if (rows[k].kind != vocabulary_kind(o)) return "of another kind in the table of options";
+  if (rows[k].kind != kind_of(o)) return "of another kind in the table of options";
   if (!o->unit && !rows[k].unit && !o->flag) return "without its words";
   if (o->unit && rows[k].unit && o->unit != rows[k].unit &&
       !(o->choice && are_among(o->unit, rows[k].unit)))

@@ -2,8 +2,7 @@
  * and meaning, which are the same in every program that has the option. A program lists its own
  * with their defaults, and where it must a narrower range and a few words; see options.h.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_VOCABULARY_H
-#define EXAMPLES_VOCABULARY_H
+#pragma once
 
 #include "options.h"
 
@@ -15,7 +14,6 @@ typedef enum option_kind {
   OPTION_IS_CHOICE
 } option_kind;
 
-option_kind vocabulary_kind(const option *o);
 /* Completes a program's table. NULL, or what is wrong with the option *name of it: no program with
  * such a table starts. */
 const char *vocabulary_complete(option *table, const char **name);
@@ -28,5 +26,3 @@ const char *vocabulary_likelier_unit(const option *o, double value);
 /* Of another name of an option of the program, a former one or that of another program for nearly
  * the same: "poisson", or "frames N: how many of them, ..." where the value has another meaning. */
 bool vocabulary_find_other(const option *table, const char *name, char *out, size_t size);
-
-#endif

@@ -1,8 +1,7 @@
 /* waves.h - common parts of programs with waves: the water's constants, a piston wave maker, and
  * wave theory; docs/references.md has the sources.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_WAVES_H
-#define EXAMPLES_WAVES_H
+#pragma once
 
 #include "app.h"
 
@@ -61,5 +60,3 @@ double waves_sainflou(double k, double depth, double H, int sign);
 double waves_sainflou_height(double k, double depth, double level);
 /* Period (s) of the first mode of a closed tank. */
 double waves_sloshing_period(double length, double depth);
-
-#endif

@@ -1,8 +1,7 @@
 /* consolidation.h - the parts of mps-consolidation: model and run (model.c), loads and layers of a
  * column with its exact solution (column.c, strata.c), a restart (restart.c), exact solutions
  * (exact.c), results (results.c). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_CONSOLIDATION_H
-#define EXAMPLES_CONSOLIDATION_H
+#pragma once
 
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
@@ -100,5 +99,3 @@ double exact_plate(double nu, double T);
  * and that for equal strain. */
 double exact_drain(double n, double T);
 double exact_drain_equal(double n, double T);
-
-#endif

@@ -62,8 +62,9 @@ static comparison compare_exact(const simulation *sim) {
 
 static bool write_profile(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "profile.csv")) return false;
-  csv_header(&f, sim->s.loads ? "load_Pa,T,depth/H,u/u0,exact" : "T,depth/H,u/u0,exact");
+  if (!csv_open(&f, a, sim->s.out, "profile.csv",
+                sim->s.loads ? "load_Pa,T,depth/H,u/u0,exact" : "T,depth/H,u/u0,exact"))
+    return false;
   for (int r = 0; r < sim->rows; r++)
     for (int k = 0; k < sim->points; k++) {
       const instant *now = &sim->row[r];
@@ -76,22 +77,15 @@ static bool write_profile(app *a, const simulation *sim) {
 
 static bool write_times(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "times.csv")) return false;
-  csv_header(&f, "T,settlement?,settlement_exact?,pressure_error,plate_force?,drained_kg,U?,"
-                 "U_exact?,load_Pa?,t_s?");
+  if (!csv_open(&f, a, sim->s.out, "times.csv",
+                "T,settlement?,settlement_exact?,pressure_error,plate_force?,drained_kg,U?,"
+                "U_exact?,load_Pa?,t_s?"))
+    return false;
   for (int r = 0; r < sim->rows; r++) {
     const instant *now = &sim->row[r];
-    const double line[] = {now->T,
-                           now->settlement,
-                           now->settlement_exact,
-                           pressure_error(sim, r),
-                           now->force,
-                           now->water.drained,
-                           now->U,
-                           now->U_exact,
-                           is_column(&sim->s) ? column_load(sim, now->step, now->T) : NAN,
-                           real_time(sim, now)};
-    csv_row(&f, 10, line);
+    CSV_LINE(&f, now->T, now->settlement, now->settlement_exact, pressure_error(sim, r), now->force,
+             now->water.drained, now->U, now->U_exact,
+             is_column(&sim->s) ? column_load(sim, now->step, now->T) : NAN, real_time(sim, now));
   }
   return output_close(&f);
 }
@@ -101,22 +95,18 @@ static bool write_steps(app *a, const simulation *sim) {
   output f;
   double before = 0.0;
   if (!sim->s.loads) return true;
-  if (!output_open(&f, a, sim->s.out, "steps.csv")) return false;
-  csv_header(&f, "load_Pa,effective_stress_Pa,settlement,settlement_exact,U,modulus_Pa,"
-                 "void_ratio?,void_ratio_exact?");
+  if (!csv_open(&f, a, sim->s.out, "steps.csv",
+                "load_Pa,effective_stress_Pa,settlement,settlement_exact,U,modulus_Pa,"
+                "void_ratio?,void_ratio_exact?"))
+    return false;
   for (int r = sim->times - 1; r < sim->rows; r += sim->times) {
     const instant *now = &sim->row[r];
     const bool clay = sim->s.kase == MCC;
     const double load = sim->load[now->step + 1], start = clay ? sim->s.initial : 0.0;
-    const double line[] = {load,
-                           load + start,
-                           now->settlement,
-                           now->settlement_exact,
-                           now->U,
-                           reference_load(sim, now->step) / (now->settlement - before),
-                           clay ? void_ratio(sim, now->settlement) : NAN,
-                           clay ? void_ratio(sim, now->settlement_exact) : NAN};
-    csv_row(&f, 8, line);
+    CSV_LINE(&f, load, load + start, now->settlement, now->settlement_exact, now->U,
+             reference_load(sim, now->step) / (now->settlement - before),
+             clay ? void_ratio(sim, now->settlement) : NAN,
+             clay ? void_ratio(sim, now->settlement_exact) : NAN);
     before = now->settlement;
   }
   return output_close(&f);
@@ -132,9 +122,7 @@ static bool write_summary(app *a, const simulation *sim) {
   if (!mpm_model_summary(a, &sim->m, sim->s.out, &f)) return false;
   json_text(&f, "case", names[sim->s.kase]);
   json_integer(&f, "cells", (int64_t)sim->s.cells);
-  json_number(&f, "T", last->T);
-  json_number(&f, "load", sim->s.load);
-  json_number(&f, "settlement", last->settlement);
+  JSON_NUMBERS(&f, {"T", last->T}, {"load", sim->s.load}, {"settlement", last->settlement});
   json_number_if(&f, holds, "settlement_exact", last->settlement_exact);
   json_number(&f, "U", last->U);
   json_number_if(&f, holds, "U_exact", last->U_exact);
@@ -144,51 +132,37 @@ static bool write_summary(app *a, const simulation *sim) {
   json_reason(&f, "exact_reason", &exact);
   json_number(&f, "centre_pressure", last->u[sim->points - 1]);
   json_number_if(&f, holds, "centre_pressure_exact", exact_at(sim, sim->rows - 1, sim->points - 1));
-  json_number(&f, "plate_force", last->force);
-  json_number(&f, "degree", last->degree);
-  json_number(&f, "degree_equal_strain", last->degree_equal);
-  json_number(&f, "water_start_kg", last->water.start);
-  json_number(&f, "water_kg", last->water.mass);
-  json_number(&f, "entered_kg", last->water.entered);
-  json_number(&f, "left_kg", last->water.left);
-  json_number(&f, "drained_kg", last->water.drained);
-  json_number(&f, "residual_kg", last->water.residual);
+  JSON_NUMBERS(&f, {"plate_force", last->force}, {"degree", last->degree},
+               {"degree_equal_strain", last->degree_equal}, {"water_start_kg", last->water.start},
+               {"water_kg", last->water.mass}, {"entered_kg", last->water.entered},
+               {"left_kg", last->water.left}, {"drained_kg", last->water.drained},
+               {"residual_kg", last->water.residual});
   json_end(&f);
   return output_close(&f);
 }
 
 static bool draw_profile(app *a, const simulation *sim) {
-  static const char *const colours[] = {"#1f4e8c", "#c0392b", "#2e7d32", "#8e44ad",
-                                        "#d68910", "#117a65", "#5d4037", "#34495e"};
   static const char *const titles[] = {"Terzaghi", "Xie and Leo", "Cam-Clay", "Mandel",
                                        "Cryer",    "Strip load",  "Barron"};
   static const char *const depths[] = {"depth/H", "depth/H", "depth/H", "1 - x/a",
                                        "1 - r/a", "z/B",     "1 - r/a"};
-  const int column = sim->s.loads ? 2 : 1; /* of T */
   output f;
-  if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
-  output_text(&f,
-              "set title 'Pore pressure: %s, %g cells'\nset xlabel 'u/u_0'\nset ylabel '%s'\n"
-              "set yrange [*:*] reverse\nset xrange [0:*]\nset key outside right top\nplot ",
-              titles[sim->s.kase], sim->s.cells, depths[sim->s.kase]);
-  for (int r = 0; r < sim->rows; r++) {
-    const char *colour = colours[r % 8];
-    char title[48] = "strip";
+  if (!plot_begin(&f, a, sim->s.out, "profile")) return false;
+  output_text(
+      &f,
+      "first = 'Pore pressure: %s, %g cells'; y_name = '%s'\nrows = %d; points = %d; column = "
+      "%d\narray names[rows]\n",
+      titles[sim->s.kase], sim->s.cells, depths[sim->s.kase], (int)sim->rows, (int)sim->points,
+      sim->s.loads ? 2 : 1);
+  for (int r = 0; r < sim->rows; r++)
     if (sim->s.loads)
-      snprintf(title, sizeof title, "%g kPa, T = %g", 1e-3 * sim->load[sim->row[r].step + 1],
-               sim->row[r].T);
-    else if (sim->s.kase != STRIP)
-      snprintf(title, sizeof title, "T = %g", sim->row[r].T);
-    output_text(&f,
-                "%s'profile.csv' every ::%d::%d using %d:%d with points pointtype 7 pointsize 0.7 "
-                "linecolor rgb '%s' title '%s', \\\n  '' every ::%d::%d using %d:%d with lines "
-                "linecolor rgb '%s' title '%s'",
-                r ? ", \\\n  " : "", r * sim->points + 1, (r + 1) * sim->points, column + 2,
-                column + 1, colour, title, r * sim->points + 1, (r + 1) * sim->points, column + 3,
-                column + 1, colour, r + 1 < sim->rows ? "" : "exact");
-  }
-  output_text(&f, "\n");
-  return plot_close(&f, sim->s.out, "profile");
+      output_text(&f, "names[%d] = '%g kPa, T = %g'\n", r + 1,
+                  1e-3 * sim->load[sim->row[r].step + 1], sim->row[r].T);
+    else if (sim->s.kase == STRIP)
+      output_text(&f, "names[%d] = 'strip'\n", r + 1);
+    else
+      output_text(&f, "names[%d] = 'T = %g'\n", r + 1, sim->row[r].T);
+  return plot_end(&f, sim->s.out, "profile", "consolidation");
 }
 
 bool consolidation_finish(app *a, void *user) {

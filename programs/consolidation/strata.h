@@ -7,8 +7,7 @@
  * for the load. Thickness in parts of the height H, k and M' over their means k_m = H/sum(h/k) and
  * M_m = H/sum(h/M'), time as T = c_v t/H^2 with c_v = k_m M_m/(rho_w g).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STRATA_H
-#define EXAMPLES_STRATA_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -35,5 +34,3 @@ void strata_solve(strata *s);
  * evenly within `ramp` (0: at once) and stays. The compression over that of the end. */
 double strata_pressure(const strata *s, double depth, double T, double ramp);
 double strata_degree(const strata *s, double T, double ramp);
-
-#endif

@@ -1,8 +1,7 @@
 /* dam_break.h - common declarations of mps-dam-break: settings, records, and the water by moving
  * particles (mps_fluid) in place of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_DAM_BREAK_H
-#define EXAMPLES_DAM_BREAK_H
+#pragma once
 
 #include "common/mpm_heap.h"
 #include "common/mpm_method.h"
@@ -65,5 +64,3 @@ bool dam_grow_gauge(simulation *sim);
 bool dam_guards_write(app *a, const simulation *sim, output *f);
 /* Results of --impact: pressure.csv, summary.json, pictures but the water's. */
 bool dam_impact_write(app *a, simulation *sim);
-
-#endif

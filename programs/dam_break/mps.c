@@ -145,35 +145,21 @@ static impact find_impact(const simulation *sim) {
 static bool write_gauge(app *a, const simulation *sim) {
   const double H = column_height(&sim->s), unit = DENSITY * G * H, clock = sqrt(G / H);
   output f;
-  if (!output_open(&f, a, sim->s.out, "pressure.csv")) return false;
-  csv_header(&f, "t_s,t_scaled,pressure_Pa,pressure_scaled,mean_scaled?");
+  if (!csv_open(&f, a, sim->s.out, "pressure.csv",
+                "t_s,t_scaled,pressure_Pa,pressure_scaled,mean_scaled?"))
+    return false;
   for (int64_t k = 0; k < sim->gauges; k++) {
     const double t = sim->gauge_t[k], p = sim->gauge_p[k];
     const double mean = mean_between(sim, t - MEAN / clock, t + MEAN / clock) / unit;
-    const double row[] = {t, t * clock, p, p / unit, mean};
-    csv_row(&f, 5, row);
+    CSV_LINE(&f, t, t * clock, p, p / unit, mean);
   }
   return output_close(&f);
 }
 
 static bool draw_gauge(app *a, const settings *s) {
-  output f;
-  if (!plot_open(&f, a, s->out, "pressure", 1000, 520)) return false;
-  output_text(
-      &f,
-      "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset "
-      "xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
-      "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4<*]\nset samples 2000\nset key top left reverse "
-      "Left\n"
-      "set object 1 rectangle from 3.3,graph 0 to 4.9,graph 1 fillcolor rgb '#eef3fa' "
-      "fillstyle solid noborder behind clip\n"
-      "plot 'pressure.csv' every ::1 using 2:4 with lines linecolor rgb '#8fb3dd' linewidth 0.7 "
-      "title "
-      "'MPS', '' every ::1 using 2:5 with lines linecolor rgb '#1f4e8c' linewidth 1.6 title 'mean "
-      "over 0.1', x < 3.3 || x > 4.9 ? NaN : 0.545 with lines dashtype '--' linecolor rgb "
-      "'#c0392b' title 'mean of Buchner 2002'\n",
-      s->h / column_height(s), s->duration * sqrt(G / column_height(s)));
-  return plot_close(&f, s->out, "pressure");
+  const double H = column_height(s);
+  return plot_draw(a, s->out, "pressure", "dam-break/pressure", "spacing = %.9g; end = %.9g",
+                   s->h / H, s->duration * sqrt(G / H));
 }
 
 bool dam_guards_write(app *a, const simulation *sim, output *f) {
@@ -189,13 +175,9 @@ bool dam_impact_write(app *a, simulation *sim) {
   const impact i = find_impact(sim);
   output f;
   if (!write_gauge(a, sim) || !mpm_model_summary(a, &sim->m, sim->s.out, &f)) return false;
-  json_number(&f, "impact_mean", i.mean);
-  json_number(&f, "impact_mean_buchner", 0.545);
-  json_number(&f, "impact_rise", i.rise);
-  json_number(&f, "impact_first", i.first);
-  json_number(&f, "impact_first_time", i.first_at);
-  json_number(&f, "impact_second", i.second);
-  json_number(&f, "impact_second_time", i.second_at);
+  JSON_NUMBERS(&f, {"impact_mean", i.mean}, {"impact_mean_buchner", 0.545}, {"impact_rise", i.rise},
+               {"impact_first", i.first}, {"impact_first_time", i.first_at},
+               {"impact_second", i.second}, {"impact_second_time", i.second_at});
   if (!dam_guards_write(a, sim, &f)) return false;
   json_end(&f);
   if (!output_close(&f) || !draw_gauge(a, &sim->s)) return false;

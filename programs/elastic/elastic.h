@@ -1,8 +1,7 @@
 /* elastic.h - common parts of the programs of implicit elasticity: the options of the method, and
  * the results at a particle.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_ELASTIC_H
-#define EXAMPLES_ELASTIC_H
+#pragma once
 
 #include "common/app.h"
 #include "common/options.h"
@@ -66,5 +65,3 @@ typedef struct elastic_point {
 } elastic_point;
 /* Of the particle at `index` of the views. False after an error line. */
 bool elastic_point_get(app *a, mps_particles *particles, int64_t index, elastic_point *out);
-
-#endif

@@ -121,22 +121,18 @@ static double stress_of(const element *x, int64_t k) {
 bool element_write_cycles(element *x) {
   output f;
   if (!element_is_cyclic(&x->s)) return true;
-  if (!output_open(&f, &x->a, x->s.out, "cycles.csv")) return false;
-  csv_header(&f, "cycles,strain_amplitude,stress_amplitude,u,ru?,volume_strain,contraction?");
+  if (!csv_open(&f, &x->a, x->s.out, "cycles.csv",
+                "cycles,strain_amplitude,stress_amplitude,u,ru?,volume_strain,contraction?"))
+    return false;
   int64_t from = 0;
   for (int n = 0; n < x->stage_count; n++) {
     const int64_t to = from + x->stages[n].steps;
     if (to >= x->rows) break;
     const row *a = &x->table[from], *b = &x->table[to];
     const double reference = element_reference(x);
-    const double cells[] = {b->cycles,
-                            0.5 * fabs(b->strain - a->strain),
-                            0.5 * fabs(stress_of(x, to) - stress_of(x, from)),
-                            b->u,
-                            reference > 0.0 ? b->u / reference : NAN,
-                            log(b->volume_ratio),
-                            b->contraction};
-    csv_row(&f, 7, cells);
+    CSV_LINE(&f, b->cycles, 0.5 * fabs(b->strain - a->strain),
+             0.5 * fabs(stress_of(x, to) - stress_of(x, from)), b->u,
+             reference > 0.0 ? b->u / reference : NAN, log(b->volume_ratio), b->contraction);
     from = to;
   }
   return output_close(&f);
@@ -145,21 +141,7 @@ bool element_write_cycles(element *x) {
 /* u over the first effective stress, or the drained volume strain, against the cycles. */
 bool element_draw_cycles(element *x) {
   const settings *s = &x->s;
-  output f;
   if (!element_is_cyclic(s) || !(s->p0 > 0.0)) return true;
-  if (!plot_open(&f, &x->a, s->out, "cycles", 900, 640)) return false;
-  output_text(&f, "set title '%s'\nset xlabel 'cycles'\nset key off\n",
-              s->drained ? "Volume strain over cycles of shear"
-                         : "Excess pore pressure over cycles of shear");
-  if (s->drained)
-    output_text(&f, "set ylabel 'contraction of the volume (%%)'\nset yrange [0:*]\n"
-                    "plot 'path.csv' every ::1 using 18:(-100*log($15)) with lines linewidth 2 "
-                    "linecolor rgb '#1f4e8c'\n");
-  else
-    output_text(&f,
-                "set ylabel 'r_u, excess pressure over the first effective stress'\n"
-                "set yrange [0:1.05]\nplot 'path.csv' every ::1 using 18:($8/%.9g) with lines "
-                "linewidth 2 linecolor rgb '#1f4e8c'\n",
-                element_reference(x));
-  return plot_close(&f, s->out, "cycles");
+  return plot_draw(&x->a, s->out, "cycles", "element/cycles", "drained = %d; first = %.9g",
+                   s->drained, element_reference(x));
 }

@@ -1,8 +1,7 @@
 /* element.h - the parts of mps-element: options (options.c), the law (law.c), the path of stress
  * and strain (path.c), cyclic paths and their results (cycles.c), results (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_ELEMENT_H
-#define EXAMPLES_ELEMENT_H
+#pragma once
 
 #include "common/options.h"
 #include "common/output.h"
@@ -125,5 +124,3 @@ bool element_draw_cycles(element *x);
 bool element_loop(const element *x, double *modulus, double *damping);
 /* q at which the path ends under shear, by theory; NaN: none. */
 double element_limit(const element *x);
-
-#endif

@@ -1,8 +1,7 @@
 /* info.h - the contents of a file for mps-info. Both functions print only once all is read; `why`
  * receives the error.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_INFO_H
-#define EXAMPLES_INFO_H
+#pragma once
 
 #include "report.h"
 
@@ -40,5 +39,3 @@ bool info_list_fields(hid_t group, bool columns_first, info_fields *fields);
 bool info_checkpoint(report *r, mps_context *context, const char *path, hid_t file, char *why);
 /* A series for ParaView. */
 bool info_series(report *r, const char *path, hid_t file, char *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* report.h - output of mps-info: lines of text, or members of a JSON object.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_INFO_REPORT_H
-#define EXAMPLES_INFO_REPORT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,5 +28,3 @@ void report_integer(report *r, const char *title, int64_t value);
 void report_list(report *r, const char *title);
 void report_row(report *r, const char *name, const char *text);
 void report_list_end(report *r);
-
-#endif

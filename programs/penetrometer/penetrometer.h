@@ -4,8 +4,7 @@
  * The floor is at height 0. Forces are those of the whole tip: 4 times those of a quarter. Depths
  * are measured from the initial surface, downwards, to the lowest point.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PENETROMETER_H
-#define EXAMPLES_PENETROMETER_H
+#pragma once
 
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
@@ -146,5 +145,3 @@ bool pen_finish(app *a, void *user);
 /* Hertz: force (N) on a smooth rigid sphere in an elastic half space. */
 double pen_hertz(const penetrometer *p, double depth);
 bool pen_draw(app *a, const penetrometer *p);
-
-#endif

@@ -53,37 +53,29 @@ static mean mean_of(const penetrometer *p, const pen_run *r) {
 
 static bool write_force(app *a, const penetrometer *p, const pen_run *r, const char *name) {
   output f;
-  if (!output_open(&f, a, p->s.out, name)) return false;
-  csv_header(&f, "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
-                 "q_kPa,q_over_c?,n_kt?");
+  if (!csv_open(&f, a, p->s.out, name,
+                "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
+                "q_kPa,q_over_c?,n_kt?"))
+    return false;
   for (int64_t i = 0; i < r->rows; i++) {
     const pen_row *row = &r->row[i];
     const double q = row->smooth[PEN_TIP] / base_area(p);
     const double ratio = p->s.cohesion > 0.0 ? q / p->s.cohesion : NAN;
-    const double line[] = {row->depth,
-                           row->force[PEN_TOTAL],
-                           row->force[PEN_TIP],
-                           row->force[PEN_SHAFT],
-                           row->smooth[PEN_TOTAL],
-                           row->smooth[PEN_TIP],
-                           row->smooth[PEN_SHAFT],
-                           1e-3 * q,
-                           ratio,
-                           pen_factor_of(p, q, row->depth).n_kt};
-    csv_row(&f, 10, line);
+    CSV_LINE(&f, row->depth, row->force[PEN_TOTAL], row->force[PEN_TIP], row->force[PEN_SHAFT],
+             row->smooth[PEN_TOTAL], row->smooth[PEN_TIP], row->smooth[PEN_SHAFT], 1e-3 * q, ratio,
+             pen_factor_of(p, q, row->depth).n_kt);
   }
   return output_close(&f);
 }
 
 static bool write_section(app *a, const penetrometer *p) {
   output f;
-  if (!output_open(&f, a, p->s.out, "section.csv")) return false;
-  csv_header(&f, "x_m,z_m,displacement_m,plastic_strain");
+  if (!csv_open(&f, a, p->s.out, "section.csv", "x_m,z_m,displacement_m,plastic_strain"))
+    return false;
   for (int k = 0; k < p->runs; k++)
     for (int64_t i = 0; i < p->run[k].points; i++) {
       const pen_point *point = &p->run[k].point[i];
-      const double row[] = {point->x, point->z, point->moved, point->strain};
-      csv_row(&f, 4, row);
+      CSV_LINE(&f, point->x, point->z, point->moved, point->strain);
     }
   return output_close(&f);
 }
@@ -95,18 +87,15 @@ static void write_settings(output *f, const penetrometer *p) {
   json_text(f, "tip", tips[s->tip]);
   json_text(f, "law", laws[s->law]);
   json_text(f, "geometry", p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric");
-  json_number(f, "h", s->h);
-  json_number(f, "flip_time", s->flip_time);
+  JSON_NUMBERS(f, {"h", s->h}, {"flip_time", s->flip_time});
   sand_write(f, &(sand_voids){s->e0, s->e_max}, s->law == PEN_SAND ? s->psi : 0.0);
-  json_number(f, "diameter", s->diameter);
-  json_number(f, "rate", s->rate);
-  json_number(f, "friction", s->friction);
+  JSON_NUMBERS(f, {"diameter", s->diameter}, {"rate", s->rate}, {"friction", s->friction});
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(f, "corner", s->corner);
   if (s->inset > 0.0) json_number(f, "inset", s->inset);
-  json_number(f, "half_width", p->run[0].size[0]);
-  json_number(f, "soil_height",
-              p->run[0].size[p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1]);
+  JSON_NUMBERS(
+      f, {"half_width", p->run[0].size[0]},
+      {"soil_height", p->run[0].size[p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1]});
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) json_number(f, "penalty", p->run[0].penalty);
   json_number(f, "dt", p->run[0].dt);
 }
@@ -193,11 +182,9 @@ static void write_factor(output *f, const penetrometer *p, const mean *m) {
   if (s->surcharge > 0.0) json_number(f, "surcharge", s->surcharge);
   if (p->hold > 0.0) json_number(f, "q_at_rest", p->run[0].rest / base_area(p));
   if (isnan(n.strength)) return;
-  json_number(f, "su", n.strength);
-  json_number(f, "rigidity_index", n.rigidity);
-  json_number(f, "vertical_stress", n.vertical);
-  json_number(f, "stress_deviation", n.deviation);
-  json_number(f, "n_kt", n.n_kt);
+  JSON_NUMBERS(f, {"su", n.strength}, {"rigidity_index", n.rigidity},
+               {"vertical_stress", n.vertical}, {"stress_deviation", n.deviation},
+               {"n_kt", n.n_kt});
   json_comparison(f, "n_kt_teh_houlsby", &t.teh_houlsby);
   json_comparison(f, "n_kt_lu", &t.lu);
   if (!isnan(speed_of(s))) json_number(f, "v_d_over_cv", speed_of(s));
@@ -209,11 +196,9 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   output f;
   if (!mpm_model_summary(a, &r->m, p->s.out, &f)) return false;
   write_settings(&f, p);
-  json_number(&f, "depth", pen_reached(r));
-  json_number(&f, "force_total", m[0].force[PEN_TOTAL]);
-  json_number(&f, "force_tip", m[0].force[PEN_TIP]);
-  json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
-  json_number(&f, "q", m[0].force[PEN_TIP] / base_area(p));
+  JSON_NUMBERS(&f, {"depth", pen_reached(r)}, {"force_total", m[0].force[PEN_TOTAL]},
+               {"force_tip", m[0].force[PEN_TIP]}, {"force_shaft", m[0].force[PEN_SHAFT]},
+               {"q", m[0].force[PEN_TIP] / base_area(p)});
   if (p->s.law == PEN_CLAY || p->s.law == PEN_TRESCA)
     json_number(&f, "n_factor", m[0].force[PEN_TIP] / base_area(p) / p->s.cohesion);
   write_factor(&f, p, &m[0]);
@@ -224,14 +209,14 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   }
   if (p->runs == 2) {
     json_integer(&f, "axisymmetric_particles", other->particles);
-    json_number(&f, "axisymmetric_radius", other->size[0]);
-    json_number(&f, "axisymmetric_force_total", m[1].force[PEN_TOTAL]);
-    json_number(&f, "space_over_axisymmetric", m[0].force[PEN_TOTAL] / m[1].force[PEN_TOTAL]);
+    JSON_NUMBERS(&f, {"axisymmetric_radius", other->size[0]},
+                 {"axisymmetric_force_total", m[1].force[PEN_TOTAL]},
+                 {"space_over_axisymmetric", m[0].force[PEN_TOTAL] / m[1].force[PEN_TOTAL]});
   }
   json_integer(&f, "particles_inside", r->inside > other->inside ? r->inside : other->inside);
-  json_number(&f, "deepest_inside", fmax(r->deepest, other->deepest));
-  json_number(&f, "volume_ratio_max", fmax(r->ratio_max, other->ratio_max));
-  json_number(&f, "volume_ratio_min", fmin(r->ratio_min, other->ratio_min));
+  JSON_NUMBERS(&f, {"deepest_inside", fmax(r->deepest, other->deepest)},
+               {"volume_ratio_max", fmax(r->ratio_max, other->ratio_max)},
+               {"volume_ratio_min", fmin(r->ratio_min, other->ratio_min)});
   json_end(&f);
   return output_close(&f);
 }

@@ -27,56 +27,6 @@ static double most_of(const pile *p, const pile_frame *frame, int field, double 
   return most;
 }
 
-/* ---- along the path -------------------------------------------------------------------------- */
-
-/* Places the next plot: fractions of the picture's width. */
-static void place(output *f, double left, double right) {
-  output_text(f,
-              "set lmargin at screen %.4g\nset rmargin at screen %.4g\nset tmargin at screen 0.83\n"
-              "set bmargin at screen 0.2\n",
-              left, right);
-}
-
-/* Columns of load.csv, and the line that each is. */
-static const struct line {
-  const char *title, *colour, *dash;
-  int column;
-} lines[] = {{"total", "#222222", "solid", 6},
-             {"tip", "#c0392b", "solid", 7},
-             {"inside", "#1f4e8c", "solid", 8},
-             {"outside", "#2e8b57", "solid", 9},
-             {"- - outside, K_0 {/Symbol s}_v {/Symbol m}", "#2e8b57", "'--'", 13}};
-
-static void plot_load(output *f, const pile *p, int width) {
-  const size_t count = sizeof lines / sizeof *lines;
-  double left = 125.0;
-  for (size_t k = 0; k < count; k++, left += 95.0)
-    output_text(f, "set label %d '%s' at screen %.4g,0.05 textcolor rgb '%s'\n", (int)k + 1,
-                lines[k].title, left / width, lines[k].colour);
-  output_text(
-      f,
-      "set title 'Load'\nset xlabel 'force (kN)'\nset ylabel 'depth of the tip (m)' offset 1\n"
-      "set xrange [0:*]\nset yrange [%.9g:0]\nunset key\n"
-      "plot 'load.csv' every ::1 using ($2/1e3):1 with lines linecolor rgb '#999999' "
-      "linewidth 0.7",
-      p->s.depth);
-  for (size_t k = 0; k < count; k++)
-    output_text(f,
-                ", \\\n  '' every ::1 using ($%d/1e3):1 with lines dashtype %s linecolor rgb '%s'",
-                lines[k].column, lines[k].dash, lines[k].colour);
-  output_text(f, "\nunset label\n");
-}
-
-static void plot_plug(output *f) {
-  output_text(f,
-              "set title 'Soil inside'\nset xlabel 'its top above the tip (m)'\nset ylabel ''\n"
-              "set key right top opaque\n"
-              "plot 'load.csv' every ::1 using 11:1 with lines linecolor rgb '#1f4e8c' "
-              "linewidth 1.6 title 'plug', \\\n"
-              "  '' every ::1 using 1:1 with lines dashtype '--' linecolor rgb '#888888' title 'no "
-              "plugging'\n");
-}
-
 /* ---- soil ------------------------------------------------------------------------------------ */
 
 typedef struct quantity {
@@ -103,8 +53,8 @@ static double section_bottom(const pile *p) {
 typedef struct section {
   const quantity *q;
   char file[40];
-  area *image;        /* of each frame */
-  double least, most; /* of the last one */
+  area *image; /* of each frame */
+  area_def def;
 } section;
 
 typedef struct wall {
@@ -134,103 +84,64 @@ static bool image_sections(app *a, const pile *p, const quantity *q, section *x)
       row[3 * k + 2] = (double)value[q->field];
     }
     const wall pipe = {p->inner, p->outer, -p->frame[n].depth};
-    const area_def def = {.spacing = mps_particles_spacing(p->m.particles),
-                          .slit = AREA_SLIT_SHEARED,
-                          .lower = {0.0, section_bottom(p)},
-                          .upper = {p->s.width, section_top(p)},
-                          .walled = true,
-                          .side = AREA_SIDE,
-                          .factor = q->factor,
-                          .solid = in_wall,
-                          .user = &pipe};
-    area_write(&f, &def, p->particles, row, &x->image[n]);
+    x->def = (area_def){.spacing = mps_particles_spacing(p->m.particles),
+                        .slit = AREA_SLIT_SHEARED,
+                        .lower = {0.0, section_bottom(p)},
+                        .upper = {p->s.width, section_top(p)},
+                        .walled = true,
+                        .side = AREA_SIDE,
+                        .factor = q->factor,
+                        .solid = in_wall,
+                        .user = &pipe};
+    area_write(&f, &x->def, p->particles, row, &x->image[n]);
   }
   free(row);
-  area_range(1, &x->image[p->frames_kept - 1], &x->least, &x->most);
   return good && output_close(&f);
 }
 
-/* `panel`: pixels across. */
-static void begin_sections(output *f, const pile *p, const section *x, int panel) {
+/* Variables of maps.gp: half sections with the wall, r to the right. */
+static void set_section(output *f, const pile *p, const section *x) {
   const quantity *q = x->q;
   const pile_frame *last = &p->frame[p->frames_kept - 1];
-  output_text(f,
-              "set palette defined (0 '#e6ebf1', 0.15 '#c6dbef', 0.4 '#6baed6', 0.7 '#2171b5', 1 "
-              "'#08306b')\nset size ratio -1\nset xtics %.9g\n"
-              "set xlabel 'r (m)'\nset ylabel 'z (m)' offset 1.5\nset xrange [0:%.9g]\nset yrange "
-              "[%.9g:%.9g]\n",
-              plot_tics(p->s.width, panel / 45.0), p->s.width, section_bottom(p), section_top(p));
-  plot_colours(f, 0.0, fabs(q->factor) * most_of(p, last, q->field, q->share), x->least, x->most);
-}
-
-/* Half a section with the wall, r to the right. */
-static void plot_section(output *f, const pile *p, const section *x, int64_t frame) {
+  area_set(f, x->file, &x->def, p->frames_kept, x->image, 1.0);
+  output_text(f, "array tip[maps]\n");
+  for (int k = 0; k < p->frames_kept; k++)
+    output_text(f, "tip[%d] = %.9g; titles[%d] = 'tip at %.3f m'\n", k + 1, -p->frame[k].depth,
+                k + 1, p->frame[k].depth);
   output_text(
       f,
-      "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#555555' fillstyle "
-      "solid noborder front\nplot ",
-      p->inner, -p->frame[frame].depth, p->outer, section_top(p));
-  area_plot(f, x->file, &x->image[frame], 1.0);
-  output_text(f, "\n");
+      "x_name = 'r (m)'; y_name = 'z (m)'; heading = cb_name = '%s'\n"
+      "palette = 'blues'; cb_least = 0; cb_most = %.9g\n"
+      "cover(k) = sprintf(\"set object 1 rectangle from %.9g,%%g to %.9g,%.9g fillcolor rgb "
+      "'#555555' fillstyle solid noborder front\", tip[k + 1])\n",
+      q->title, fabs(q->factor) * most_of(p, last, q->field, q->share), p->inner, p->outer,
+      section_top(p));
 }
 
 static bool draw_sections(app *a, const pile *p, const section *x) {
-  const quantity *q = x->q;
   output f;
-  const double high = section_top(p) - section_bottom(p), pixels = 700.0;
-  const int count = (int)p->frames_kept, panel = (int)(pixels * p->s.width / high);
-  const int width = count * (panel + 70) + 200;
-  if (!plot_open(&f, a, p->s.out, q->name, width, 850)) return false;
-  output_text(&f,
-              "set multiplot layout 1,%d title '%s' font ',18' margins screen %.4g, screen %.4g, "
-              "screen 0.105, screen 0.885 spacing screen %.4g, screen 0\nunset colorbox\n",
-              count, q->title, 100.0 / width, 1.0 - 160.0 / width, 70.0 / width);
-  begin_sections(&f, p, x, panel);
-  for (int k = 0; k < count; k++) {
-    if (k == count - 1)
-      output_text(
-          &f, "set colorbox user origin screen %.4g, screen 0.15 size screen %.4g, screen 0.6\n",
-          1.0 - 130.0 / width, 22.0 / width);
-    if (k == 1) output_text(&f, "set ylabel ''\n");
-    output_text(&f, "set title 'tip at %.3f m'\n", p->frame[k].depth);
-    plot_section(&f, p, x, k);
-  }
-  output_text(&f, "unset multiplot\n");
-  return plot_close(&f, p->s.out, q->name);
+  if (!plot_begin(&f, a, p->s.out, x->q->name)) return false;
+  set_section(&f, p, x);
+  return plot_end(&f, p->s.out, x->q->name, "maps");
 }
 
 /* ---- all in one ------------------------------------------------------------------------------ */
 
 static bool draw_overview(app *a, const pile *p, const section *stress, const section *strain) {
   output f;
-  const double high = section_top(p) - section_bottom(p), pixels = 0.63 * 760.0;
-  const int panel = (int)(pixels * p->s.width / high), width = 1080 + 2 * (panel + 210);
-  if (!plot_open(&f, a, p->s.out, "pile", width, 760)) return false;
+  if (!plot_begin(&f, a, p->s.out, "pile")) return false;
   output_text(
       &f,
-      "set multiplot title \"Open-ended pile, inner diameter %g m, wall %g mm, to %g m at %g "
-      "m/s\\n{/*0.8 h = %g mm, %lld particles, {/Symbol f} = %g degrees (%s cone), "
-      "{/Symbol m} = %g}\" font ',18'\n",
-      p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.rate, 1e3 * p->s.h,
+      "depth = %.9g\nfirst = 'Open-ended pile, inner diameter %g m, wall %g mm, to %g m at %g "
+      "m/s'\nsecond = 'h = %g mm, %lld particles, {/Symbol f} = %g degrees (%s cone), "
+      "{/Symbol m} = %g'\n",
+      p->s.depth, p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.rate, 1e3 * p->s.h,
       (long long)p->particles, p->s.phi, pile_cone_name(&p->s), p->s.friction);
-  place(&f, 125.0 / width, 535.0 / width);
-  plot_load(&f, p, width);
-  place(&f, 615.0 / width, 1005.0 / width);
-  plot_plug(&f);
-  const section *const shown[2] = {stress, strain};
-  for (int k = 0; k < 2; k++) {
-    const double left = 1110.0 + k * (panel + 210.0);
-    place(&f, left / width, (left + panel) / width);
-    output_text(
-        &f,
-        "set title '%s'\nset colorbox user origin screen %.4g, screen 0.3 size screen %.4g, "
-        "screen 0.4\n",
-        shown[k]->q->title, (left + panel + 18.0) / width, 16.0 / width);
-    begin_sections(&f, p, shown[k], panel);
-    plot_section(&f, p, shown[k], p->frames_kept - 1);
-  }
-  output_text(&f, "unset multiplot\n");
-  return plot_close(&f, p->s.out, "pile");
+  set_section(&f, p, stress);
+  output_text(&f, "stress = image; stress_lowest = cb_lowest; stress_highest = cb_highest; "
+                  "stress_most = cb_most\n");
+  set_section(&f, p, strain);
+  return plot_end(&f, p->s.out, "pile", "pile/pile");
 }
 
 bool pile_draw(app *a, const pile *p) {

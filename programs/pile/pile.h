@@ -3,8 +3,7 @@
  * Axisymmetric: x is the radius r, y the height above the bottom of the soil. Forces are those of
  * the whole pile. Depths are measured from the initial surface, downwards.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PILE_H
-#define EXAMPLES_PILE_H
+#pragma once
 
 #include "common/mpm_method.h"
 #include "common/mpm_model.h"
@@ -129,5 +128,3 @@ bool pile_finish(app *a, void *user);
 double pile_beta_shaft(const pile *p, double depth);
 double pile_nq(const pile *p);
 bool pile_draw(app *a, const pile *p);
-
-#endif

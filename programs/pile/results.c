@@ -61,10 +61,11 @@ static void find_means(const pile *p, double *mean) {
 
 static bool write_load(app *a, const pile *p) {
   output f;
-  if (!output_open(&f, a, p->s.out, "load.csv")) return false;
-  csv_header(&f, "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,tip_smooth_N,"
-                 "inside_smooth_N,outside_smooth_N,step_rms_N,plug_height_m?,plug_level_m?,"
-                 "outside_beta_N");
+  if (!csv_open(&f, a, p->s.out, "load.csv",
+                "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,tip_smooth_N,"
+                "inside_smooth_N,outside_smooth_N,step_rms_N,plug_height_m?,plug_level_m?,"
+                "outside_beta_N"))
+    return false;
   static const int order[PILE_FORCES] = {PILE_TOTAL, PILE_TIP, PILE_INSIDE, PILE_OUTSIDE};
   for (int64_t i = 0; i < p->rows; i++) {
     const pile_row *r = &p->row[i];
@@ -84,15 +85,11 @@ static bool write_load(app *a, const pile *p) {
 
 static void write_settings(output *f, const pile *p) {
   const pile_settings *s = &p->s;
-  json_number(f, "h", s->h);
-  json_number(f, "flip_time", s->flip_time);
-  json_number(f, "rate", s->rate);
-  json_number(f, "friction", s->friction);
-  json_number(f, "phi", s->phi);
+  JSON_NUMBERS(f, {"h", s->h}, {"flip_time", s->flip_time}, {"rate", s->rate},
+               {"friction", s->friction}, {"phi", s->phi});
   sand_write(f, &s->voids, s->psi);
   json_text(f, "cone", pile_cone_name(s));
-  json_number(f, "inner_diameter", s->inner_diameter);
-  json_number(f, "wall", s->wall);
+  JSON_NUMBERS(f, {"inner_diameter", s->inner_diameter}, {"wall", s->wall});
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) json_number(f, "penalty", p->penalty);
   json_number(f, "dt", p->dt);
 }
@@ -104,27 +101,19 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
   find_means(p, mean);
   if (!mpm_model_summary(a, &p->m, p->s.out, &f)) return false;
   write_settings(&f, p);
-  json_number(&f, "depth", end->depth);
-  json_number(&f, "force_total", end->smooth[PILE_TOTAL]);
-  json_number(&f, "force_tip", end->smooth[PILE_TIP]);
-  json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
-  json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
-  json_number(&f, "mean_total", mean[PILE_TOTAL]);
-  json_number(&f, "mean_tip", mean[PILE_TIP]);
-  json_number(&f, "mean_inside", mean[PILE_INSIDE]);
-  json_number(&f, "mean_outside", mean[PILE_OUTSIDE]);
-  json_number(&f, "roughness", rows);
-  json_number(&f, "roughness_steps", steps);
-  json_number(&f, "plug_height", end->plug);
-  json_number(&f, "plug_level", end->plug - end->depth);
+  JSON_NUMBERS(&f, {"depth", end->depth}, {"force_total", end->smooth[PILE_TOTAL]},
+               {"force_tip", end->smooth[PILE_TIP]}, {"force_inside", end->smooth[PILE_INSIDE]},
+               {"force_outside", end->smooth[PILE_OUTSIDE]}, {"mean_total", mean[PILE_TOTAL]},
+               {"mean_tip", mean[PILE_TIP]}, {"mean_inside", mean[PILE_INSIDE]},
+               {"mean_outside", mean[PILE_OUTSIDE]}, {"roughness", rows},
+               {"roughness_steps", steps}, {"plug_height", end->plug},
+               {"plug_level", end->plug - end->depth});
   json_integer(&f, "particles_inside_pile", p->seen.inside);
-  json_number(&f, "deepest_inside_pile", p->seen.deepest);
-  json_number(&f, "volume_ratio_max", p->seen.ratio_max);
-  json_number(&f, "volume_ratio_min", p->seen.ratio_min);
-  json_number(&f, "rest_speed", p->seen.rest_speed);
-  json_number(&f, "outside_beta", end->depth > 0.0 ? pile_beta_shaft(p, end->depth) : NAN);
-  json_number(&f, "tip_nq", tip_nq(p, end));
-  json_number(&f, "nq_prandtl", pile_nq(p));
+  JSON_NUMBERS(&f, {"deepest_inside_pile", p->seen.deepest},
+               {"volume_ratio_max", p->seen.ratio_max}, {"volume_ratio_min", p->seen.ratio_min},
+               {"rest_speed", p->seen.rest_speed},
+               {"outside_beta", end->depth > 0.0 ? pile_beta_shaft(p, end->depth) : NAN},
+               {"tip_nq", tip_nq(p, end)}, {"nq_prandtl", pile_nq(p)});
   json_end(&f);
   return output_close(&f);
 }

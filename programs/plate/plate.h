@@ -1,8 +1,7 @@
 /* plate.h - the two plates of mps-plate: a square in tension (Chikazawa, Figures 2 and 3), and a
  * quarter of a plate with a hole under tension in x (Kirsch).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PLATE_H
-#define EXAMPLES_PLATE_H
+#pragma once
 
 #include "elastic/elastic.h"
 
@@ -47,5 +46,3 @@ bool plate_on_ligament(const plate *p, const elastic_point *at);
 bool plate_write(const plate *p, const elastic_method *method, const char *directory);
 /* The summary that is written where Ctrl-C ends the program at once (app_leave_at_once). */
 bool plate_reserve(const plate *p, const elastic_method *method, const char *directory);
-
-#endif

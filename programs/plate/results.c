@@ -13,17 +13,17 @@
 
 static bool write_particles(const plate *p, const char *directory) {
   output f;
-  if (!output_open(&f, p->a, directory, "particles.csv")) return false;
-  csv_header(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
-                 "von_mises_Pa");
+  if (!csv_open(&f, p->a, directory, "particles.csv",
+                "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
+                "von_mises_Pa"))
+    return false;
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
     elastic_point at;
     double e[3];
     if (!plate_get(p, k, &at)) return output_close(&f) && false;
     plate_exact_stress(p->def, at.x, e);
-    const double row[] = {at.x[0],      at.x[1], at.u[0],      at.u[1], at.stress[0], e[0],
-                          at.stress[1], e[1],    at.stress[2], e[2],    at.mises};
-    csv_row(&f, 11, row);
+    CSV_LINE(&f, at.x[0], at.x[1], at.u[0], at.u[1], at.stress[0], e[0], at.stress[1], e[1],
+             at.stress[2], e[2], at.mises);
   }
   return output_close(&f);
 }
@@ -31,9 +31,9 @@ static bool write_particles(const plate *p, const char *directory) {
 /* The line that is drawn: the middle row of the plate in tension (u), or the ligament (xx). */
 static bool write_line(const plate *p, const char *directory) {
   output f;
-  if (!output_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv"))
+  if (!csv_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv",
+                p->def->hole ? "y_m,xx_Pa,xx_exact_Pa" : "x_m,u_m,u_exact_m"))
     return false;
-  csv_header(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa" : "x_m,u_m,u_exact_m");
   const double centre[2] = {p->wall, 0.0};
   elastic_point middle = {{0}, {0}, {0}, 0};
   const int64_t id = mps_particles_nearest(p->particles, centre);
@@ -98,39 +98,24 @@ bool plate_reserve(const plate *p, const elastic_method *method, const char *dir
 /* ---- pictures -------------------------------------------------------------------------------- */
 
 static bool draw_line(const plate *p, const char *directory) {
-  const bool hole = p->def->hole;
-  const char *name = hole ? "ligament" : "displacement";
-  output f;
-  if (!plot_open(&f, p->a, directory, name, 900, 600)) return false;
-  if (hole)
-    output_text(&f,
-                "set title \"Stress {/Symbol s}_x above the hole\\n{/*0.85 radius %.1f spacings, "
-                "concentration %.3f from the ligament, theory 3}\"\n"
-                "set xlabel 'y (m)'\nset ylabel '{/Symbol s}_x (Pa)'\nset xrange [%.9g:%.9g]\n"
-                "set key top right\n",
-                p->def->across, p->concentration, p->def->radius,
-                fmin(3.0 * p->def->radius, p->def->side));
-  else
-    output_text(
-        &f,
-        "set title \"Displacement of the middle row\\n{/*0.85 %lld particles, largest error "
-        "%.1e}\"\n"
-        "set xlabel 'x (m)'\nset ylabel 'u (m)'\nset key top left\n",
-        (long long)mps_particles_count(p->particles), p->displacement_error);
-  output_text(&f,
-              "plot '%s.csv' using 1:3 skip 1 with lines linewidth 1.6 linecolor rgb '#2c3e50' "
-              "title '%s', \\\n"
-              "     '' using 1:2 skip 1 with points pointtype 7 pointsize %g linecolor rgb "
-              "'#c0392b' title 'particles'\n",
-              name, hole ? "Kirsch" : "analytic", hole ? 0.8 : 1.1);
-  return plot_close(&f, directory, name);
+  if (!p->def->hole)
+    return plot_draw(p->a, directory, "displacement", "plate/displacement",
+                     "second = '%lld particles, largest error %.1e'",
+                     (long long)mps_particles_count(p->particles), p->displacement_error);
+  return plot_draw(p->a, directory, "ligament", "plate/ligament",
+                   "second = 'radius %.1f spacings, concentration %.3f from the ligament, theory "
+                   "3'\nradius = %.9g; end = %.9g",
+                   p->def->across, p->concentration, p->def->radius,
+                   fmin(3.0 * p->def->radius, p->def->side));
 }
 
-/* stress.bin: the stress xx (Pa). */
-static bool image_stress(const plate *p, const char *directory, double edge, area *image) {
+/* The stress xx (Pa) around the hole; the plate in tension has one stress only. */
+static bool draw_map(const plate *p, const char *directory) {
+  const double edge = fmin(3.0 * p->def->radius, p->def->side);
   const area_def def = {
       .spacing = p->spacing, .slit = AREA_SLIT, .upper = {edge, edge}, .side = AREA_SIDE};
   const int64_t count = mps_particles_count(p->particles);
+  area image;
   output f;
   double *row = malloc((size_t)(count + 1) * 3 * sizeof *row);
   if (!row) return app_no_memory(p->a);
@@ -140,30 +125,16 @@ static bool image_stress(const plate *p, const char *directory, double edge, are
     good = plate_get(p, k, &at);
     if (good) row[3 * k] = at.x[0], row[3 * k + 1] = at.x[1], row[3 * k + 2] = at.stress[0];
   }
-  good = good && output_open(&f, p->a, directory, "stress.bin");
-  if (good) area_write(&f, &def, count, row, image);
+  good = good && area_image(p->a, directory, "stress.bin", &def, count, row, &image);
   free(row);
-  return good && output_close(&f);
-}
-
-/* Around the hole; the plate in tension has one stress only. */
-static bool draw_map(const plate *p, const char *directory) {
-  const double edge = fmin(3.0 * p->def->radius, p->def->side);
-  area image;
-  if (!image_stress(p, directory, edge, &image)) return false;
-  output f;
-  if (!plot_open(&f, p->a, directory, "stress", 800, 680)) return false;
+  if (!good || !plot_begin(&f, p->a, directory, "stress")) return false;
+  area_set(&f, "stress.bin", &def, 1, &image, 1.0);
   output_text(&f,
-              "set title 'Stress {/Symbol s}_x'\nset size ratio -1\nunset grid\n"
-              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel '{/Symbol s}_x (Pa)'\n"
-              "set palette defined (0 '#2c3e90', 0.33 '#e8e4d8', 1 '#b03020')\n"
-              "set xrange [0:%.9g]\nset yrange [0:%.9g]\n",
-              edge, edge);
-  plot_colours(&f, 0.0, 3.0 * p->def->tension, image.least, image.most);
-  output_text(&f, "plot ");
-  area_plot(&f, "stress.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, directory, "stress");
+              "titles[1] = 'Stress in the direction of the tension'\nx_name = 'x (m)'; y_name = 'y "
+              "(m)'; cb_name = '{/Symbol s}_x (Pa)'\npalette = 'signed'; cb_least = 0; cb_most = "
+              "%.9g\n",
+              3.0 * p->def->tension);
+  return plot_end(&f, directory, "stress", "maps");
 }
 
 bool plate_write(const plate *p, const elastic_method *method, const char *directory) {

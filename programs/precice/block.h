@@ -1,7 +1,6 @@
 /* block.h - an elastic block of soil on a held floor, and a rigid box above its right edge, a third
  * of which has no ground below. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_BLOCK_H
-#define EXAMPLES_PRECICE_BLOCK_H
+#pragma once
 
 #include "common/app.h"
 
@@ -25,5 +24,3 @@ typedef struct block {
  * else it is driven. False, with an error line, on a failure; block_free it in any case. */
 bool block_make(app *a, double dt, bool free, block *out);
 void block_free(block *b);
-
-#endif

@@ -1,7 +1,6 @@
 /* flap.h - an elastic flap in 2D that stands on the ground, held at its foot, with the facets above
  * that a fluid loads. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_FLAP_H
-#define EXAMPLES_PRECICE_FLAP_H
+#pragma once
 
 #include "common/app.h"
 
@@ -29,5 +28,3 @@ bool flap_make(app *a, const flap_def *def, flap *out);
 void flap_free(flap *f);
 /* Displacement of the tip (m): x, y. */
 bool flap_tip(app *a, const flap *f, double *u);
-
-#endif

@@ -1,8 +1,7 @@
 /* loop.h - the loop of a preCICE participant (version 3): checkpoint, read, step, write, advance.
  * What is coupled is a `loop_side`: an elastic body (participant.h), a wall of a fluid (wall.h) or
  * a rigid body in soil (rigid.h). SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_LOOP_H
-#define EXAMPLES_PRECICE_LOOP_H
+#pragma once
 
 #include "common/app.h"
 
@@ -40,5 +39,3 @@ typedef struct participant_result {
  * program with preCICE's own message. */
 bool loop_run(app *a, const loop_side *side, const char *config, const char *name, const char *mesh,
               participant_result *result);
-
-#endif

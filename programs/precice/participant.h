@@ -2,8 +2,7 @@
  * of facets, forces or stresses come from the other code, displacements and velocities go to it. A
  * time window that the coupling repeats is undone by snapshot and rollback.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_PARTICIPANT_H
-#define EXAMPLES_PRECICE_PARTICIPANT_H
+#pragma once
 
 #include "loop.h"
 
@@ -26,5 +25,3 @@ typedef struct participant_def {
  * it. False, with an error line, on a failure. */
 bool participant_run(app *a, mps_elastic *solver, int64_t count, const int64_t *facets,
                      const participant_def *def, participant_result *result);
-
-#endif

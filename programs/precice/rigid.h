@@ -1,8 +1,7 @@
 /* rigid.h - a rigid body in the soil of WLS-MPM (mps/mpm.h), in 2D, as a participant of a preCICE
  * coupling: displacements of its vertices come from the other code, which has its mass, and the
  * forces of the soil on it go there. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_RIGID_H
-#define EXAMPLES_PRECICE_RIGID_H
+#pragma once
 
 #include "loop.h"
 
@@ -26,5 +25,3 @@ typedef struct rigid_def {
  * squares. False, with an error line, on a failure. */
 bool rigid_run(app *a, mps_mpm *mpm, mps_body *body, const rigid_def *def,
                participant_result *result);
-
-#endif

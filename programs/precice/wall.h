@@ -1,8 +1,7 @@
 /* wall.h - a wall of an incompressible fluid (mps/fluid.h) as a participant of a preCICE coupling:
  * displacements come from the other code, forces of the water on the wall go to it. The motion
  * along the wall's normal is used. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_PRECICE_WALL_H
-#define EXAMPLES_PRECICE_WALL_H
+#pragma once
 
 #include "loop.h"
 
@@ -29,5 +28,3 @@ typedef struct wall_def {
  * middle of the last step, on the wall, along its normal. False, with an error line, on a failure.
  */
 bool wall_run(app *a, mps_fluid *fluid, const wall_def *def, participant_result *result);
-
-#endif

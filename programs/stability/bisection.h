@@ -1,7 +1,6 @@
 /* bisection.h - the stability limit of the time step by whole runs, Yoshida 3.3.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STABILITY_BISECTION_H
-#define EXAMPLES_STABILITY_BISECTION_H
+#pragma once
 
 #include <mps/experimental/domain.h>
 #include <mps/dynamics.h>
@@ -34,5 +33,3 @@ typedef struct bisection {
  * MPS_ERROR_NUMERIC: no limit was found, `why` says why; other errors are in the context. */
 mps_status bisection_find(mps_dynamics *dynamics, const bisection_def *def, bisection *out,
                           char why[160]);
-
-#endif

@@ -1,7 +1,6 @@
 /* cases.h - the critical time step of one soil column, by linear theory and by time stepping.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STABILITY_CASES_H
-#define EXAMPLES_STABILITY_CASES_H
+#pragma once
 
 #include "common/app.h"
 
@@ -47,5 +46,3 @@ void case_find(const method *m, stability_case *out);
  * called for each run of the bisection. */
 void case_find_together(app *a, const method *m, stability_case *out, mps_context_progress_fn hook,
                         void *user);
-
-#endif

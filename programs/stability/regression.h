@@ -1,7 +1,6 @@
 /* regression.h - the paper's regression of stability limits, Yoshida (14)-(16), and its Table 2.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STABILITY_REGRESSION_H
-#define EXAMPLES_STABILITY_REGRESSION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,5 +26,3 @@ double limit_fit_dt(const limit_fit *fit, double R, double V, double h);
 /* The printed Table 2 as a fit (only b1 and b2 are set): wave 'S' or 'P'. Up to 1.5 times above the
  * linear limit, and so no safe time step. */
 limit_fit limit_fit_printed(char wave);
-
-#endif

@@ -1,8 +1,7 @@
 /* study.h - the paper's parameter study (Table 1): 320 cases; and its Figure 3: 60
  * cases that compare the integrators (R 0.5 and 1.6 m, V 100 m/s, S wave).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_STABILITY_STUDY_H
-#define EXAMPLES_STABILITY_STUDY_H
+#pragma once
 
 #include "cases.h"
 #include "regression.h"
@@ -53,5 +52,3 @@ bool study_write(app *a, const study *s, const char *directory);
 bool study_summary(app *a, const study *s, const char *directory);
 /* fig03.png to fig10.png, as the paper's figures. */
 bool study_draw(app *a, const study *s, const char *directory);
-
-#endif

@@ -11,8 +11,8 @@ static const char waves[] = "SP";
 
 static bool write_limits(app *a, const study *s, const char *directory) {
   output f;
-  if (!output_open(&f, a, directory, "limits.csv")) return false;
-  csv_header(&f, "wave,R,V,h,dt_linear?,dt_stepping?,dt_table2?");
+  if (!csv_open(&f, a, directory, "limits.csv", "wave,R,V,h,dt_linear?,dt_stepping?,dt_table2?"))
+    return false;
   for (int64_t i = 0; i < STUDY_GRID; i++) {
     const stability_case *x = &s->cases[i];
     const double row[] = {x->radius, x->velocity, x->damping, x->linear, x->stepping, x->table2};
@@ -25,8 +25,9 @@ static bool write_limits(app *a, const study *s, const char *directory) {
 static bool write_integrators(app *a, const study *s, const char *directory) {
   static const char *const names[] = {"verlet", "leapfrog", "euler"};
   output f;
-  if (!output_open(&f, a, directory, "integrators.csv")) return false;
-  csv_header(&f, "integrator,R_m,h,dt_linear_s?,dt_stepping_s?");
+  if (!csv_open(&f, a, directory, "integrators.csv",
+                "integrator,R_m,h,dt_linear_s?,dt_stepping_s?"))
+    return false;
   for (int64_t i = STUDY_GRID; i < STUDY_CASES; i++) {
     const stability_case *x = &s->cases[i];
     const double row[] = {x->radius, x->damping, x->linear, x->stepping};
@@ -44,8 +45,9 @@ static double quadratic(const double b[3], double h) {
 
 static bool write_regression(app *a, const study *s, const char *directory) {
   output f;
-  if (!output_open(&f, a, directory, "regression.csv")) return false;
-  csv_header(&f, "wave,method,h,a1,a2,a1_quadratic?,a2_quadratic?,a1_table2?,a2_table2?");
+  if (!csv_open(&f, a, directory, "regression.csv",
+                "wave,method,h,a1,a2,a1_quadratic?,a2_quadratic?,a1_table2?,a2_table2?"))
+    return false;
   for (int k = 0; k < 4; k++) {
     const int wave = k % 2;
     const regression *r = k < 2 ? &s->linear[wave] : &s->stepping[wave];
@@ -71,8 +73,9 @@ static bool write_regression(app *a, const study *s, const char *directory) {
 
 static bool write_coefficients(app *a, const study *s, const char *directory) {
   output f;
-  if (!output_open(&f, a, directory, "coefficients.csv")) return false;
-  csv_header(&f, "wave,method,b11,b12,b13,b21,b22,b23,rms_of_fit?");
+  if (!csv_open(&f, a, directory, "coefficients.csv",
+                "wave,method,b11,b12,b13,b21,b22,b23,rms_of_fit?"))
+    return false;
   for (int wave = 0; wave < 2; wave++)
     for (int k = 0; k < 3; k++) {
       const regression *r = k == 0 ? &s->linear[wave] : &s->stepping[wave];
@@ -125,10 +128,8 @@ bool study_summary(app *a, const study *s, const char *directory) {
   json_integer(&f, "cases", STUDY_CASES);
   json_integer(&f, "cases_done", s->done);
   json_integer(&f, "steps", steps);
-  json_number(&f, "f1", s->m.f1);
-  json_number(&f, "f2", s->m.f2);
-  json_number(&f, "criterion", s->m.criterion);
-  json_number(&f, "accuracy", s->m.accuracy);
+  JSON_NUMBERS(&f, {"f1", s->m.f1}, {"f2", s->m.f2}, {"criterion", s->m.criterion},
+               {"accuracy", s->m.accuracy});
   /* through the regression: own coefficients against the printed ones; cases: each limit */
   static const char *const methods[] = {"", "_stepping"};
   for (int k = 0; k < 2; k++)
@@ -140,8 +141,7 @@ bool study_summary(app *a, const study *s, const char *directory) {
       snprintf(key, sizeof key, "rms_table2%s_cases_%c", methods[k], waves[wave]);
       json_number(&f, key, r->known ? r->rms_table2 : NAN);
     }
-  json_number(&f, "stepping_over_linear_max", ratio);
-  json_number(&f, "verlet_over_euler", gain_of_verlet(s));
+  JSON_NUMBERS(&f, {"stepping_over_linear_max", ratio}, {"verlet_over_euler", gain_of_verlet(s)});
   json_end(&f);
   if (!output_close(&f)) return false;
   app_tell_results(a, directory);

@@ -53,21 +53,11 @@ static bool write(app *a, const tank_model *m, const mps_kernel *kernel, const m
 
 static bool draw(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
-  output f;
-  if (!plot_open(&f, a, s->out, "density", 700, 640)) return false;
-  output_text(&f,
-              "set title \"Density of the water at x = %g m, t = %.4g s\\n{/*0.85 particles within "
-              "%g m about each point}\"\nset xlabel 'density (kg/m^3)'\nset ylabel 'height (m)'\n"
-              "set xrange [0:%.9g]\nset yrange [0:*]\nset key left bottom opaque\n"
-              "rho = %.9g\nset arrow 1 from rho,graph 0 to rho,graph 1 nohead dashtype '--' "
-              "linecolor rgb '#c0392b'\n"
-              "plot 'density.csv' every ::1 using 2:1 with lines linecolor rgb '#1f4e8c' "
-              "linewidth 2 title 'particles', \\\n"
-              "  NaN dashtype '--' linecolor rgb '#c0392b' title 'water', \\\n"
-              "  %.9g dashtype '-.' linecolor rgb '#666666' title 'depth at rest'\n",
-              s->density_at, mps_fluid_time(m->fluid), tank_density_reach(s), 1.3 * WAVES_DENSITY,
-              WAVES_DENSITY, s->depth);
-  return plot_close(&f, s->out, "density");
+  return plot_draw(
+      a, s->out, "density", "tank/density",
+      "first = 'Density of the water at x = %g m, t = %.4g s'\nsecond = 'particles within "
+      "%g m about each point'\nrho = %.9g; depth = %.9g",
+      s->density_at, mps_fluid_time(m->fluid), tank_density_reach(s), WAVES_DENSITY, s->depth);
 }
 
 bool tank_write_density(app *a, const tank_model *m) {

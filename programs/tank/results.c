@@ -220,26 +220,25 @@ static bool write_particles(app *a, tank_model *m) {
 /* ---- pictures -------------------------------------------------------------------------------- */
 
 /* Outline of the box where it is now. */
-static void draw_box(output *f, const tank_model *m) {
+static void set_box(output *f, const tank_model *m) {
   const double x = 0.5 * m->s.width, y = m->s.draft;
   const double corner[4][2] = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
   mps_body_state box;
   if (mps_body_get_state(m->box, &box) != MPS_OK) return;
   const double C = cos(box.rotation[2]), S = sin(box.rotation[2]);
-  output_text(f, "set object 1 polygon from ");
+  output_text(f, "cover(k) = 'set object 1 polygon from ");
   for (int k = 0; k <= 4; k++) {
     const double *c = corner[k % 4];
     output_text(f, "%s%.6g,%.6g", k ? " to " : "", box.position[0] + C * c[0] - S * c[1],
                 box.position[1] + S * c[0] + C * c[1]);
   }
-  output_text(f, " fillstyle solid 0.6 border linecolor rgb '#444444' fillcolor rgb '#c9b79c'\n");
+  output_text(f, " fillstyle solid 0.6 border linecolor rgb \"#444444\" fillcolor rgb "
+                 "\"#c9b79c\"'\n");
 }
 
 /* water.bin: the pressure. */
-static bool image_water(app *a, const tank_model *m, const double *lower, const double *upper,
-                        area *image) {
+static bool image_water(app *a, const tank_model *m, const area_def *def, area *image) {
   mps_view x, p;
-  output f;
   if (!app_check(a, mps_particles_view(m->water, "position", &x)) ||
       !app_check(a, mps_particles_view(m->water, "pressure", &p)))
     return false;
@@ -250,16 +249,9 @@ static bool image_water(app *a, const tank_model *m, const double *lower, const 
     row[3 * i + 1] = *mps_view_f64(&x, i, 1);
     row[3 * i + 2] = *mps_view_f64(&p, i, 0);
   }
-  const area_def def = {.spacing = m->s.spacing,
-                        .slit = AREA_SLIT,
-                        .lower = {lower[0], lower[1]},
-                        .upper = {upper[0], upper[1]},
-                        .side = AREA_SIDE,
-                        .factor = 1e-3};
-  const bool good = output_open(&f, a, m->s.out, "water.bin");
-  if (good) area_write(&f, &def, x.shape[0], row, image);
+  const bool good = area_image(a, m->s.out, "water.bin", def, x.shape[0], row, image);
   free(row);
-  return good && output_close(&f);
+  return good;
 }
 
 static bool draw_water(app *a, const tank_model *m) {
@@ -267,113 +259,64 @@ static bool draw_water(app *a, const tank_model *m) {
   const bool drop = s->kind == TANK_DROP;
   const double width =
       drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
-  const double rise = tank_swings(s) ? 1.1 : 1.6;
   const double over = s->kind == TANK_FLOAT ? 1.2 * s->draft : 0.0;
-  const double height = drop ? 5.0 * s->depth : rise * s->depth + over + 4.0 * fabs(s->amplitude);
-  const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
-  const double scale = fmin(740.0 / width, 900.0 / height); /* pixels a metre */
-  const double wide = scale * width, high = scale * height, bar = fmax(high, 180.0);
-  const double X = fmax(wide + 320.0, 560.0), Y = bar + 170.0;
-  const double left = 0.5 * (X - wide) - 30.0, bottom = 95.0 + 0.5 * (bar - high);
-  const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
-  const double lower[2] = {least, drop ? least : -s->spacing};
-  const double upper[2] = {least + width, drop ? least + height : height};
+  const double high =
+      drop ? 5.0 * s->depth
+           : (tank_swings(s) ? 1.1 : 1.6) * s->depth + over + 4.0 * fabs(s->amplitude);
+  const double left = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
+  const double low = drop ? left : -s->spacing;
+  const area_def def = {.spacing = s->spacing,
+                        .slit = AREA_SLIT,
+                        .lower = {left, low},
+                        .upper = {left + width, drop ? low + high : high},
+                        .side = AREA_SIDE,
+                        .factor = 1e-3};
   area image;
-  if (!image_water(a, m, lower, upper, &image)) return false;
-  double lowest, highest;
-  area_range(1, &image, &lowest, &highest);
   output f;
-  if (!plot_open(&f, a, s->out, "water", (int)X, (int)Y)) return false;
-  if (s->kind == TANK_FLOAT) draw_box(&f, m);
+  if (!image_water(a, m, &def, &image) || !plot_begin(&f, a, s->out, "water")) return false;
+  area_set(&f, "water.bin", &def, 1, &image, 1.0);
   output_text(
       &f,
-      "set title 'water at t = %.3f s, %lld particles'\nunset grid\n"
-      "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
-      "set cblabel 'pressure (kPa)' offset 0.8\nset xtics %.6g\nset ytics %.6g\n"
-      "set lmargin at screen %.4f\nset rmargin at screen %.4f\n"
-      "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
-      "set colorbox user origin screen %.4f, screen %.4f size screen %.4f, screen %.4f\n"
-      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n",
-      last, (long long)mps_particles_count(m->water), lower[0], upper[0], lower[1], upper[1],
-      plot_tics(width, wide / 70.0), plot_tics(height, high / 30.0), left / X, (left + wide) / X,
-      bottom / Y, (bottom + high) / Y, (left + wide + 18.0) / X, 95.0 / Y, 24.0 / X, bar / Y);
-  plot_colours(&f, lowest, highest, lowest, highest);
-  output_text(&f, "plot ");
-  area_plot(&f, "water.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "water");
-}
-
-static void draw_levels(output *f, const tank_model *m) {
-  const double least = 10.0 * m->s.spacing; /* mm: noise at rest stays small */
-  output_text(f, "set ylabel 'level (mm)'\nset yrange [*<%.6g:%.6g<*]\nplot ", -least, least);
-  for (int k = 0; k <= gauges_of(m); k++) {
-    char where[48] = "at the right wall";
-    if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", m->s.gauge[k]);
-    output_text(f, "%s'gauges.csv' every ::1 using 1:(1e3*$%d) with lines title '%s'",
-                k ? ", " : "", k + 2, where);
-  }
+      "titles[1] = 'water at t = %.3f s, %lld particles'; x_name = 'x (m)'; y_name = 'y (m)'\n"
+      "cb_name = 'pressure (kPa)'; palette = 'water'; cb_least = cb_lowest; cb_most = "
+      "cb_highest\n",
+      m->samples ? m->sample[m->samples - 1].t : 0.0, (long long)mps_particles_count(m->water));
+  if (s->kind == TANK_FLOAT) set_box(&f, m);
+  return plot_end(&f, s->out, "water", "maps");
 }
 
 /* The classical scheme has no levels. */
 static bool draw_force(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
-  const bool classical = s->scheme == 1;
-  const double still = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
+  const int gauges = s->scheme == 1 ? 0 : gauges_of(m) + 1;
   output f;
-  if (!plot_open(&f, a, s->out, "force", 1000, classical ? 400 : 700)) return false;
-  output_text(
-      &f,
-      "set multiplot layout %d,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on "
-      "the "
-      "wall (N)'\n"
-      "set lmargin 12\nset key outside top center horizontal\nset yrange [*<%.6g:%.6g<*]\n"
-      "plot %s'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
-      "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
-      "at rest'\n",
-      classical ? 1 : 2, s->duration, 0.98 * still, 1.02 * still,
-      m->linear ? "'linear.csv' every ::1 using 1:2 with lines linewidth 3 linecolor rgb '#f0b27a' "
-                  "title 'linear potential flow', "
-                : "",
-      still);
-  if (!classical) draw_levels(&f, m);
-  output_text(&f, "\nunset multiplot\n");
-  return plot_close(&f, s->out, "force");
+  if (!plot_begin(&f, a, s->out, "force")) return false;
+  output_text(&f,
+              "end = %.9g; still = %.9g; linear = %d; gauges = %d; noise = %.6g\narray "
+              "names[gauges + 1]\n",
+              s->duration, 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth, m->linear != NULL,
+              gauges, 10.0 * s->spacing); /* mm: noise at rest stays small */
+  for (int k = 0; k < gauges - 1; k++)
+    output_text(&f, "names[%d] = 'x = %g m'\n", k + 1, s->gauge[k]);
+  if (gauges > 0) output_text(&f, "names[gauges] = 'at the right wall'\n");
+  return plot_end(&f, s->out, "force", "tank/force");
 }
 
 static bool draw_structure(app *a, const tank_model *m) {
   const bool plate = m->s.kind == TANK_PLATE, box = m->s.kind == TANK_FLOAT;
   const double unit = plate ? 1e6 : 1e3;
-  output f;
-  if (!plot_open(&f, a, m->s.out, "structure", 1000, 460)) return false;
-  output_text(&f,
-              "set title '%s'\nset xlabel 't (s)'\nset ylabel '%s'\nset xrange [0:%.9g]\n"
-              "set samples 1000\n",
-              plate ? "Middle of the plate"
-              : box ? "Heave of the box"
-                    : "Wall on a spring",
-              plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration);
-  plot_key_below(&f);
-  output_text(&f, "plot ");
-  if (m->linear)
-    output_text(&f,
-                "'structure.csv' every ::1 using 1:($3*%g) with lines linewidth 3 linecolor rgb "
-                "'#f0b27a' title 'linear potential flow'",
-                unit);
-  else if (box)
-    output_text(
-        &f,
-        "[t=0:%.9g] %.9g*(cos(%.9g*t)-1) with lines linewidth 3 linecolor rgb '#f0b27a' title "
-        "'first mode of potential flow'",
-        m->s.duration, unit * m->s.amplitude, 2.0 * WAVES_PI / tank_float_period(&m->s));
-  else
-    output_text(&f, "%.9g with lines dashtype '--' linecolor rgb '#c0392b' title 'at rest'",
-                plate ? unit * tank_plate_deflection(&m->s) : 0.0);
-  output_text(&f,
-              ", 'structure.csv' every ::1 using 1:($2*%g) with lines linecolor rgb '#1f4e8c' "
-              "title 'MPS'\n",
-              unit);
-  return plot_close(&f, m->s.out, "structure");
+  return plot_draw(a, m->s.out, "structure", "tank/structure",
+                   "first = '%s'; y_name = '%s'; end = %.9g; unit = %g; linear = %d\namplitude = "
+                   "%.9g; omega = %.9g; rest = %.9g",
+                   plate ? "Middle of the plate"
+                   : box ? "Heave of the box"
+                         : "Wall on a spring",
+                   plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration, unit,
+                   m->linear != NULL, box ? m->s.amplitude : NAN,
+                   box ? 2.0 * WAVES_PI / tank_float_period(&m->s) : 0.0,
+                   box     ? NAN
+                   : plate ? unit * tank_plate_deflection(&m->s)
+                           : 0.0);
 }
 
 /* ---- theory ---------------------------------------------------------------------------------- */

@@ -161,13 +161,11 @@ static pressure measure(const simulation *sim) {
 static bool write_pressure(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
-  csv_header(&f, "path_over_height,force_kN_m,K,K_along");
+  if (!csv_open(&f, a, s->out, "pressure.csv", "path_over_height,force_kN_m,K,K_along"))
+    return false;
   for (int k = 0; k < wall_rows(sim); k++) {
-    const double row[] = {wall_row_of(sim, k)->path / s->height, 1e-3 * wall_row_of(sim, k)->across,
-                          wall_row_of(sim, k)->across / wall_unit(s),
-                          wall_row_of(sim, k)->along / wall_unit(s)};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, wall_row_of(sim, k)->path / s->height, 1e-3 * wall_row_of(sim, k)->across,
+             wall_row_of(sim, k)->across / wall_unit(s), wall_row_of(sim, k)->along / wall_unit(s));
   }
   return output_close(&f);
 }
@@ -178,15 +176,11 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
   sand_write(&f, &s->voids, largest_dilation(s));
-  json_number(&f, "flip_time", s->flip_time);
-  json_number(&f, "K", p->across);
-  json_number(&f, "K_along", p->along);
-  json_number(&f, "K_resultant", hypot(p->across, p->along));
-  json_number(&f, "force_height", p->height);
+  JSON_NUMBERS(&f, {"flip_time", s->flip_time}, {"K", p->across}, {"K_along", p->along},
+               {"K_resultant", hypot(p->across, p->along)}, {"force_height", p->height});
   json_comparison(&f, "K_theory", &p->theory);
-  json_number(&f, "K_cracked", p->cracked);
-  json_number(&f, "K_reduced", p->reduced);
-  json_number(&f, "force", p->across * wall_unit(s));
+  JSON_NUMBERS(&f, {"K_cracked", p->cracked}, {"K_reduced", p->reduced},
+               {"force", p->across * wall_unit(s)});
   json_number_if(&f, !isnan(s->water), "water_force", wall_water(s));
   json_end(&f);
   return output_close(&f);
@@ -211,29 +205,13 @@ static const char *ground_of(const settings *s) {
 
 static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
   const settings *s = &sim->s;
-  output f;
-  if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
-  output_text(&f,
-              "set title \"%s pressure on a wall that %s\\n{/*0.85 %s, "
-              "friction of the wall %g, h = H/%.3g}\"\n"
-              "set xlabel 'path of the wall over its height'\nset ylabel 'K, force across the wall "
-              "over %s'\nset yrange [0:*]\nset key right %s opaque\n"
-              "plot 'pressure.csv' every ::1 using 1:3 with lines linewidth 2 linecolor rgb "
-              "'#1f4e8c' title 'WLS-MPM'",
-              s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), ground_of(s), s->friction,
-              s->height / s->h,
-              wall_is_plain(s) ? "{/Symbol g}H^2/2" : "the weight above, summed over H",
-              s->pressure == ACTIVE ? "top" : "bottom");
-  if (compare_holds(&p->theory))
-    output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'",
-                p->theory.reference, p->theory.source);
-  if (!isnan(p->cracked))
-    output_text(&f,
-                ", \\\n  %.9g dashtype '.' linecolor rgb '#c0392b' title 'Rankine with a tension "
-                "crack'",
-                p->cracked);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "pressure");
+  return plot_draw(
+      a, s->out, "pressure", "wall/pressure",
+      "first = '%s pressure on a wall that %s'\nsecond = '%s, friction of the wall %g, "
+      "h = H/%.3g'\nplain = %d; theory = %.9g; source = '%s'; cracked = %.9g",
+      s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), ground_of(s), s->friction,
+      s->height / s->h, wall_is_plain(s), compare_reference(&p->theory), p->theory.source,
+      p->cracked);
 }
 
 static double most_strain(const mpm_snapshot *shot) {
@@ -254,32 +232,25 @@ static bool draw_ground(app *a, const simulation *sim) {
                         .walled = true,
                         .side = AREA_SIDE};
   area image;
-  if (!mpm_snapshots_image(a, s->out, "ground.bin", 1, &sim->shot, &def, &image)) return false;
   output f;
-  const int height = (int)fmin(900.0, 1000.0 * high / (wide - def.lower[0]) + 150.0);
-  if (!plot_open(&f, a, s->out, "ground", 1100, height)) return false;
-  output_text(&f,
-              "set title 'Plastic strain (-)'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
-              "set size ratio -1\nunset grid\n"
-              "set palette defined (0 '#f3e3bd', 0.3 '#c98f4a', 1 '#5b2c12')\n"
-              "set xrange [%.9g:%.9g]\nset yrange [0:%.9g]\n",
-              def.lower[0], wide, high);
+  if (!area_image(a, s->out, "ground.bin", &def, sim->shot.count, sim->shot.row, &image) ||
+      !plot_begin(&f, a, s->out, "ground"))
+    return false;
   const double path =
       (s->pressure == ACTIVE ? -1.0 : 1.0) * wall_row_of(sim, wall_rows(sim) - 1)->path;
   const double foot = s->motion == TURNS_ABOUT_TOE ? 0.0 : path;
   const double toe = s->base - s->sheet; /* m; where ground lies before it, as thick as it is */
   const double thick = s->sheet > 0.0 ? wall_thickness(s) : 0.1 * s->height;
   const double head = s->motion == TURNS_ABOUT_TOP ? 0.0 : path;
+  area_set(&f, "ground.bin", &def, 1, &image, 1.0);
   output_text(&f,
-              "set object 1 polygon from %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to "
-              "%.9g,%.9g fillcolor rgb '#888888' fillstyle solid front\n",
-              foot, toe, head, s->base + s->height, head - thick, s->base + s->height, foot - thick,
-              toe, foot, toe);
-  plot_colours(&f, 0.0, 0.5 * most_strain(&sim->shot), image.least, image.most);
-  output_text(&f, "plot ");
-  area_plot(&f, "ground.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "ground");
+              "titles[1] = ''; x_name = 'x (m)'; y_name = 'y (m)'; cb_name = 'plastic strain (-)'\n"
+              "palette = 'sand'; cb_least = 0; cb_most = %.9g\n"
+              "cover(k) = 'set object 1 polygon from %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to "
+              "%.9g,%.9g to %.9g,%.9g fillcolor rgb \"#888888\" fillstyle solid front'\n",
+              0.5 * most_strain(&sim->shot), foot, toe, head, s->base + s->height, head - thick,
+              s->base + s->height, foot - thick, toe, foot, toe);
+  return plot_end(&f, s->out, "ground", "maps");
 }
 
 /* ---- the end --------------------------------------------------------------------------------- */

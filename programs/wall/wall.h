@@ -1,8 +1,7 @@
 /* wall.h - the parts of mps-wall: wall and the run (model.c), layers and water (ground.c), results
  * (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef EXAMPLES_WALL_H
-#define EXAMPLES_WALL_H
+#pragma once
 
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
@@ -78,5 +77,3 @@ double wall_thickness(const settings *s); /* m */
 mps_status wall_build(mps_context *context, void *user);
 mps_status wall_march(void *user);
 bool wall_finish(app *a, void *user);
-
-#endif

@@ -1,6 +1,6 @@
 /* files.c - frames for ParaView and checkpoints, written at the instants that the options request.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "files.h"
+#include "wave.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* receivers.c - motion of chosen particles and energy during a run.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "receivers.h"
+#include "wave.h"
 
 #include "common/parts.h"
 

@@ -1,7 +1,7 @@
 /* restart.c - options and results in a checkpoint of mps-wave: the options as mps-info lists them,
  * the model that they make as a text of one value a line, then numbers.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "restart.h"
+#include "wave.h"
 
 #include "common/options.h"
 

@@ -1,6 +1,6 @@
 /* results.c - peaks, travel time and energy of a run, against theory.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "results.h"
+#include "wave.h"
 
 #include "common/record.h"
 
@@ -141,10 +141,8 @@ bool results_write(app *a, const settings *s, const results *x, const mps_signal
   json_number(&file, "radius", 0.5 * s->spacing);
   json_integer(&file, "particles", x->particles);
   json_integer(&file, "steps", x->steps);
-  json_number(&file, "dt", x->dt);
-  json_number(&file, "dt_limit_linear", x->dt_limit);
-  json_number(&file, "surface_peak", x->surface_peak);
-  json_number(&file, "surface_peak_edge", x->surface_peak_edge);
+  JSON_NUMBERS(&file, {"dt", x->dt}, {"dt_limit_linear", x->dt_limit},
+               {"surface_peak", x->surface_peak}, {"surface_peak_edge", x->surface_peak_edge});
   json_comparison(&file, "surface_peak_theory", &x->peak);
   json_number(&file, "travel_time", x->travel_time);
   json_comparison(&file, "travel_time_exact", &x->travel);
@@ -153,7 +151,7 @@ bool results_write(app *a, const settings *s, const results *x, const mps_signal
   return output_close(&file);
 }
 
-void results_print(const app *a, const settings *s, const results *x) {
+void results_print(app *a, const settings *s, const results *x) {
   const bool diverged = x->end == OUTCOME_DIVERGED;
   app_tell_results(a, s->out);
   if (diverged) return;

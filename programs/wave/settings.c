@@ -1,6 +1,6 @@
 /* settings.c - the options of mps-wave: table, defaults, checks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "settings.h"
+#include "wave.h"
 
 #include "common/options.h"
 #include "common/record.h"

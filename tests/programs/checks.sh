@@ -32,6 +32,13 @@ picture() {
   "$here/check-png" "$@" || fail "picture"
 }
 
+# page DIRECTORY: its index.html is whole; see check-page. Nothing is looked at without python3.
+page() {
+  [ -s "$1/index.html" ] || fail "no page in $1"
+  python3 -c '' 2>/dev/null || return 0
+  "$here/check-page" "$1" || fail "page"
+}
+
 # is CSV COLUMN ROW VALUE TOLERANCE: the number in the named column of row ROW (1: the first one after
 # the header; -1: the last one).
 is() {

@@ -79,6 +79,8 @@ picture "$work/dam/water.png" 0x0 2c3e8f 4aa3c7
 picture "$work/rest/water.png" 0x0
 picture "$work/sand/columns.png" 0x0
 picture "$work/three/columns.png" 0x0 f3e3bd c98f4a 5b2c12
+page "$work/three"
+page "$work/dam"
 
 # By either method, on from a checkpoint: the results of the run that never stopped.
 [ -f "$work/moving/water.vtkhdf" ] || exit 0 # built without HDF5

@@ -61,6 +61,8 @@ for figure in beam/deflection hole/ligament; do
 done
 picture "$work/beam/convergence.png" 900x600 c0392b 2980b9 16a085 7f8c8d
 picture "$work/hole/stress.png" 0x0
+page "$work/hole"
+page "$work/beam"
 
 # Displacements that are no small ones are warned of, but not those of the paper's E = 1 Pa.
 "$1/mps-cantilever" --paper --method conservative --young 10kPa --end-load 1000 --out "$work/soft" >/dev/null 2>"$work/warned"

@@ -13,6 +13,7 @@ is "$work/cu/path.csv" q -1 104466 104
 is "$work/cu/path.csv" pc -1 174110 174
 is "$work/cu/path.csv" strain -1 0.2 1e-9
 for name in q_p q_strain e_p; do picture "$work/cu/$name.png" 900x640 1f4e8c; done
+page "$work/cu"
 in_range "$work/cu/summary.json" q_limit 104465 104467
 run oedometer $soft --path oedometer --strain 0.1
 is "$work/oedometer/path.csv" szz -1 -337773 338

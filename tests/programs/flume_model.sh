@@ -11,7 +11,7 @@ run="--threads 1 --frames 0"
 in_range "$work/wall/summary.json" force_still 600.86 600.87
 has "$work/wall/probes.csv" "at_5.02_0.06_m_Pa,at_5.5_0.3_m_Pa,at_6.12_0.53_m_Pa"
 has "$work/wall/faces.csv" "x_m,y_m,pressure_Pa,above_rest_Pa"
-picture "$work/wall/water.png" 1300x0
+picture "$work/wall/water.png" 1085x0
 picture "$work/wall/pressures.png" 700x620
 ! command -v gnuplot >/dev/null || [ -s "$work/wall/animation.gif" ] || fail "no animation"
 

@@ -38,8 +38,9 @@ awk -F'[:,]' '/"force_total"/ { total = $2 } /"force_tip"|"force_inside"|"force_
 has "$work/a/load.csv" "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,"
 has "$work/a/fields-4.csv" "r_m,z_m,mean_stress_kPa,deviatoric_stress_kPa,plastic_strain"
 picture "$work/a/pile.png" 0x760 c0392b 1f4e8c 2e8b57 555555
+page "$work/a"
 for name in mean_stress deviatoric_stress shear_strain; do
-  picture "$work/a/$name.png" 0x850
+  picture "$work/a/$name.png" 0x0
 done
 
 # The same for every number of threads; friction is all that the shafts bear.

@@ -25,3 +25,4 @@ in_range "$work/study/summary.json" rms_table2_cases_P 0 0.15
 for figure in 03 04 05 06 07 08 09 10; do
   picture "$work/study/fig$figure.png" 0x0
 done
+page "$work/study"

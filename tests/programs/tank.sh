@@ -49,7 +49,7 @@ in_range "$work/float/summary.json" period_exact 0.9121 0.9127
 in_range "$work/float/summary.json" period 0.8942 0.9306
 in_range "$work/float/summary.json" deflection -0.0053 -0.00465 # the level rises as the lattice comes to rest
 picture "$work/float/structure.png" 1000x460 1f4e8c
-picture "$work/float/water.png" 1060x0 2c3e8f
+picture "$work/float/water.png" 1078x0 2c3e8f
 tank "$1" drop
 in_range "$work/drop/summary.json" a 0.4329 0.4461
 in_range "$work/drop/summary.json" b 2.2641 2.2869
@@ -65,7 +65,7 @@ in_range "$work/piston/summary.json" force_harmonic 88.0 93.6 # 90.9; 87.7 where
 head -n 1 "$work/piston/gauges.csv" | grep -q '^t_s,level_at_0.3_m,level_at_0.5_m,level_at_wall_m$' ||
   fail "header of gauges.csv: $(head -n 1 "$work/piston/gauges.csv")"
 picture "$work/piston/force.png" 1000x700 1f4e8c
-picture "$work/piston/water.png" 1060x0 2c3e8f
+picture "$work/piston/water.png" 1085x0 2c3e8f
 
 # On from a checkpoint, and from one that Ctrl-C left: the results of the run that never stopped.
 [ -f "$work/piston/water.vtkhdf" ] || exit 0 # built without HDF5

@@ -9,7 +9,6 @@
 #include "common/mpm_heap.h"
 #include "common/options.h"
 #include "common/output.h"
-#include "common/plot.h"
 #include "common/series.h"
 #include "common/tongue.h"
 #include "common/units.h"
@@ -555,29 +554,6 @@ TEST(slits_and_gaps_to_bodies_are_closed) {
   }
   unlink(file);
   rmdir(directory);
-}
-
-/* Ends of a colour scale beyond which there are values are marked, the others are not. */
-TEST(colour_scales_mark_their_saturated_ends) {
-  static const struct {
-    double least, most, lowest, highest;
-    const char *text;
-  } row[] = {
-      {0.0, 1.9, 0.0, 2.5,
-       "set cbrange [0:2]\nset cbtics ('0' 0, '0.5' 0.5, '1' 1, '1.5' 1.5, '≥ 2' 2)\n"},
-      {-1.0, 2.0, -1.5, 2.0,
-       "set cbrange [-1:2]\nset cbtics ('≤ -1' -1, '-0.5' -0.5, '0' 0, '0.5' 0.5, "
-       "'1' 1, '1.5' 1.5, '2' 2)\n"},
-      {3.0, 3.0, 3.0, 3.0, "set cbrange [3:4]\n"},
-  };
-  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
-    char text[1024] = "";
-    output f = {.stream = fmemopen(text, sizeof text, "w")};
-    assert_non_null(f.stream);
-    plot_colours(&f, row[k].least, row[k].most, row[k].lowest, row[k].highest);
-    fclose(f.stream);
-    assert_memory_equal(text, row[k].text, strlen(row[k].text));
-  }
 }
 
 /* ---- tongues --------------------------------------------------------------------------------- */

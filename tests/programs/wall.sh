@@ -67,5 +67,5 @@ wall top --motion top
 awk -v low="$(value active force_height)" -v high="$(value top force_height)" \
   'BEGIN { exit !(high > low + 0.02) }' || fail "the height of the force"
 picture "$work/active/pressure.png" 1000x640
-picture "$work/active/ground.png" 1100x0
+picture "$work/active/ground.png" 1085x0
 exit 0

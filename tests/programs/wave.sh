@@ -20,6 +20,7 @@ head -n 1 "$out/receivers.csv" |
   grep -q '^t_s,ax_m_s2_GL-0.5m,.*,ax_m_s2_GL-19.5m,ax_m_s2_GL-0.5m_edge$' || fail "header"
 awk -F, 'NF != 7 || /nan|inf/ { exit 1 }' "$out/receivers.csv" || fail "rows of receivers.csv"
 picture "$out/wave.png" 1200x900 1f4e8c c0392b
+page "$out"
 has "$out/wave.gp" 'Verlet' # the integrator by its name
 [ "$(find "$out" -name '*.part')" = "" ] || fail "temporary files are left"
 
