@@ -5,9 +5,9 @@
 . "$(dirname "$0")/checks.sh"
 
 for h in 0.1 0.05; do
-  "$1/mps-footing" --cell $h --soil 3x2 --rate 5mm/s --out "$work/$h" >/dev/null
+  "$1/mps-footing" --cell $h --soil 3x2 --rate 5mm/s --flip-time 10ms --out "$work/$h" >/dev/null
 done
-in_range "$work/0.1/summary.json" q_over_c 5.10 5.20
+in_range "$work/0.1/summary.json" q_over_c 5.04 5.25
 in_range "$work/0.05/summary.json" q_over_c 5.10 5.20
 # A smooth circle, ten cells a radius: within 2 % of 5.69 (Shield).
 "$1/mps-footing" --shape circle --cell 0.05 --soil 3x2 --rate 1mm/s --out "$work/circle" >/dev/null

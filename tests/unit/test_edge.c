@@ -1,5 +1,6 @@
 /* test_edge.c - faces that end before their edges (src/contact/edge.h), against lengths in closed
  * form. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
 #include "test_fixture.h"
 
 #include "contact/edge.h"
@@ -111,4 +112,23 @@ TEST(feet_near_the_inset_edge_are_put_on_it) {
                        MPSI_EDGE_STRIP); /* the foot is the corner */
     }
   }
+}
+
+TEST(insets_are_refused_where_they_are_not_made) {
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
+  DEF(body, above, .position[1] = 0.2);
+  MAKE(body, box, create_box, context, &above, 0.1, 0.1);
+  DEF(contact, both, .corner = 0.01, .inset = 0.01);
+  REFUSES(mps_mpm_add_contact(s.mpm, box, &both, NULL), "inset");
+  DEF(contact, penalty, .method = MPS_CONTACT_METHOD_PENALTY, .inset = 0.01);
+  REFUSES(mps_mpm_add_contact(s.mpm, box, &penalty, NULL), "inset");
+  const double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.04, 0.04, 0.04};
+  scoped_mpm_scene solid = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
+  OK(mps_particles_fill_box(solid.particles, low, high, NULL));
+  USING(mpm, mpm_scene_solve(&solid, &given), .geometry = MPS_MPM_GEOMETRY_SPACE, .cell = 0.02);
+  MAKE(body, cylinder, create_cylinder, context, &above, 0.05, 0.1);
+  DEF(contact, inset, .inset = 0.01);
+  REFUSES(mps_mpm_add_contact(solid.mpm, cylinder, &inset, NULL), "rounded by `corner`");
 }
