@@ -132,7 +132,7 @@ typedef struct flume {
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
   double offset;            /* m: mean level at the face of the maker in its middle place */
-  double middle;            /* m: mean place of the far piston */
+  double middle[2];         /* m: mean places of the maker and the far piston */
   double due;               /* part of the next particle that returns, 0 to 1 */
   flume_look look;          /* of the largest force */
   flume_look *frame;        /* of the animation */

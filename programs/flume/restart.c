@@ -10,7 +10,7 @@
 
 typedef struct notes {
   int64_t frames, returned;
-  double due, offset, middle;
+  double due, offset, middle[2];
   double maker[MPS_ABSORBER_MEMORY], end[MPS_ABSORBER_MEMORY];
   mps_fluid_report report;
 } notes;
@@ -62,19 +62,22 @@ static void pass(void *user, resume_bytes *b) {
   bool good = true;
   memset(&n, 0, sizeof n);
   n.frames = m->frames, n.report = m->report;
-  n.returned = m->returned, n.due = m->due, n.offset = m->offset, n.middle = m->middle;
+  n.returned = m->returned, n.due = m->due, n.offset = m->offset;
+  memcpy(n.middle, m->middle, sizeof n.middle);
   if (m->maker) good = good && mps_absorber_get_memory(m->maker, n.maker) == MPS_OK;
   if (m->end) good = good && mps_absorber_get_memory(m->end, n.end) == MPS_OK;
   pass_probes(m, b);
   resume_pass(b, &n, sizeof n);
   good = good && n.frames >= 0 && n.frames <= m->frame_room && n.returned >= 0 && n.due >= 0.0 &&
-         n.due <= 1.0 && fabs(n.offset) <= 1e6 && fabs(n.middle) <= 1e6;
+         n.due <= 1.0 && fabs(n.offset) <= 1e6 && fabs(n.middle[0]) <= 1e6 &&
+         fabs(n.middle[1]) <= 1e6;
   if (resume_wrong(b, !good)) return;
   if (b->reads &&
       resume_wrong(b, !restore_piston(m->maker, n.maker) || !restore_piston(m->end, n.end)))
     return;
   m->frames = n.frames, m->report = n.report;
-  m->returned = n.returned, m->due = n.due, m->offset = n.offset, m->middle = n.middle;
+  m->returned = n.returned, m->due = n.due, m->offset = n.offset;
+  memcpy(m->middle, n.middle, sizeof n.middle);
   pass_look(b, &m->look);
   for (int64_t k = 0; k < m->frames; k++) pass_look(b, &m->frame[k]);
 }

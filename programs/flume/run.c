@@ -11,13 +11,13 @@
 
 #define MEAN 1.0        /* periods over which the mean level at the maker is taken */
 #define SLOPE_FROM 2.5  /* spacings from a piston's face, of the other end of the slope there */
-#define MIDDLE 3.0      /* periods over which the place of the far piston is */
+#define MIDDLE 3.0      /* periods over which the mean place of a piston is taken */
 #define LAST_STEPS 32.0 /* that are equal, and shorter, to end the run at its duration */
 
 /* ---- pistons --------------------------------------------------------------------------------- */
 
-/* Level (m above the water at rest) `place` m behind the face of a piston at `face`, where it is in
- * its middle place: eta(0) = eta(X) - X eta_x, by the theory of the piston. Mean and slow part of X
+/* Level (m above the water at rest) `place` m behind the face of a piston at `face`, which is its
+ * middle place: eta(0) = eta(X) - X eta_x, by the theory of the piston. Mean and slow part of X
  * eta_x, of second order, would move pistons off and send long waves. `inward`: sign of x into the
  * water. */
 static mps_status level_behind(const flume *m, double face, double place, double inward,
@@ -41,8 +41,8 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
   const bool maker = piston == m->maker;
   const double t = mps_fluid_time(m->fluid), mean = maker ? m->offset : 0.0, s = place_of(piston);
   double u;
-  mps_status status = maker ? level_behind(m, s, s, 1.0, level)
-                            : level_behind(m, m->outlet - s, s - m->middle, -1.0, level);
+  mps_status status =
+      level_behind(m, maker ? s : m->outlet - s, s - m->middle[!maker], maker ? 1.0 : -1.0, level);
   if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, *level - mean, moved, &u);
   return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
 }
@@ -56,10 +56,12 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
  *
  * by which slow motions are X' = -(g d)^1/2 X/L. T_b is a period, or the time that long waves
  * take through the flume, which are still absorbed. Between two pistons the mean level is theirs.
- */
+ * Both absorb about their mean places. */
 static void follow_mean(flume *m, double level, double dt) {
   mps_absorber_report r;
-  m->middle += -expm1(-dt / (MIDDLE * m->s.period)) * (place_of(m->end) - m->middle);
+  const double share = -expm1(-dt / (MIDDLE * m->s.period));
+  m->middle[0] += share * (place_of(m->maker) - m->middle[0]);
+  m->middle[1] += share * (place_of(m->end) - m->middle[1]);
   if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
   const double through = m->toe / sqrt(WAVES_G * m->s.depth);
   const double part = -expm1(-dt / fmax(MEAN * m->s.period, through));

@@ -12,6 +12,7 @@ in_range "$s" H_incident 0.09 0.105
 in_range "$s" Hm0_target 0.140 0.143
 in_range "$s" reflection 0 0.06
 in_range "$s" reflection_theory 0.001 0.003
+in_range "$s" mean_level -0.002 0.0005 # -.0033 by the levels at the faces of the pistons
 in_range "$s" collisions 0 0
 in_range "$s" time 11.999999 12.000001 # the last steps are shorter
 has "$work/a/gauges.csv" "level_at_2.6_m"
