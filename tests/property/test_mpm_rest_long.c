@@ -8,7 +8,7 @@ static void rests(rest_edge last, double degrees, int shifts) {
     for (int32_t spline = 2; spline <= 3; spline++)
       for (int k = 0; k < shifts; k++) {
         const double shift = (double)k / shifts;
-        const rest_case c = {(rest_edge)edge, spline, shift, degrees * 0.017453292519943295};
+        const rest_case c = {(rest_edge)edge, spline, shift, degrees * 0.017453292519943295, 0.0};
         rest_check(context, &c, 3000);
       }
 }
