@@ -153,8 +153,6 @@ static const struct {
            "divides c and tan(phi) of the one trial; default: the factor of safety is sought"),
     NUMBER("factor-tolerance", "1", FROM_TO(1e-3, 1.0),
            "tolerance of the factor of safety: between one that stands and one that fails"),
-    NUMBER("fails", "H", FROM_TO(1e-4, 1.0),
-           "displacement at which it has failed, of all but 1 % of the particles"),
     NUMBER("falls", "(H/g)^1/2", FROM_TO(1e-3, 1e6), "simulated time at most, in times of fall"),
     CHOICE("fill", NULL, "how particles fill an elastic disc"),
     NUMBER("flip-time", "s", FROM_TO(0.0, 1e6),

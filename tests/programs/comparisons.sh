@@ -118,7 +118,7 @@ without "experiment_reason front_error_rms height_error_rms" "ends before" $dam 
 # Water that gives way; high sloshing, a thick drop, a box let go far from rest; steep and long waves, few of a sea.
 without "exact_reason settlement_exact U_exact pressure_error" "gives way" mps-consolidation --cell 0.3333333333 --water-stiffness 5 --times 0.01
 without "exact_reason settlement_exact U_exact pressure_error" "inertia" mps-consolidation --cell 0.3333333333 --water-stiffness 20 --times 0.1 --time-unit 0.02
-with slip_circles mps-slope --cell 2 --factor 1.5 --falls 0.5
+with slip_circles mps-slope --cell 2 --factor 1.5
 without slip_circles "softens" mps-slope --runout --cell 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
 tank="mps-tank --spacing 0.05 --frames 0"
 without period_exact "small motion" $tank --case sloshing --amplitude 0.07 --duration 1
