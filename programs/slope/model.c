@@ -220,7 +220,7 @@ static mps_status sample(simulation *sim, trial *now) {
 }
 
 /* A run-out until it rests. A trial until it rests or flows steadily; or the speed over the last
- * quarter of its time tells. */
+ * quarter of its time decides. */
 static bool has_ended(const simulation *sim, trial *now) {
   if (!sim->s.runout) {
     const bool whole = now->rows == SLOPE_SAMPLES + 1;
