@@ -41,8 +41,8 @@ typedef struct settings {
   int64_t ppc, threads;
   mpm_method method;
   bool paper;
-  bool twice; /* both runs */
-  footing_pace pace[2];
+  bool twice;                /* both runs */
+  footing_pace pace[2], run; /* of both, and of the present one */
   mpm_course_options course;
   const char *domain, *out;
 } settings;

@@ -24,10 +24,10 @@ static mps_status make_turning(mps_context *context, const settings *s, simulati
                             a - e,  0.5 * high,  -a - e, 0.5 * high};
   mps_body_def def = mps_body_defaults();
   sim->ramp = 0.0;
-  sim->t_end = s->settlement / s->rate;
+  sim->t_end = s->run.settlement / s->run.rate;
   def.motion = MPS_BODY_MOTION_FREE;
   def.position[0] = e, def.position[1] = s->depth + 0.5 * high;
-  def.velocity[1] = -s->rate;
+  def.velocity[1] = -s->run.rate;
   def.mass = HEAVY;
   def.inertia[2] = CONCRETE * 2.0 * a * high * ((4.0 * a * a + high * high) / 12.0 + e * e);
   return mps_body_create_polygon(context, &def, 4, corner, &sim->m.body[0]);
@@ -35,10 +35,11 @@ static mps_status make_turning(mps_context *context, const settings *s, simulati
 
 /* Speed up over the ramp, then constant until the settlement is reached. */
 static mps_status make_footing(mps_context *context, const settings *s, simulation *sim) {
-  const double speed = s->rate;
+  const double speed = s->run.rate;
   if (footing_is_whole(s)) return make_turning(context, s, sim);
-  sim->ramp = s->paper ? PAPER_RAMP * fmin(1.0, 0.5e-3 / speed) : s->settlement / (RAMP * speed);
-  sim->t_end = s->settlement / speed + 0.5 * sim->ramp;
+  sim->ramp =
+      s->paper ? PAPER_RAMP * fmin(1.0, 0.5e-3 / speed) : s->run.settlement / (RAMP * speed);
+  sim->t_end = s->run.settlement / speed + 0.5 * sim->ramp;
   const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, speed, speed};
   mps_signal *down = NULL;
   mps_status status =
@@ -102,12 +103,12 @@ static mps_status make_clay(mps_context *context, const settings *s, double cohe
                             mps_material **out) {
   if (s->shape == CIRCLE) {
     mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-    law.young = s->young, law.poisson = s->poisson, law.cohesion = cohesion;
+    law.young = s->run.young, law.poisson = s->poisson, law.cohesion = cohesion;
     law.friction = law.dilation = 0.0;
     return mps_material_create_mohr_coulomb(context, &law, out);
   }
   mps_material_von_mises_def law = mps_material_von_mises_defaults();
-  law.young = s->young, law.poisson = s->poisson;
+  law.young = s->run.young, law.poisson = s->poisson;
   law.yield_stress = sqrt(3.0) * cohesion; /* (54) */
   return mps_material_create_von_mises(context, &law, out);
 }
@@ -133,7 +134,7 @@ static mps_status make_material(mps_context *context, const settings *s, mps_par
   if (s->model == VON_MISES) return make_clay(context, s, s->cohesion, out);
   mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
-  law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
+  law.young = s->run.young, law.poisson = s->poisson, law.cohesion = s->cohesion;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
   law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
   return mps_material_create_drucker_prager(context, &law, out);

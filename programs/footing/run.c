@@ -176,7 +176,7 @@ static void name_course(simulation *sim) {
       {"settlement", "m", 0}, {"pressure", "Pa", 0}, {"impulse", "N s", 0}, {0}};
   settings *s = &sim->s;
   const footing_pace *p = &s->pace[sim->now];
-  s->young = p->young, s->rate = p->rate, s->settlement = p->settlement;
+  s->run = *p;
   sim->course = (mpm_course){.saves.lost = sim->course.saves.lost,
                              .options = &s->course,
                              .m = &sim->m,
