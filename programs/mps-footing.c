@@ -16,7 +16,6 @@ int main(int argc, char **argv) {
                                  .corner = 0.6,
                                  .inset = NAN,
                                  .half_width = 0.5,
-                                 .domain = "5x5",
                                  .phi = 30.0,
                                  .psi = NAN,
                                  .voids = SAND_VOIDS,
@@ -29,8 +28,7 @@ int main(int argc, char **argv) {
                                  .flip_time = NAN,
                                  .settlement = NAN,
                                  .section = NAN,
-                                 .tolerance = 2e-3,
-                                 .courant = 0.5,
+                                 .courant = 0.9,
                                  .spline = 1,
                                  .ppc = 4,
                                  .course = MPM_COURSE_DEFAULTS,
@@ -41,8 +39,9 @@ int main(int argc, char **argv) {
       OPTION_FLAG("paper", &s->paper, NULL),
       OPTION_CHOICE_OF("law", "vonmises|druckerprager", &s->model,
                        "under a circle Tresca's in place of von Mises'"),
-      OPTION_TEXT_OF("soil", "WxH", &s->domain, "half the width, and the depth"),
-      OPTION_NUMBER_IN("cohesion", OPTION_FROM_TO(1.0, 1e11), &s->cohesion, "von Mises: undrained"),
+      OPTION_TEXT_OF("soil", "WxH", &s->domain,
+                     "half the width, and the depth; default by --half-width and --phi"),
+      OPTION_NUMBER_IN("cohesion", OPTION_FROM_TO(0.0, 1e11), &s->cohesion, "von Mises: undrained"),
       OPTION_NUMBER("strength-gradient", &s->gradient, "--cohesion at the surface; von Mises"),
       OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &s->phi, "Drucker-Prager"),
       OPTION_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi,
@@ -66,7 +65,7 @@ int main(int argc, char **argv) {
                     "default 0.6, --volumetric point 0.9, Drucker-Prager 0.75, with --surcharge "
                     "0.65; eccentric load and quasi-static 0"),
       OPTION_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
-                       "default 0.5 mm/s, quasi-static 1.5 mm/s, more in strong or soft clay"),
+                       "default 5 mm/s, by strength, modulus and density"),
       OPTION_NUMBER("settlement", &s->settlement, NULL),
       MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("k", &s->k, NULL),
@@ -77,9 +76,6 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("flip-time", &s->flip_time,
                     "and while the ground comes to rest; default: by the cell and the wave speed"),
       OPTION_HEADING("Run"),
-      OPTION_FLAG("quasi-static", &s->settled, NULL),
-      OPTION_NUMBER("rest-tolerance", &s->tolerance,
-                    "quasi-static, in the second half of the path; before it 0.002"),
       OPTION_NUMBER("section", &s->section, NULL),
       MPM_COURSE_OPTIONS(&s->course, FOOTING_SAMPLES),
       OPTIONS_OF_ALL(s),
@@ -92,8 +88,13 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  static const option_preset paper[] = {
-      {"contact", "penalty"}, {"k", "2GN/m"}, {"volumetric", "point"}, {"rate", "0.5mm/s"}, {0}};
+  static const option_preset paper[] = {{"contact", "penalty"},
+                                        {"k", "2GN/m"},
+                                        {"volumetric", "point"},
+                                        {"rate", "0.5mm/s"},
+                                        {"courant", "0.5"},
+                                        {"soil", "5x5"},
+                                        {0}};
   const int settled = mpm_method_settle(&program, &s->method, s->paper, paper, s->flip_time);
   if (settled >= 0) return settled;
   const char *reason = footing_settle(s, table);

@@ -22,7 +22,7 @@ static const char *settle(settings *s, const option *table) {
       options_note("--toe is %.6g m, taken as %.6g m: whole cells", s->toe, s->toe + more);
     s->toe += more;
   }
-  if (isnan(s->falls)) s->falls = s->runout ? 30.0 : 10.0;
+  if (options_given(table, "falls") && !s->runout) return "--falls is for --runout";
   if (isnan(s->residual_phi)) s->residual_phi = s->phi;
   if (isnan(s->residual_cohesion)) s->residual_cohesion = s->cohesion;
   if (isnan(s->slip)) s->slip = 0.01 * s->height;
@@ -48,7 +48,7 @@ static const char *settle(settings *s, const option *table) {
   if (s->base == 0.0 && options_given(table, "toe")) return "--toe is for a --below-toe above 0";
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --cell";
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
-  if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
+  if (s->runout && s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
     return "--young must be at least 10 times the stress below the crest, density g height";
   const char *wet = slope_settle_water(s, table);
   if (wet) return wet;
@@ -76,9 +76,8 @@ int main(int argc, char **argv) {
                                  .table = NAN,
                                  .drawdown = NAN,
                                  .factor = NAN,
-                                 .tolerance = 0.02,
-                                 .fails = 0.01,
-                                 .falls = NAN,
+                                 .tolerance = 0.01,
+                                 .falls = 30.0,
                                  .h = NAN,
                                  .ppc = 4,
                                  .courant = 0.5,
@@ -99,7 +98,7 @@ int main(int argc, char **argv) {
       SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
       OPTION_NUMBER("strength-gradient", &s->gradient, "below the crest's level"),
-      OPTION_NUMBER("young", &s->young, NULL),
+      OPTION_NUMBER("young", &s->young, "of a --runout; a factor of safety does not depend on it"),
       OPTION_NUMBER("poisson", &s->poisson, NULL),
       OPTION_NUMBER("density", &s->density, NULL),
       OPTION_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
@@ -112,13 +111,12 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Factor of safety"),
       OPTION_NUMBER("factor", &s->factor, NULL),
       OPTION_NUMBER("factor-tolerance", &s->tolerance, NULL),
-      OPTION_NUMBER("fails", &s->fails, NULL),
-      OPTION_NUMBER_IN("falls", OPTION_FROM_TO(1e-3, 1e5), &s->falls, "default 10, --runout 30"),
       OPTION_HEADING("Run-out"),
       OPTION_FLAG("runout", &s->runout, NULL),
       OPTION_NUMBER_IN("residual-phi", OPTION_FROM_TO(0.0, 50.0), &s->residual_phi, NULL),
       OPTION_NUMBER("residual-cohesion", &s->residual_cohesion, NULL),
       OPTION_NUMBER("slip", &s->slip, "default 0.01 H"),
+      OPTION_NUMBER_IN("falls", OPTION_FROM_TO(1e-3, 1e5), &s->falls, NULL),
       OPTION_HEADING("Grid"),
       MPM_MODEL_GRID(s, "default height/20"),
       OPTION_HEADING("Run"),

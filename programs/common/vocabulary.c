@@ -156,8 +156,6 @@ static const struct {
            "divides c and tan(phi) of the one trial; default: the factor of safety is sought"),
     NUMBER("factor-tolerance", "1", FROM_TO(1e-3, 1.0),
            "tolerance of the factor of safety: between one that stands and one that fails"),
-    NUMBER("fails", "H", FROM_TO(1e-4, 1.0),
-           "displacement at which it has failed, of all but 1 % of the particles"),
     NUMBER("falls", "(H/g)^1/2", FROM_TO(1e-3, 1e6), "simulated time at most, in times of fall"),
     CHOICE("fill", NULL, "how particles fill an elastic disc"),
     NUMBER("flip-time", "s", FROM_TO(0.0, 1e6),
@@ -282,9 +280,6 @@ static const struct {
          "X,Y,X,Y,...: the face from the toe 0,0 over slopes, berms and crest to its rear edge, "
          "distance from the toe and height above the bed"),
     NUMBER("psi", "degrees", FROM_TO(0.0, 60.0), "angle of dilation"),
-    FLAG(
-        "quasi-static",
-        "the ground comes to rest after each of 30 parts of the path: less inertia in fewer steps"),
     NUMBER("radius", "m", LENGTH, "radius of the hole"),
     NUMBER("ramp", "s", FROM_TO(0.0, 1e6), "time in which the maker's amplitude rises"),
     CHOICE("random", NULL, "what is random of the components of a sea"),
@@ -312,7 +307,6 @@ static const struct {
     NUMBER("residual-phi", "degrees", FROM_TO(0.0, 60.0), "angle of friction at last; default phi"),
     NUMBER("rest", "s", FROM_TO(0.0, 1e6),
            "time before the pile moves, to see whether the soil rests"),
-    NUMBER("rest-tolerance", "1", FROM_TO(1e-5, 1e-2), "unbalanced over applied forces at rest"),
     TEXT("restart", "FILE",
          "continue a checkpoint made with the same options (but --out, --threads and those of "
          "checkpoints); the results are those of the whole run, frames for ParaView those from "
@@ -577,7 +571,7 @@ static const char others[] =
     "ratio drain-ratio;ratio frequency-ratio;re influence;rest still;"
     "ricker-frequency frequency;ricker-time peak-time;scheme method;slope incline;"
     "state equation-of-state;step dt;stiffness water-stiffness;tension edge-stress;"
-    "tension negative-pressure;tolerance factor-tolerance;tolerance rest-tolerance;"
+    "tension negative-pressure;tolerance factor-tolerance;"
     "velocity wave-velocity;wall support;wall wall-thickness;"
     "water-level water-table m: a depth below the surface;"
     "water-table water-level m: a level above the toe;";

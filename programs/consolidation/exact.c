@@ -18,6 +18,7 @@
 #define PI 3.14159265358979323846
 
 enum { TERMS = 400 };
+#define GONE 750.0 /* exp of less is 0 */
 
 /* ---- roots ----------------------------------------------------------------------------------- */
 
@@ -42,15 +43,21 @@ static double mandel_equation(double a, double nu) {
   return sin(a) - (1.0 - nu) / (0.5 - nu) * a * cos(a);
 }
 
-static double mandel_root(int i, double nu) {
-  return root(mandel_equation, nu, i * PI + 1e-9, (i + 0.5) * PI);
+/* They do not depend on the time: found once. */
+static const double *mandel_roots(double nu) {
+  static double known = NAN, at[TERMS];
+  for (int i = 0; i < TERMS && known != nu; i++)
+    at[i] = root(mandel_equation, nu, i * PI + 1e-9, (i + 0.5) * PI);
+  known = nu;
+  return at;
 }
 
 /* p/p0 at x/a, p0 = F/(2 a). */
 static double mandel(double nu, double x, double T) {
+  const double *at = mandel_roots(nu);
   double p = 0.0;
-  for (int i = 0; i < TERMS; i++) {
-    const double a = mandel_root(i, nu), s = sin(a), c = cos(a);
+  for (int i = 0; i < TERMS && at[i] * at[i] * T < GONE; i++) {
+    const double a = at[i], s = sin(a), c = cos(a);
     p += 2.0 * s / (a - s * c) * (cos(a * x) - c) * exp(-a * a * T);
   }
   return p;
@@ -58,8 +65,9 @@ static double mandel(double nu, double x, double T) {
 
 double exact_plate(double nu, double T) {
   double sum = 0.0, start = 0.5 - nu; /* that sum at T = 0 */
-  for (int i = 0; i < TERMS && T > 0.0; i++) {
-    const double a = mandel_root(i, nu), s = sin(a), c = cos(a);
+  const double *at = mandel_roots(nu);
+  for (int i = 0; i < TERMS && T > 0.0 && at[i] * at[i] * T < GONE; i++) {
+    const double a = at[i], s = sin(a), c = cos(a);
     sum += s * c / (a - s * c) * exp(-a * a * T);
   }
   if (!(T > 0.0)) sum = start;
@@ -75,8 +83,12 @@ static double cryer_equation(double x, double eta) {
   return (1.0 - 0.5 * eta * x * x) * sin(x) - x * cos(x);
 }
 
-static double cryer_root(int i, double eta) {
-  return root(cryer_equation, eta, i > 0 ? i * PI : 1e-3, (i + 1) * PI);
+static const double *cryer_roots(double eta) {
+  static double known = NAN, at[TERMS];
+  for (int i = 0; i < TERMS && known != eta; i++)
+    at[i] = root(cryer_equation, eta, i > 0 ? i * PI : 1e-3, (i + 1) * PI);
+  known = eta;
+  return at;
 }
 
 static double cryer_weight(double x, double eta) {
@@ -88,7 +100,7 @@ static double cryer(double nu, double r, double T) {
   const double eta = eta_of(nu);
   double p = 0.0;
   for (int i = 0; i < TERMS; i++) {
-    const double x = cryer_root(i, eta);
+    const double x = cryer_roots(eta)[i];
     const double profile = r > 1e-9 ? sin(x * r) / r : x;
     p += cryer_weight(x, eta) * (sin(x) - profile) * exp(-x * x * T);
   }
@@ -100,7 +112,7 @@ static double cryer_settlement(double nu, double T) {
   const double eta = eta_of(nu);
   double sum = 0.0;
   for (int i = 0; i < TERMS; i++) {
-    const double x = cryer_root(i, eta);
+    const double x = cryer_roots(eta)[i];
     sum += cryer_weight(x, eta) * (x * cos(x) - sin(x)) / (x * x) * (1.0 - exp(-x * x * T));
   }
   return sum;

@@ -1,5 +1,6 @@
-/* footing.h - the parts of mps-footing: model and run (model.c), results (results.c), a section
- * (section.c), the exact capacity (characteristics.c). SPDX-License-Identifier: BSD-3-Clause */
+/* footing.h - the parts of mps-footing: settings and the course of the runs (run.c), ground and
+ * footing (model.c), results (results.c), a section (section.c), the exact capacity (limits.c,
+ * characteristics.c). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_FOOTING_H
 #define EXAMPLES_FOOTING_H
 
@@ -9,8 +10,16 @@
 #include "common/mpm_model.h"
 #include "common/sand.h"
 
-enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGER = 1 };
+enum { FOOTING_SAMPLES = 120, VON_MISES = 0, DRUCKER_PRAGER = 1 };
 enum { STRIP = 0, CIRCLE = 1 };
+
+/* The run of stiff ground, which keeps its shape; then that of the ground as it is, where it is
+ * soft.
+ */
+enum { FOOTING_UNDEFORMED, FOOTING_DEFORMED };
+typedef struct footing_pace {
+  double young, rate, settlement; /* Pa, m/s, m */
+} footing_pace;
 
 typedef struct settings {
   int model, cone, shape; /* VON_MISES or DRUCKER_PRAGER; mps_material_cone; STRIP or CIRCLE */
@@ -21,7 +30,6 @@ typedef struct settings {
   double gradient;          /* Pa/m, growth of the cohesion with depth */
   double surcharge;         /* Pa, on the ground beside the footing */
   double eccentricity;      /* m, of the load's line from the middle of a strip */
-  double tolerance;         /* of the ground at rest, in the second half of the path */
   double top, top_cohesion; /* m, Pa: of an upper layer; 0: none */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */
@@ -34,7 +42,8 @@ typedef struct settings {
   int64_t ppc, threads;
   mpm_method method;
   bool paper;
-  bool settled; /* --quasi-static */
+  bool twice;                /* both runs */
+  footing_pace pace[2], run; /* of both, and of the present one */
   mpm_course_options course;
   const char *domain, *out;
 } settings;
@@ -46,21 +55,25 @@ typedef struct footing_row {
 typedef struct simulation {
   settings s;
   mpm_model m;
-  double ramp, t_end; /* s */
-  int samples;        /* in all */
-  double strain;      /* largest plastic strain */
-  double *profile;    /* of --section: points, stresses, plastic strains; NULL: none */
+  double ramp, t_end;                      /* s, of the present run */
+  int now;                                 /* the present run, FOOTING_... */
+  footing_row undeformed[FOOTING_SAMPLES]; /* of the first run, once it has ended */
+  int undeformed_rows;
+  mps_context *context;
+  double strain;   /* largest plastic strain */
+  double *profile; /* of --section: points, stresses, plastic strains; NULL: none */
   int64_t points;
   mpm_course course;
 } simulation;
 
-/* What pressures are shown over: the surcharge, rho g B/2 or the cohesion of the upper ground. Pa.
- */
-typedef struct footing_unit {
-  double value;
-  const char *name;
-} footing_unit;
-footing_unit footing_unit_of(const settings *s);
+/* limits.c: Pa; NaN where they are not known, `exact` of a base that is neither smooth nor rough,
+ * `davis` of associated flow. */
+typedef struct footing_limits {
+  double smooth, rough, exact, davis;
+  const char *source;
+} footing_limits;
+footing_limits footing_find_limits(const settings *s);
+
 /* A layer on rigid rough ground that is thinner than a mechanism is deep. */
 bool footing_is_thin(const settings *s);
 /* The load is eccentric: both halves are computed. */
@@ -71,11 +84,18 @@ static inline const footing_row *footing_row_of(const simulation *sim, int k) {
   return (const footing_row *)sim->course.rows.row + k;
 }
 
-/* Fills in what depends on the model. Returns why settings are not consistent; NULL: good. */
+/* run.c: fills in what depends on the model. Returns why settings are not consistent; NULL: good.
+ */
 const char *footing_settle(settings *s, const option *table);
+/* About the capacity of the ground, Pa, from which stiffness, path and speed of a run follow. */
+double footing_scale(const settings *s);
 mps_status footing_build(mps_context *context, void *user);
 mps_status footing_march(void *user);
 bool footing_finish(app *a, void *user);
+
+/* model.c: the present run's. */
+mps_status footing_build_model(mps_context *context, simulation *sim);
+double footing_area(const settings *s); /* m2, of the base that the force of the model acts on */
 
 /* section.c: at the end of the run, collective on ranks; its table and picture, nothing without
  * one. */

@@ -1,4 +1,4 @@
-/* results.c - exact capacity, tables and pictures of mps-footing.
+/* results.c - capacity, tables and pictures of mps-footing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/area.h"
 #include "common/compare.h"
@@ -10,160 +10,132 @@
 #include <stdlib.h>
 
 #define PI 3.14159265358979323846
-
-enum { LINES = 40 };
-
 #define GROWTH 0.1   /* of the pressure, over the second half of the path: more is no capacity */
 #define FASTEST 0.08 /* of the capacity: v (rho G)^1/2, at which inertia adds some 5 % */
 #define DEEPEST 0.05 /* of the half width: limit analysis knows the ground's first shape only */
 
-/* q/c of the run, and the reference values. */
+/* Pa, of the run of ground in its first shape; NaN: it has not ended. */
 typedef struct capacity {
-  double unit;                 /* Pa: the cohesion, of the upper layer where there are two */
-  double last;                 /* mean over the last fifth of the path; NaN: it has not ended */
-  double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
-                                  per mm: limit analysis knows the ground's first shape only */
-  double smooth, rough, exact; /* limits; NaN where the base is neither */
-  double growth;               /* of the pressure, over the second half of the path */
-  comparison limit;            /* of the capacity with `exact` */
+  double last;              /* mean over the last fifth of the path */
+  double undeformed, slope; /* of the line through the path's second half: at no settlement, and per
+                               mm */
+  double growth;            /* of the pressure, over the second half of the path */
+  double deformed;          /* `last` of the ground as it is, where that is another run */
+  double associated;        /* of associated flow, beside `limits.davis` */
+  footing_limits limits;    /* NaN where they are not of this run */
+  comparison limit;         /* of `last` with the exact one */
 } capacity;
 
-static void fit_path(const simulation *sim, capacity *c) {
-  const int first = footing_rows(sim) / 2, n = footing_rows(sim) - first;
-  const double unit = c->unit;
+static bool is_whole(const simulation *sim) { return footing_rows(sim) == FOOTING_SAMPLES; }
+
+/* Rows of the first run, and their number. */
+static const footing_row *first_rows(const simulation *sim, int *count) {
+  const bool kept = sim->now == FOOTING_DEFORMED;
+  *count = kept ? sim->undeformed_rows : footing_rows(sim);
+  return kept ? sim->undeformed : sim->course.rows.row;
+}
+
+static double mean_of_last(const footing_row *row, int count) {
+  const int fifth = count < 5 ? 1 : count / 5;
+  double sum = 0.0;
+  for (int k = count - fifth; k < count; k++) sum += row[k].q / fifth;
+  return sum;
+}
+
+static void fit_path(const footing_row *row, int count, capacity *c) {
+  const int first = count / 2, n = count - first;
   double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
-  c->last = 0.0;
-  for (int k = first; k < footing_rows(sim); k++)
-    x += footing_row_of(sim, k)->path * 1e3 / n, q += footing_row_of(sim, k)->q / unit / n;
-  for (int k = first; k < footing_rows(sim); k++) {
-    const double dx = footing_row_of(sim, k)->path * 1e3 - x;
+  for (int k = first; k < count; k++) x += row[k].path * 1e3 / n, q += row[k].q / n;
+  for (int k = first; k < count; k++) {
+    const double dx = row[k].path * 1e3 - x;
     xx += dx * dx;
-    xq += dx * (footing_row_of(sim, k)->q / unit - q);
+    xq += dx * (row[k].q - q);
   }
+  c->last = mean_of_last(row, count);
   c->slope = xq / xx;
   c->undeformed = q - c->slope * x;
-  const int fifth = footing_rows(sim) < 5 ? 1 : footing_rows(sim) / 5;
-  for (int k = footing_rows(sim) - fifth; k < footing_rows(sim); k++)
-    c->last += footing_row_of(sim, k)->q / unit / fifth;
-  const double path = (footing_row_of(sim, footing_rows(sim) - 1)->path -
-                       footing_row_of(sim, footing_rows(sim) / 2)->path) *
-                      1e3;
-  c->growth = c->slope * path / c->last;
-}
-
-/* The limit by characteristics, which supposes associated flow; its error falls with the square of
- * the lines and is extrapolated. */
-static double limit(const settings *s, bool rough) {
-  const strip_footing f = {.half_width = s->half_width,
-                           .friction = s->model == VON_MISES ? 0.0 : s->phi * PI / 180.0,
-                           .cohesion = s->cohesion,
-                           .weight = s->density * s->gravity,
-                           .gradient = s->gradient,
-                           .surcharge = s->surcharge,
-                           .rough = rough};
-  const double coarse = characteristics_capacity(&f, LINES / 2);
-  const double fine = characteristics_capacity(&f, LINES);
-  return (4.0 * fine - coarse) / 3.0 / f.cohesion;
-}
-
-/* Cohesive ground: Prandtl (52), whatever the weight and the base, where the cohesion does not grow
- * with depth. A circle: smooth, R. T. Shield,
- * J. Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
- * (1960) 33-43. Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
-static void find_cohesive_limits(const settings *s, capacity *c) {
-  if (s->top >
-      0.0) { /* known by bounds alone: R. S. Merifield et al., Geotechnique 49 (1999) 471 */
-    c->smooth = c->rough = c->exact = NAN;
-    return;
-  }
-  if (s->gradient > 0.0) {
-    c->smooth = limit(s, false), c->rough = limit(s, true);
-    c->exact = s->mu == 0.0 ? c->smooth : s->mu >= 1.0 ? c->rough : NAN;
-    return;
-  }
-  if (footing_is_thin(s)) { /* a rough strip: G. G. Meyerhof, T. K. Chaplin 1953 */
-    c->rough = fmax(c->rough, PI + 1.0 + s->half_width / s->depth);
-    c->smooth = NAN;
-    c->exact = s->mu >= 1.0 ? c->rough : NAN;
-  }
-  if (footing_is_whole(s)) /* G. G. Meyerhof (1953): the width B - 2 e bears, without tension */
-    c->smooth = c->rough = c->exact = (2.0 + PI) * (1.0 - s->eccentricity / s->half_width);
-  if (s->shape == STRIP) return;
-  c->smooth = 5.69, c->rough = 6.05;
-  c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
-}
-
-static const char *source_of(const settings *s) {
-  return s->model == DRUCKER_PRAGER || s->gradient > 0.0 ? "characteristics"
-         : footing_is_thin(s)                            ? "Meyerhof and Chaplin"
-         : footing_is_whole(s)                           ? "Meyerhof, B - 2 e"
-         : s->shape == STRIP                             ? "Prandtl"
-                                                         : "Shield, Eason";
+  c->growth = c->slope * (row[count - 1].path - row[first].path) * 1e3 / c->last;
 }
 
 /* Of a rigid, perfectly plastic ground, slowly, before its shape changes. */
 static comparison compare_limit(const simulation *sim, const capacity *c) {
   const settings *s = &sim->s;
-  const bool cone = s->model == DRUCKER_PRAGER;
-  const double shear = s->young / (2.0 + 2.0 * s->poisson);
-  const double inertia = s->settled ? 0.0 : s->rate * sqrt(s->density * shear);
+  const footing_pace *p = &s->pace[FOOTING_UNDEFORMED];
+  const footing_limits *l = &c->limits;
+  const double inertia = p->rate * sqrt(s->density * p->young / (2.0 + 2.0 * s->poisson));
   const double width = footing_is_whole(s) ? 1.0 - s->eccentricity / s->half_width : 1.0;
-  const double most = (isnan(c->exact) ? fmax(c->smooth, c->rough) : c->exact) / width;
-  comparison out = compare_with(source_of(s), cone ? c->undeformed : c->last, c->exact);
+  const double most = (isnan(l->exact) ? fmax(l->smooth, l->rough) : l->exact) / width;
+  comparison out = compare_with(l->source, c->last, l->exact);
   compare_require(&out, s->top == 0.0,
                   "ground of two layers is known by bounds alone, not by an exact capacity");
-  compare_require(&out, !cone || s->psi == s->phi,
+  compare_require(&out, isnan(l->davis),
                   "--psi is below --phi: the exact capacity is of associated flow");
-  compare_require(&out, s->settlement <= DEEPEST * s->half_width,
+  compare_require(&out, p->settlement <= DEEPEST * s->half_width,
                   "the footing is pressed by %.2g of its half width, and the capacity is of ground "
                   "in its first shape",
-                  s->settlement / s->half_width);
+                  p->settlement / s->half_width);
   compare_require(&out, !(c->growth > GROWTH),
                   "the pressure grows by %.0f %% over the second half of the path: the ground has "
                   "not reached its bearing capacity",
                   100.0 * c->growth);
-  compare_require(&out, !(inertia > FASTEST * most * c->unit),
+  compare_require(&out, !(inertia > FASTEST * most),
                   "the footing moves at %g mm/s: the inertia of the ground, v (rho G)^1/2, is %.2g "
                   "of the capacity",
-                  1e3 * s->rate, inertia / (most * c->unit));
+                  1e3 * p->rate, inertia / most);
   return out;
 }
 
 static capacity measure(const simulation *sim) {
   const settings *s = &sim->s;
-  capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
-  c.unit = s->top > 0.0 ? s->top_cohesion : s->cohesion;
-  /* the ground bears more until the end of the path */
-  c.last = c.undeformed = c.slope = c.growth = NAN;
-  if (footing_rows(sim) == sim->samples) fit_path(sim, &c);
-  if (s->model == VON_MISES) {
-    find_cohesive_limits(s, &c);
-  } else {
-    c.smooth = limit(s, false);
-    c.rough = limit(s, true);
-    c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
-  }
+  capacity c = {NAN, NAN, NAN, NAN, NAN, footing_scale(s), footing_find_limits(s), {0}};
+  int count;
+  const footing_row *row = first_rows(sim, &count);
+  if (count == FOOTING_SAMPLES) fit_path(row, count, &c);
+  if (sim->now == FOOTING_DEFORMED && is_whole(sim))
+    c.deformed = mean_of_last(footing_row_of(sim, 0), FOOTING_SAMPLES);
   c.limit = compare_limit(sim, &c);
-  if (c.limit.reason[0]) c.smooth = c.rough = c.exact = NAN;
-  compare_require(&c.limit, !isnan(c.exact),
+  if (c.limit.reason[0]) c.limits.smooth = c.limits.rough = c.limits.exact = NAN;
+  compare_require(&c.limit, !isnan(c.limits.exact),
                   "it is of a smooth or a rough base, between which the friction of this one, %g, "
                   "lies",
                   s->mu);
   return c;
 }
 
+/* The coefficients of a capacity q, NaN where nothing of the kind bears: over the cohesion, that of
+ * the upper layer where there are two, the surcharge, and rho g B/2. */
+typedef struct coefficients {
+  double c, q, gamma;
+} coefficients;
+
+static coefficients divide(const settings *s, double q) {
+  const double cohesion = s->top > 0.0 ? s->top_cohesion : s->cohesion;
+  const double weight = s->density * s->gravity * s->half_width;
+  return (coefficients){cohesion > 0.0 ? q / cohesion : NAN,
+                        s->surcharge > 0.0 ? q / s->surcharge : NAN,
+                        weight > 0.0 ? q / weight : NAN};
+}
+
 /* ---- tables ---------------------------------------------------------------------------------- */
 
-static bool write_pressure(app *a, const settings *s, const simulation *sim, const capacity *c) {
+static bool write_rows(app *a, const settings *s, const char *name, const footing_row *row,
+                       int count) {
   output f;
-  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
-  csv_header(&f, "settlement_mm,q_kPa,q_over_c");
-  for (int k = 0; k < footing_rows(sim); k++) {
-    const double row[] = {footing_row_of(sim, k)->path * 1e3, footing_row_of(sim, k)->q * 1e-3,
-                          footing_row_of(sim, k)->q / c->unit};
-    csv_row(&f, 3, row);
+  if (!output_open(&f, a, s->out, name)) return false;
+  csv_header(&f, "settlement_mm,q_kPa,q_over_c?");
+  for (int k = 0; k < count; k++) {
+    const double line[] = {row[k].path * 1e3, row[k].q * 1e-3, divide(s, row[k].q).c};
+    csv_row(&f, 3, line);
   }
   return output_close(&f);
+}
+
+static bool write_pressure(app *a, const simulation *sim) {
+  int count;
+  const footing_row *row = first_rows(sim, &count);
+  return write_rows(a, &sim->s, "pressure.csv", row, count) &&
+         (sim->now != FOOTING_DEFORMED ||
+          write_rows(a, &sim->s, "pressure_deformed.csv", sim->course.rows.row, footing_rows(sim)));
 }
 
 static bool write_particles(app *a, const settings *s, simulation *sim) {
@@ -210,17 +182,20 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
     if (mps_body_get_state(sim->m.body[0], &body) == MPS_OK)
       json_number(&f, "turned", body.rotation[2] * 180.0 / PI); /* degrees, anticlockwise */
   }
-  json_text(&f, "loading", s->settled ? "quasi-static" : "steady");
-  json_number(&f, "q_over_c", c->last);
-  json_number(&f, "q_over_c_undeformed", c->undeformed);
-  json_number(&f, "q_over_c_per_mm", c->slope);
+  const coefficients n = divide(s, c->last);
+  json_number(&f, "q", c->last);
   json_comparison(&f, "q_exact", &c->limit);
-  json_number(&f, "q_exact_smooth", c->smooth);
-  json_number(&f, "q_exact_rough", c->rough);
-  /* Over the last fifth of the path: N_q, N_gamma where there is nothing else that bears. */
-  const double q = c->last * c->unit, weight = s->density * s->gravity * s->half_width;
-  json_number(&f, "q_over_surcharge", s->surcharge > 0.0 ? q / s->surcharge : NAN);
-  json_number(&f, "q_over_weight", weight > 0.0 ? q / weight : NAN);
+  json_number(&f, "q_exact_smooth", c->limits.smooth);
+  json_number(&f, "q_exact_rough", c->limits.rough);
+  json_number(&f, "q_davis", c->limits.davis);
+  json_number(&f, "q_deformed", c->deformed);
+  json_number(&f, "young_undeformed", s->pace[FOOTING_UNDEFORMED].young);
+  json_number(&f, "rate_undeformed", s->pace[FOOTING_UNDEFORMED].rate);
+  json_number(&f, "q_over_c", n.c);
+  json_number(&f, "q_over_c_undeformed", divide(s, c->undeformed).c);
+  json_number(&f, "q_over_c_per_mm", divide(s, c->slope).c);
+  json_number(&f, "q_over_surcharge", n.q);
+  json_number(&f, "q_over_weight", n.gamma);
   json_end(&f);
   return output_close(&f);
 }
@@ -234,39 +209,31 @@ static void draw_limit(output *f, double value, const char *dash, const char *ti
                 title);
 }
 
-static bool draw_pressure(app *a, const settings *s, const capacity *c) {
+static bool draw_pressure(app *a, const simulation *sim, const capacity *c) {
+  const settings *s = &sim->s;
+  const bool two = sim->now == FOOTING_DEFORMED, circle = s->shape == CIRCLE;
+  const footing_limits *l = &c->limits;
   output f;
-  char loading[32] = "quasi-static";
-  const footing_unit unit = footing_unit_of(s);
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
-  if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", 1e3 * s->rate);
   output_text(&f,
               "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, %s %g m, "
-              "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
-              "set ylabel 'pressure over %s'\nset key right bottom opaque\n"
-              "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:($2*%.9g) with lines "
-              "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
-              s->shape == CIRCLE ? "Circular" : "Strip",
-              s->model == VON_MISES ? "cohesive" : "frictional", s->h,
-              s->shape == CIRCLE ? "radius" : "half width", s->half_width, loading, s->mu,
-              unit.name, 1e3 / unit.value);
-  const double scale = c->unit / unit.value;
-  const bool cone = s->model == DRUCKER_PRAGER;
-  const bool circle = s->shape == CIRCLE;
-  if (!cone && !circle)
-    draw_limit(&f, scale * c->exact, "--",
-               s->gradient > 0.0     ? "characteristics"
-               : footing_is_whole(s) ? "Meyerhof, B - 2 e"
-               : footing_is_thin(s)  ? "Meyerhof, Chaplin"
-                                     : "Prandtl");
-  if (circle && c->exact != c->rough)
-    draw_limit(&f, scale * c->smooth, "--", "smooth base, Shield");
-  if (circle && c->exact != c->smooth)
-    draw_limit(&f, scale * c->rough, "-.", "rough base, Eason, Shield");
-  if (cone && c->exact != c->rough)
-    draw_limit(&f, scale * c->smooth, "--", "smooth base, characteristics");
-  if (cone && c->exact != c->smooth)
-    draw_limit(&f, scale * c->rough, "-.", "rough base, characteristics");
+              "%g mm/s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
+              "set ylabel 'pressure (kPa)'\nset key right bottom opaque\n"
+              "set yrange [0:*]\nplot '%s' every ::1 using 1:2 with lines "
+              "linecolor rgb '#1f4e8c' title 'WLS-MPM%s'",
+              circle ? "Circular" : "Strip", s->model == VON_MISES ? "cohesive" : "frictional",
+              s->h, circle ? "radius" : "half width", s->half_width, 1e3 * s->rate, s->mu,
+              two ? "pressure_deformed.csv" : "pressure.csv", two ? ", as it deforms" : "");
+  if (two) draw_limit(&f, 1e-3 * c->last, "..", "WLS-MPM, capacity of the undeformed ground");
+  if (l->smooth == l->rough) {
+    draw_limit(&f, 1e-3 * l->exact, "--", l->source);
+  } else {
+    if (l->exact != l->rough)
+      draw_limit(&f, 1e-3 * l->smooth, "--", circle ? "smooth base, Shield" : "smooth base, exact");
+    if (l->exact != l->smooth)
+      draw_limit(&f, 1e-3 * l->rough, "-.",
+                 circle ? "rough base, Eason, Shield" : "rough base, exact");
+  }
   output_text(&f, "\n");
   return plot_close(&f, s->out, "pressure");
 }
@@ -336,34 +303,44 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
 
 /* ---- the end --------------------------------------------------------------------------------- */
 
-static void print(const settings *s, const capacity *c) {
+/* N_c, N_q or N_gamma where nothing else bears. */
+static void print_coefficients(const settings *s, double q) {
+  const coefficients n = divide(s, q);
+  const int kinds = !isnan(n.c) + !isnan(n.q) + !isnan(n.gamma);
+  const char *const name[] = {kinds == 1 && s->gradient == 0.0 ? "N_c" : "q/c",
+                              kinds == 1 ? "N_q" : "q/surcharge",
+                              kinds == 1 ? "N_gamma" : "q/(rho g B/2)"};
+  const double value[] = {n.c, n.q, n.gamma};
+  for (int k = 0; k < 3; k++)
+    if (!isnan(value[k])) printf(", %s %.4g", name[k], value[k]);
+}
+
+static void print(const simulation *sim, const capacity *c) {
+  const settings *s = &sim->s;
+  const footing_limits *l = &c->limits;
   if (isnan(c->last)) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
-  const bool cone = s->model == DRUCKER_PRAGER;
-  printf("bearing capacity q/c %.*f", cone ? 2 : 3, c->last);
-  if (s->top > 0.0) printf(", c that of the upper layer");
-  if (cone) printf(", taken back to no settlement %.2f", c->undeformed);
-  if (compare_holds(&c->limit) && cone)
-    printf("; exact: %.2f (%s base), %+.1f %%", c->exact, s->mu > 0.0 ? "rough" : "smooth",
+  printf("bearing capacity of the undeformed ground %.4g kPa", 1e-3 * c->last);
+  print_coefficients(s, c->last);
+  if (compare_holds(&c->limit))
+    printf(" (%s %.4g kPa, %+.1f %%)", c->limit.source, 1e-3 * l->exact,
            100.0 * compare_error(&c->limit));
-  else if (compare_holds(&c->limit))
-    printf(" (%s %.3f, %+.1f %%)",
-           footing_is_thin(s)                  ? "thin layer, rough base"
-           : s->shape == CIRCLE && s->mu > 0.0 ? "rough base"
-           : s->shape == CIRCLE                ? "smooth base"
-                                               : c->limit.source,
-           c->exact, 100.0 * compare_error(&c->limit));
-  else if (!isnan(c->smooth) && !isnan(c->rough))
-    printf(" (smooth base %.2f, rough %.2f)", c->smooth, c->rough);
-  else if (!isnan(c->smooth))
-    printf(" (smooth base %.3f; no characteristics found of a rough one)", c->smooth);
-  else if (!isnan(c->rough))
-    printf(" (rough base %.3f)", c->rough);
+  else if (!isnan(l->smooth) || !isnan(l->rough))
+    printf(" (%s: smooth base %.4g kPa, rough %.4g)", l->source, 1e-3 * l->smooth, 1e-3 * l->rough);
+  if (!isnan(l->davis))
+    printf(" (%.4g kPa with the strength of Davis for --psi, %.4g kPa of associated flow)",
+           1e-3 * l->davis, 1e-3 * c->associated);
   printf("\n");
+  if (!isnan(c->deformed)) {
+    printf("as the ground deforms: %.4g kPa after %.3g mm", 1e-3 * c->deformed,
+           1e3 * s->settlement);
+    print_coefficients(s, c->deformed);
+    printf("\n");
+  }
   compare_tell(&c->limit);
-  if (cone) sand_print(&s->voids, s->psi);
+  if (s->model == DRUCKER_PRAGER) sand_print(&s->voids, s->psi);
 }
 
 /* Ground whose pressure still grows has not reached its bearing capacity, and the line through it
@@ -381,10 +358,10 @@ bool footing_finish(app *a, void *user) {
   const settings *s = &sim->s;
   const capacity c = measure(sim);
   if (!isnan(c.last)) warn_of_growth(a, &c); /* before the summary, which lists it */
-  if (!write_pressure(a, s, sim, &c) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
-      !draw_pressure(a, s, &c) || !draw_bands(a, s, sim) || !footing_write_section(a, sim))
+  if (!write_pressure(a, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
+      !draw_pressure(a, sim, &c) || !draw_bands(a, s, sim) || !footing_write_section(a, sim))
     return false;
   app_tell_results(a, s->out);
-  print(s, &c);
+  print(sim, &c);
   return true;
 }

@@ -1,9 +1,12 @@
 /* model.c - ground of a slope with a strength divided by a factor, and its motion.
  *
  * The ground begins at rest with the geostatic stress below its surface, which is no equilibrium:
- * it adjusts elastically within some wave times, or flows where the strength does not suffice. The
- * slope has failed when all but the hundredth part of its particles that moved most have moved less
- * than a share of its height no longer. SPDX-License-Identifier: BSD-3-Clause */
+ * it adjusts elastically within some times H/c of a wave, or flows where the strength does not
+ * suffice. The slope has failed by loss of equilibrium: the hundredth part of its particles that
+ * moves most does not come to rest. A flow's speed is of the order of g H/c times the share of the
+ * strength that is missing, as grid and transfers resist it like a viscosity of rho c h; so rest is
+ * a speed below 1e-3 g H/c, whatever the stiffness. Equilibrium is that of the first shape, since
+ * the modulus of a trial is at least 1e4 times the stress. SPDX-License-Identifier: BSD-3-Clause */
 #include "slope.h"
 
 #include <mps/soil.h>
@@ -17,7 +20,29 @@
 #define AT_REST 1e-3 /* of the largest kinetic energy */
 #define FAR 0.05     /* of the height: what has run out has moved more */
 
-double slope_duration(const settings *s) { return s->falls * sqrt(s->height / s->gravity); }
+#define STIFF 1e4   /* of the greatest stress: no ground changes its shape before it fails */
+#define WAVES 100.0 /* (H + base)/c, the time of a trial */
+#define WINDOW 6    /* samples over which a speed is taken on the way */
+#define STEADY 0.8  /* of the speed in the window before: it does not come to rest */
+
+double slope_young(const settings *s) {
+  const double stress = s->density * s->gravity * (s->height + s->base);
+  return s->runout ? s->young : fmax(s->young, STIFF * stress);
+}
+
+static double wave_speed(const settings *s) { return sqrt(slope_young(s) / s->density); }
+
+double slope_duration(const settings *s) {
+  return s->runout ? s->falls * sqrt(s->height / s->gravity)
+                   : WAVES * (s->height + s->base) / wave_speed(s);
+}
+
+double slope_speed(const settings *s, const trial *t, int samples) {
+  const int last = t->rows - 1, first = last - samples;
+  if (first < 0) return NAN;
+  const double speed = (t->moved[last] - t->moved[first]) / (t->t[last] - t->t[first]);
+  return speed * wave_speed(s) / (s->gravity * s->height);
+}
 
 /* ---- ground ---------------------------------------------------------------------------------- */
 
@@ -64,7 +89,7 @@ static mps_status make_law(simulation *sim) {
   const double largest = s->cohesion + s->gradient * (s->base + s->height);
   const double factor = sim->trial[sim->now].factor;
   mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-  law.young = s->young, law.poisson = s->poisson;
+  law.young = slope_young(s), law.poisson = s->poisson;
   law.friction = atan(tan(s->phi * DEGREE) / factor);
   law.dilation = fmin(s->psi * DEGREE, law.friction);
   law.cohesion = largest / factor;
@@ -186,7 +211,6 @@ static mps_status sample(simulation *sim, trial *now) {
   if (status != MPS_OK) return status;
   now->t[now->rows] = mps_mpm_time(sim->m.mpm);
   now->moved[now->rows++] = m.moved;
-  now->failed = m.moved > s->fails * s->height;
   sim->front = m.front - s->crest - s->slope * s->height;
   sim->lost = m.lost;
   sim->kinetic = m.kinetic;
@@ -195,9 +219,17 @@ static mps_status sample(simulation *sim, trial *now) {
   return MPS_OK;
 }
 
-/* Until it has failed, in a run-out until it rests, or to the end of its time. */
-static bool has_ended(const simulation *sim, const trial *now) {
-  if (!sim->s.runout) return now->failed != 0;
+/* A run-out until it rests. A trial until it rests or flows steadily; or the speed over the last
+ * quarter of its time decides. */
+static bool has_ended(const simulation *sim, trial *now) {
+  if (!sim->s.runout) {
+    const bool whole = now->rows == SLOPE_SAMPLES + 1;
+    const double last = slope_speed(&sim->s, now, WINDOW);
+    const double before = 2.0 * slope_speed(&sim->s, now, 2 * WINDOW) - last;
+    now->failed = whole ? slope_speed(&sim->s, now, SLOPE_SAMPLES / 4) > SLOPE_FLOWS
+                        : last > 3.0 * SLOPE_FLOWS && last > STEADY * before;
+    return whole || now->failed || fmax(fabs(last), fabs(before)) < 0.5 * SLOPE_FLOWS;
+  }
   return now->rows > SLOPE_SAMPLES / 10 && sim->kinetic <= AT_REST * sim->peak;
 }
 
@@ -205,10 +237,11 @@ mps_status slope_march_trial(simulation *sim) {
   trial *now = &sim->trial[sim->now];
   const double end = slope_duration(&sim->s);
   mps_status status = MPS_OK;
-  for (int k = now->rows; k <= SLOPE_SAMPLES && status == MPS_OK; k++) {
+  for (int k = now->rows; k <= SLOPE_SAMPLES && !now->ended && status == MPS_OK; k++) {
     if (k > 0) status = mpm_model_advance(&sim->m, end * k / SLOPE_SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim, now);
     const bool ended = status == MPS_OK && has_ended(sim, now);
+    if (status == MPS_OK) now->ended = ended || k == SLOPE_SAMPLES;
     if (status == MPS_OK)
       status = mpm_course_sample(&sim->course, ended ? SLOPE_SAMPLES : k, SLOPE_SAMPLES);
     if (ended) break;

@@ -1,13 +1,15 @@
 /* search.c - the factor of safety by strength reduction: trials with c and tan(phi) divided by a
- * factor, which close in on the one at which the slope fails. First 1, then 1.5 times as much or as
- * little until one stands and one fails, then their geometric mean. Checkpoints hold the trials
- * that have ended. SPDX-License-Identifier: BSD-3-Clause */
+ * factor, which close in on the one at which the slope fails. First a little less than that of
+ * spirals, then a tenth more or less, and half as much again, until one stands and one fails, then
+ * their geometric mean. Checkpoints hold the trials that have ended. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "slope.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define STEP 1.5
+#define FIRST 0.95 /* of the factor of spirals */
+#define STEP 1.1   /* and 1.5 from the third trial on */
 #define LEAST 0.05
 #define MOST 20.0
 
@@ -34,9 +36,14 @@ static double next_factor(const simulation *sim) {
   double stands, fails;
   if (!isnan(sim->s.factor)) return sim->s.factor;
   slope_bracket(sim, sim->now, &stands, &fails);
-  if (sim->now == 0) return 1.0;
-  const double next = isinf(fails)    ? stands * STEP
-                      : stands == 0.0 ? fails / STEP
+  if (sim->now == 0) {
+    slope_circle pole;
+    const double first = FIRST * slope_spirals(&sim->s, false, &pole);
+    return first >= LEAST && first <= MOST ? first : 1.0;
+  }
+  const double step = sim->now < 3 ? STEP : 1.5;
+  const double next = isinf(fails)    ? stands * step
+                      : stands == 0.0 ? fails / step
                                       : sqrt(stands * fails);
   return next >= LEAST && next <= MOST && sim->now < SLOPE_TRIALS ? next : NAN;
 }
@@ -68,6 +75,7 @@ static void pass(void *user, resume_bytes *b) {
     trial *t = &sim->trial[k];
     resume_pass(b, &t->factor, sizeof t->factor);
     resume_pass(b, &t->failed, sizeof t->failed);
+    resume_pass(b, &t->ended, sizeof t->ended);
     resume_pass(b, &t->rows, sizeof t->rows);
     if (resume_wrong(b, t->rows < 0 || t->rows > SLOPE_SAMPLES + 1)) {
       t->rows = 0;
@@ -91,7 +99,7 @@ static void name_course(simulation *sim) {
                              .directory = sim->s.out,
                              .what = what,
                              .duration = slope_duration(&sim->s),
-                             .key = "mps-slope 1",
+                             .key = "mps-slope 2",
                              .table = options_read(),
                              .pass = pass,
                              .user = sim};
@@ -120,7 +128,7 @@ static mps_status take_picture(simulation *sim) {
 }
 
 static mps_status march_one(simulation *sim) {
-  progress_part(&sim->m.a->bar, fmin(0.9, sim->now / 10.0), isnan(sim->s.factor) ? 0.1 : 1.0, 0.0,
+  progress_part(&sim->m.a->bar, fmin(0.9, sim->now / 7.0), isnan(sim->s.factor) ? 0.15 : 1.0, 0.0,
                 slope_duration(&sim->s));
   mps_status status = slope_march_trial(sim);
   const mps_status taken = sim->trial[sim->now].rows > 0 ? take_picture(sim) : MPS_OK;

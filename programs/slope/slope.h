@@ -1,5 +1,6 @@
 /* slope.h - the parts of mps-slope: ground and one trial (model.c), the search for the factor
- * (search.c), water in the ground (water.c), slip circles (circles.c), results (results.c).
+ * (search.c), water in the ground (water.c), slip circles (circles.c), logarithmic spirals
+ * (spirals.c), results (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_SLOPE_H
 #define EXAMPLES_SLOPE_H
@@ -23,8 +24,8 @@ typedef struct settings {
   double slip;                             /* m */
   double young, poisson, density, gravity; /* Pa, -, kg/m3, m/s2 */
   double courant;
-  double factor, tolerance, fails, falls, h; /* NaN: it is sought; -, of H, (H/g)^1/2, m */
-  double moist, ru;                          /* kg/m3 above the table; pressure over weight */
+  double factor, tolerance, falls, h; /* NaN: it is sought; -, (H/g)^1/2, m */
+  double moist, ru;                   /* kg/m3 above the table; pressure over weight */
   double table, drawdown; /* m above the toe: the water table, and the pool before; NaN: none */
   double line[2 * SLOPE_POINTS]; /* m, the table: x from the crest's edge, level above the toe */
   int64_t points;                /* of that; 0: none */
@@ -40,10 +41,13 @@ typedef struct settings {
 /* One strength, and whether the slope stands. */
 typedef struct trial {
   double factor;
-  int failed; /* 0 or 1 */
+  int failed, ended; /* 0 or 1 */
   int rows;
   double t[SLOPE_SAMPLES + 1], moved[SLOPE_SAMPLES + 1]; /* s, m */
 } trial;
+
+/* Speed of a slope that has failed, g H/c: a trial's ground comes to rest, or flows faster. */
+#define SLOPE_FLOWS 1e-3
 
 typedef struct simulation {
   settings s;
@@ -83,8 +87,30 @@ typedef struct slope_circle {
 } slope_circle;
 double slope_circles(const settings *s, slope_circle *out);
 
+/* A slip line: x of the ends, and the sag of a circle through them over its chord. */
+typedef struct slope_arc {
+  double from, to, sag;
+} slope_arc;
+/* Its factor, found from `start`; infinite where there is none. `out`: its pole, and the radius at
+ * the entry. */
+typedef double (*slope_slip_fn)(const settings *s, const slope_arc *a, double start,
+                                slope_circle *out);
+/* The least factor of a kind of slip lines. */
+double slope_least_slip(const settings *s, slope_slip_fn slip, slope_circle *out);
+/* Levels of the ends; false where they are those of no slip. */
+bool slope_ends(const settings *s, const slope_arc *a, double *y0, double *y1);
+double slope_cohesion(const settings *s, double y); /* Pa */
+
+/* spirals.c: the least factor of all logarithmic spirals, of associated flow or with the strength
+ * of Davis for --psi; infinite: none. */
+double slope_spirals(const settings *s, bool davis, slope_circle *out);
+
 /* model.c */
 double slope_duration(const settings *s);
+/* Young's modulus of a run: at least that at which a trial's ground keeps its shape. Pa */
+double slope_young(const settings *s);
+/* Mean speed over the last `samples` of a trial, as SLOPE_FLOWS. */
+double slope_speed(const settings *s, const trial *t, int samples);
 mps_status slope_build_trial(simulation *sim);
 mps_status slope_march_trial(simulation *sim);
 

@@ -41,7 +41,7 @@ same mandel mps-consolidation --case mandel --cell 0.0625 --scheme implicit --ti
 # Layers of other laws and permeabilities, of which a rank may have none; water in a slope.
 data=$(dirname "$0")/../programs/data
 same layers mps-consolidation --layers "$data/consolidation_layers.csv" --times 0.002
-same slope mps-slope --cell 1 --factor 1 --falls 0.3 --water-level 0 --drawdown 10
+same slope mps-slope --cell 1 --factor 1 --water-level 0 --drawdown 10
 same backfill mps-wall --cell 0.1 --travel 1mm --rate 0.2 --layers "$data/wall_layers.csv" --water-table 0.4 --surcharge 2kPa
 pile="--soil 0.6x0.6 --cell 0.04 --wall-thickness 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
 # shellcheck disable=SC2086

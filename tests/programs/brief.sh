@@ -21,7 +21,7 @@ run mps-rolling-disc --cell 0.02 --duration 0.02
 run mps-footing --cell 0.25 --soil 3x1 --settlement 0.05mm
 run mps-consolidation --cell 0.3333333333 --water-stiffness 10 --times 0.01
 run mps-consolidation --case mandel --cell 0.3333333333 --water-stiffness 10 --times 0.001
-run mps-slope --cell 2 --factor 1.5 --falls 0.5
+run mps-slope --cell 2 --factor 1.5
 run mps-slope --runout --cell 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
 printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density\n4, 1900, 100, cyclicsand, 33, 0.5\ninf, 2000, 300\n' \
   >"$work/layers"

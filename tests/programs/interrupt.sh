@@ -63,7 +63,7 @@ wrote box forces.csv summary.json
 interrupt disc 0.5 mps-rolling-disc --cell 0.002
 wrote disc motion.csv summary.json
 has "$work/disc/summary.json" '"x_error_05": null'
-interrupt footing 1 mps-footing
+interrupt footing 1 mps-footing --cell 0.025
 wrote footing pressure.csv particles.csv summary.json
 interrupt slope 1 mps-slope --cell 0.5
 wrote slope motion.csv particles.csv summary.json

@@ -27,8 +27,8 @@ again mps-consolidation 0.2 --cell 0.2 --water-stiffness 10 --layers "$(dirname 
   --times 0.01,0.02,0.04
 again mps-consolidation 0.7 --cell 0.2 --water-stiffness 10 --case mcc --scheme implicit --loads 100kPa,200kPa --load-ramp 0.02 \
   --times 0.03,0.1
-again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5
-again mps-slope 1.1 --cell 2 --falls 3 --factor-tolerance 0.5 --water-level 0 --drawdown 8
+again mps-slope 0.15 --cell 2 --factor-tolerance 0.5
+again mps-slope 0.15 --cell 2 --factor-tolerance 0.5 --water-level 0 --drawdown 8
 printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density\n4, 1900, 100, cyclicsand, 33, 0.4\ninf, 2000, 300\n' \
   >"$work/layers"
 again mps-site-response 0.7 --layers "$work/layers" --permeability 1e-4 --frequency 4 --max-frequency 5 --loop 2 --duration 1
@@ -51,5 +51,6 @@ changed mps-wall 0.05 "$work/wall.csv" s/1900/1901/ --cell 0.125 --travel 2mm --
 cp "$(dirname "$0")/data/consolidation_layers.csv" "$work/column.csv"
 changed mps-consolidation 0.2 "$work/column.csv" s/1e-/2e-/ --cell 0.2 --water-stiffness 10 --layers "$work/column.csv" --times 0.01,0.02
 printf '0,8\n15,0\n' >"$work/line.csv"
-changed mps-slope 1.1 "$work/line.csv" s/15,0/15,1/ --cell 2 --falls 3 --factor-tolerance 0.5 --water-level "$work/line.csv"
+changed mps-slope 0.15 "$work/line.csv" s/15,0/15,1/ --cell 2 --factor-tolerance 0.5 --water-level "$work/line.csv"
 again mps-footing 8ms --cell 0.25 --soil 3x1 --settlement 1mm --rate 100mm/s
+again mps-footing 0.3 --cell 0.25 --soil 3x1 --young 20MPa

@@ -1,5 +1,5 @@
-/* test_slope_circles.c - slip circles of mps-slope against charts, the infinite slope, and what
- * must hold for water. SPDX-License-Identifier: BSD-3-Clause */
+/* test_slope_circles.c - slip circles and spirals of mps-slope against charts, the infinite slope,
+ * and what must hold for water. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
 #include "slope/slope.h"
@@ -36,6 +36,52 @@ TEST(clay_is_taylors) {
   s.slope = 1.0 / tan(60.0 * DEGREE);
   s.base = 5.0;
   NEAR(circles(&s) / 0.05, 1.0 / 0.191, 0.03); /* Taylor (1937) */
+}
+
+static double spirals(const settings *s) {
+  slope_circle pole;
+  return slope_spirals(s, false, &pole);
+}
+
+/* Chen (1975), table 9.1: gamma H/c of slopes that just stand, level behind the crest. */
+TEST(spirals_are_chens) {
+  static const struct {
+    double phi, slope, number;
+  } chen[] = {{0.0, 90.0, 3.83},  {10.0, 90.0, 4.58}, {20.0, 90.0, 5.50},  {10.0, 75.0, 5.80},
+              {20.0, 75.0, 7.48}, {10.0, 60.0, 7.26}, {20.0, 60.0, 10.39}, {20.0, 45.0, 16.16}};
+  for (size_t k = 0; k < sizeof chen / sizeof *chen; k++) {
+    settings s = usual();
+    s.phi = chen[k].phi;
+    s.slope = chen[k].slope < 90.0 ? 1.0 / tan(chen[k].slope * DEGREE) : 0.0;
+    s.cohesion = s.density * s.gravity * s.height / chen[k].number;
+    NEAR(spirals(&s), 1.0, 0.005);
+  }
+}
+
+/* Sand slides down an infinite slope where sin(phi_F) is tan(slope), the plane on which it does not
+ * dilate (Davis 1968). */
+TEST(sand_that_does_not_dilate_is_weaker) {
+  settings s = usual();
+  slope_circle pole;
+  s.phi = 35.0, s.cohesion = 1.0;
+  NEAR(slope_spirals(&s, true, &pole), tan(35.0 * DEGREE) / tan(30.0 * DEGREE), 0.005);
+  s.psi = 35.0;
+  NEAR(slope_spirals(&s, true, &pole), spirals(&s), 1e-3);
+}
+
+/* Without friction a spiral is a circle, with water too; both have an infinite slope's shallow
+ * slip. */
+TEST(spirals_and_circles_agree) {
+  settings s = usual();
+  NEAR(spirals(&s), circles(&s), 0.01);
+  s.table = 4.0;
+  NEAR(spirals(&s), circles(&s), 0.015);
+  s.phi = 0.0;
+  s.base = 5.0;
+  NEAR(spirals(&s), circles(&s), 0.005);
+  s = usual();
+  s.cohesion = 1.0, s.ru = 0.25;
+  NEAR(spirals(&s), circles(&s), 0.005);
 }
 
 TEST(sand_with_cohesion_is_that_of_charts) {

@@ -1,0 +1,68 @@
+/* limits.c - the exact capacity of rigid, perfectly plastic ground under mps-footing, Pa.
+ *
+ * Friction and weight, or clay whose strength grows with depth: the method of characteristics,
+ * which supposes associated flow, an upper bound for less dilation; a low estimate is that of Davis
+ * (1968), with cos(psi) cos(phi)/(1 - sin(psi) sin(phi)) times c and tan(phi). Clay: Prandtl (52),
+ * whatever the weight and the base. A circle: smooth, R. T. Shield, J. Mech. Phys. Solids 4 (1955)
+ * 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11 (1960) 33-43. A thin layer: G.
+ * G. Meyerhof, T. K. Chaplin 1953. An eccentric load: G. G. Meyerhof 1953, the width B - 2 e bears,
+ * without tension. Two layers are known by bounds alone: R. S. Merifield et al., Geotechnique 49
+ * (1999) 471. SPDX-License-Identifier: BSD-3-Clause */
+#include "footing.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+/* Of the weight of half a width: cohesion of ground that has no other strength. */
+#define LITTLE 1e-4
+
+enum { LINES = 40 };
+
+/* By characteristics; its error falls with the square of the lines and is extrapolated. */
+static double by_characteristics(const settings *s, bool rough, double psi) {
+  strip_footing f = {.half_width = s->half_width,
+                     .cohesion = s->cohesion,
+                     .weight = s->density * s->gravity,
+                     .gradient = s->gradient,
+                     .surcharge = s->surcharge,
+                     .rough = rough};
+  if (s->model == DRUCKER_PRAGER) {
+    const double phi = s->phi * PI / 180.0;
+    const double share = cos(psi) * cos(phi) / (1.0 - sin(psi) * sin(phi));
+    f.friction = atan(share * tan(phi));
+    f.cohesion *= share;
+    if (f.surcharge == 0.0) f.cohesion = fmax(f.cohesion, LITTLE * f.weight * f.half_width);
+  }
+  const double coarse = characteristics_capacity(&f, LINES / 2);
+  return (4.0 * characteristics_capacity(&f, LINES) - coarse) / 3.0;
+}
+
+footing_limits footing_find_limits(const settings *s) {
+  const double c = s->cohesion;
+  footing_limits l = {(2.0 + PI) * c, (2.0 + PI) * c, NAN, NAN, "Prandtl"};
+  const bool cone = s->model == DRUCKER_PRAGER;
+  if (cone || s->gradient > 0.0) {
+    const double phi = s->phi * PI / 180.0;
+    l.smooth = by_characteristics(s, false, phi), l.rough = by_characteristics(s, true, phi);
+    if (cone && s->psi < s->phi) l.davis = by_characteristics(s, s->mu > 0.0, s->psi * PI / 180.0);
+    l.source = "characteristics";
+  } else if (s->top > 0.0) {
+    l.smooth = l.rough = NAN;
+  } else if (footing_is_thin(s)) {
+    l.rough = fmax(l.rough, (PI + 1.0 + s->half_width / s->depth) * c);
+    l.smooth = NAN, l.source = "Meyerhof and Chaplin";
+  } else if (footing_is_whole(s)) {
+    l.smooth = l.rough *= 1.0 - s->eccentricity / s->half_width;
+    l.source = "Meyerhof, B - 2 e";
+  } else if (s->shape == CIRCLE) {
+    l.smooth = 5.69 * c, l.rough = 6.05 * c;
+    l.source = s->mu > 0.0 ? "Eason and Shield" : "Shield";
+  }
+  /* Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
+  const double enough = cone                  ? tan(s->phi * PI / 180.0)
+                        : s->shape == CIRCLE  ? c / l.smooth
+                        : l.smooth == l.rough ? 0.0
+                                              : 1.0;
+  l.exact = s->mu >= enough ? l.rough : s->mu == 0.0 ? l.smooth : NAN;
+  return l;
+}
