@@ -1,6 +1,6 @@
 # mps_first_use(<name> TARGET <library> HEADER <what declares its functions> CALLS <regular expression>
-#               SOURCES <the files that call it> [ALSO <what macros of the header name>] [PACKAGE <arguments of find_package>]
-#               [LIBRARIES <files>] [DEFINITIONS ...])
+#               SOURCES <the files that call it> [ALSO <what macros of the header name>]
+#               [PACKAGE <arguments of find_package>] [LIBRARIES <files>] [DEFINITIONS ...])
 # A library that libmps.so loads when it is first needed, so that who only solves does not carry it and what it
 # depends on: the module libmps-<name>.so, linked to it, holds a table of the functions that SOURCES call. They
 # include <name>_calls.h, written here, after which each call goes through the pointer `mpsi_<name>`. libmps.a
@@ -32,10 +32,10 @@ function(mps_first_use name)
     string(APPEND values "${if}  .call_${call} = &${call},\n${endif}")
     string(APPEND macros "#undef ${call}\n#define ${call} (mpsi_${name}->call_${call})\n")
   endforeach()
-  foreach(name_inside ${use_ALSO})
-    string(APPEND members "  __typeof__(&${name_inside}) at_${name_inside};\n")
-    string(APPEND values "  .at_${name_inside} = &${name_inside},\n")
-    string(APPEND macros "#undef ${name_inside}\n#define ${name_inside} (*mpsi_${name}->at_${name_inside})\n")
+  foreach(named ${use_ALSO})
+    string(APPEND members "  __typeof__(&${named}) at_${named};\n")
+    string(APPEND values "  .at_${named} = &${named},\n")
+    string(APPEND macros "#undef ${named}\n#define ${named} (*mpsi_${name}->at_${named})\n")
   endforeach()
   set(made ${CMAKE_BINARY_DIR}/first-use)
   file(CONFIGURE OUTPUT ${made}/${name}_calls.h @ONLY CONTENT
@@ -67,8 +67,8 @@ const void *mpsi_${name}_find(char *why, size_t size) {
   target_link_libraries(mps_${name} PRIVATE ${use_TARGET} mps_flags mps_hardening)
   target_sources(mps_static PRIVATE ${made}/${name}_table.c)
   foreach(target mps_objects mps_${name} mps_static)
-    target_include_directories(${target} PRIVATE ${made} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src
-                                                 $<TARGET_PROPERTY:${use_TARGET},INTERFACE_INCLUDE_DIRECTORIES>)
+    target_include_directories(${target} PRIVATE ${made} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+    target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:${use_TARGET},INTERFACE_INCLUDE_DIRECTORIES>)
     target_compile_definitions(${target} PRIVATE ${use_DEFINITIONS})
   endforeach()
   add_dependencies(mps mps_${name})
