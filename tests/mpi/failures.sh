@@ -35,7 +35,7 @@ ends() {
 ends mps-tank force.csv --spacing 0.01 0.02 --duration 0.02 --frames 0
 # shellcheck disable=SC2086
 ends mps-pile load.csv --cell 0.04 0.05 $pile --depth 0.01 --rate 0.5
-[ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --length 3.6666666667 1.8888888889 --spacing 0.2222222222
+[ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --length 3.6666666667 1.8888888889 --height 2 --spacing 0.2222222222
 
 # signals SIGNAL: sends it to the last rank and waits for the run, which must not end well.
 signals() {

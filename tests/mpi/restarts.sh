@@ -25,7 +25,7 @@ cut() {
       >/dev/null
     for file in "$work/$name"/*; do
       file=$(basename "$file")
-      case $file in checkpoint.h5 | *.png | *.vtkhdf | frames.bin) continue ;; esac # frames: from there on
+      case $file in checkpoint.h5 | index.html | *.png | *.vtkhdf | frames.bin) continue ;; esac # frames: from there on
       cmp "$work/$name/$file" "$work/$name-on/$file" || fail "$file of $name, gone on with $ranks ranks"
     done
     rm -r "$work/$name-on"

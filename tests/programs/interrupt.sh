@@ -162,9 +162,9 @@ has "$work/study/summary.json" '"outcome": "interrupted"'
 
 # No hook reaches into a factorisation.
 [ -x "$programs/mps-cantilever" ] || exit 0
-early 1 "mps-cantilever --spacing 0.004987531172 --length 3.992518703" tip tip_error unknowns
+early 1 "mps-cantilever --height 2 --spacing 0.004987531172 --length 3.992518703" tip tip_error unknowns
 early 1 "mps-plate --spacing 0.002" end_displacement particles
-program="mps-cantilever --spacing 0.03921568627 --length 15.70588235 --convergence"
+program="mps-cantilever --height 2 --spacing 0.03921568627 --length 15.70588235 --convergence"
 "$programs/"$program --threads 1 --out "$work/beam" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/beam/shape.gp" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
