@@ -4,7 +4,7 @@
 for program in mps-wave mps-stability; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
   tr -s '[:space:]' ' ' <"$work/help" >"$work/flat"
-  for text in "Usage: $program" "--spacing [m]" "default 100 m/s)" "--wave S|P" \
+  for text in "Usage: $program" "--spacing [m]" "default 1 Hz)" "[m/s]" "--wave S|P" \
     "(default verlet)" "--out DIR" "--threads N"; do
     has "$work/flat" "$text"
   done
