@@ -103,7 +103,7 @@ def first_program(root, text):
 
 
 # Pages that lead to pages of their own folder: what is behind them in the navigation.
-TREES = {"verification/README.md": "wls-mpm soil liquefaction textbook pore-water explicit-mps implicit-elastic fluid ranks", "verification/wls-mpm.md": "wls-mpm/*",
+TREES = {"verification/README.md": "wls-mpm soil liquefaction textbook pore-water explicit-mps implicit-elastic fluid programs ranks", "verification/wls-mpm.md": "wls-mpm/*",
          "verification/fluid.md": "fluid/*"}
 
 

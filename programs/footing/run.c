@@ -126,13 +126,13 @@ static const char *check_ground(const settings *s, const option *table) {
   return NULL;
 }
 
-/* An inset that makes a face on this ground as wide as its edges say; an eccentric load presses
- * ground at rest. */
-static const char *settle_edges(settings *s, const option *table) {
-  const bool point = s->volumetric == MPS_MPM_VOLUMETRIC_POINT;
-  const double sand = s->surcharge > 0.0 ? 0.65 : 0.75, clay = point ? 0.9 : 0.6;
-  const double usual = s->eccentricity > 0.0 ? 0.0 : s->model == DRUCKER_PRAGER ? sand : clay;
-  return mpm_model_settle_edges(table, s->contact, usual, &s->corner, &s->inset);
+/* An inset that makes a face on this ground as wide as its edges say: less where a rough base holds
+ * sand that its weight alone keeps. An eccentric load presses ground at rest. */
+static double usual_inset(const settings *s) {
+  if (s->eccentricity > 0.0) return 0.0;
+  if (s->model != DRUCKER_PRAGER) return s->volumetric == MPS_MPM_VOLUMETRIC_POINT ? 0.9 : 0.6;
+  if (s->surcharge > 0.0) return 0.65;
+  return s->mu > 0.0 && s->cohesion == 0.0 ? 0.4 : 0.75;
 }
 
 const char *footing_settle(settings *s, const option *table) {
@@ -147,7 +147,8 @@ const char *footing_settle(settings *s, const option *table) {
   if (cone && s->shape == CIRCLE) return "--shape circle is for --law vonmises";
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
     return "--corner is for --contact impulse";
-  const char *edges = settle_edges(s, table);
+  const char *edges =
+      mpm_model_settle_edges(table, s->contact, usual_inset(s), &s->corner, &s->inset);
   if (edges) return edges;
   const double cells = (footing_is_whole(s) ? 2.0 : 1.0) * s->width * s->depth / (s->h * s->h);
   const char *large = mpm_model_too_large(cells * (double)s->ppc);
