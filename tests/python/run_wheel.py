@@ -59,7 +59,8 @@ def main():
     if "https://example.org/libmps/issues" not in metadata or ".invalid" in metadata:
         sys.exit(f"{made}: the address of the project is not in place:\n{metadata[:2000]}")
     for wanted in ("libmps/py.typed", "libmps/__init__.pyi", "licenses/LIBRARIES.md", "licenses/LICENSE", "libmps/theory.py",
-                   "libmps/share/libmps/models/caisson.yaml", "libmps/share/libmps/paraview_libmps.py"):
+                   "libmps/share/libmps/models/caisson.yaml",
+                   "libmps/share/libmps/plots/style.gp", "libmps/share/libmps/paraview_libmps.py"):
         if not any(name.endswith(wanted) for name in names):
             sys.exit(f"{made} lacks {wanted}")
     if "-py3-none-manylinux" not in made:
@@ -67,8 +68,12 @@ def main():
     bare = work / "bare"
     venv.create(bare, with_pip=True, clear=True)
     call(bare / "bin/python", "-m", "pip", "install", "-q", made, check=True)
-    inside = call("ldd", next(bare.glob("lib/python3*/site-packages/libmps/libmps.so.*")), capture_output=True, text=True)
-    outside = [line.split()[0] for line in inside.stdout.splitlines() if "=> /" in line and "site-packages" not in line]
+    package = next(bare.glob("lib/python3*/site-packages/libmps"))
+    binaries = [*package.glob("libmps.so.*"), *package.glob("libmps-*/*.so")]
+    if len(binaries) < 2:
+        sys.exit(f"the modules for HDF5 and meshes are missing: {binaries}")
+    inside = "".join(call("ldd", binary, capture_output=True, text=True).stdout for binary in binaries)
+    outside = [line.split()[0] for line in inside.splitlines() if ("=> /" in line or "not found" in line) and "site-packages" not in line]
     system = ("libc.so", "libm.so", "libpthread", "libdl", "librt", "libgcc_s", "libstdc++", "libresolv", "libz.so",
               "libexpat", "ld-linux", "libutil")
     strangers = [name for name in outside if not name.startswith(system)]
