@@ -14,6 +14,7 @@
  * times the ratio of the latter to the former. SPDX-License-Identifier: BSD-3-Clause */
 #include "waves_private.h"
 
+#include <lapacke.h>
 #include <string.h>
 
 #define STEPS 12 /* of the height */
@@ -78,31 +79,13 @@ static void equations(stream *s) {
   s->residual[UNKNOWNS - 1] = z[Q] * z[K] - s->omega;
 }
 
-/* Gauss's elimination with pivots; the solution is in `residual`. */
+/* The change of Newton's method takes the place of the residual. The rows of J are LAPACK's
+ * columns. */
 static bool eliminate(stream *s) {
-  for (int c = 0; c < UNKNOWNS; c++) {
-    int best = c;
-    for (int r = c + 1; r < UNKNOWNS; r++)
-      if (fabs(s->J[r][c]) > fabs(s->J[best][c])) best = r;
-    if (!(fabs(s->J[best][c]) > 1e-300)) return false;
-    for (int q = c; q < UNKNOWNS; q++) {
-      const double keep = s->J[c][q];
-      s->J[c][q] = s->J[best][q], s->J[best][q] = keep;
-    }
-    const double keep = s->residual[c];
-    s->residual[c] = s->residual[best], s->residual[best] = keep;
-    for (int r = c + 1; r < UNKNOWNS; r++) {
-      const double f = s->J[r][c] / s->J[c][c];
-      if (f == 0.0) continue;
-      for (int q = c; q < UNKNOWNS; q++) s->J[r][q] -= f * s->J[c][q];
-      s->residual[r] -= f * s->residual[c];
-    }
-  }
-  for (int c = UNKNOWNS - 1; c >= 0; c--) {
-    for (int q = c + 1; q < UNKNOWNS; q++) s->residual[c] -= s->J[c][q] * s->residual[q];
-    s->residual[c] /= s->J[c][c];
-  }
-  return true;
+  lapack_int pivot[UNKNOWNS];
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, UNKNOWNS, UNKNOWNS, s->J[0], UNKNOWNS, pivot) == 0 &&
+         LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', UNKNOWNS, 1, s->J[0], UNKNOWNS, pivot,
+                             s->residual, UNKNOWNS) == 0;
 }
 
 static bool solve(stream *s) {

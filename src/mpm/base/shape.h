@@ -40,6 +40,15 @@ typedef struct mpsi_foot_weights {
 /* Inverse of the second moment of a full stencil. */
 MPSI_INLINE double mpsi_inverse_moment(int spline) { return spline == 3 ? 3.0 : 4.0; }
 
+/* Value of the B-spline s cells from its middle. */
+MPSI_INLINE double mpsi_spline_at(int spline, double s) {
+  s = fabs(s);
+  if (spline == 2) return s < 0.5 ? 0.75 - s * s : s < 1.5 ? 0.5 * (1.5 - s) * (1.5 - s) : 0.0;
+  return s < 1.0   ? 2.0 / 3.0 - s * s + 0.5 * s * s * s
+         : s < 2.0 ? (2.0 - s) * (2.0 - s) * (2.0 - s) / 6.0
+                   : 0.0;
+}
+
 /* B-spline weights along one axis of a particle t cells from the lowest node. */
 MPSI_INLINE void mpsi_weights(int spline, double t, double *w) {
   const double f = t - 1.0;

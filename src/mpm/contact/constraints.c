@@ -258,14 +258,6 @@ static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
   return true;
 }
 
-/* Value of the B-spline r cells from its middle. */
-static double spline_at(int spline, double r) {
-  r = fabs(r);
-  if (spline == 2) return r < 0.5 ? 0.75 - r * r : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0;
-  if (r < 1.0) return 2.0 / 3.0 - r * r + 0.5 * r * r * r;
-  return r < 2.0 ? (2.0 - r) * (2.0 - r) * (2.0 - r) / 6.0 : 0.0;
-}
-
 /* Solution q of the moment equations M q = (1, 0, 0), M positive definite; false where the nodes
  * hardly determine it. */
 static bool solve_moments(double (*M)[4], double *q) {
@@ -295,7 +287,7 @@ static void fit_at_point(const mpsi_transfer *work, const double *x, mpsi_foot_w
     double node[3];
     mpsi_node_position(grid, work->cells->at, local, node);
     for (int c = 0; c < 2; c++) r[s][c] = (node[c] - x[c]) * grid->inverse;
-    w[s] = spline_at(grid->spline, r[s][0]) * spline_at(grid->spline, r[s][1]);
+    w[s] = mpsi_spline_at(grid->spline, r[s][0]) * mpsi_spline_at(grid->spline, r[s][1]);
     const double base[3] = {1.0, r[s][0], r[s][1]};
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) M[i][j] += w[s] * base[i] * base[j];

@@ -152,15 +152,6 @@ static int64_t first_from(const near *list, const int64_t *cell) {
   return low;
 }
 
-/* B-spline at the distance of s cells. */
-static double spline_at(int32_t degree, double s) {
-  s = fabs(s);
-  if (degree == 2) return s < 0.5 ? 0.75 - s * s : s < 1.5 ? 0.5 * (1.5 - s) * (1.5 - s) : 0.0;
-  return s < 1.0   ? 2.0 / 3.0 - s * s + 0.5 * s * s * s
-         : s < 2.0 ? (2.0 - s) * (2.0 - s) * (2.0 - s) / 6.0
-                   : 0.0;
-}
-
 /* ---- one point ------------------------------------------------------------------------------- */
 
 /* Weighted sums over the particles about a point: positions in cells from it. */
@@ -189,7 +180,7 @@ static void for_particles(fit *f, particle_fn add, void *data) {
         double w = 1.0, s[3] = {0.0};
         for (int c = 0; c < mpm->grid.dim; c++) {
           s[c] = mpsi_grid_at(&mpm->grid, c, list->row[at->index].value[c]) - f->X[c];
-          w *= spline_at(mpm->grid.spline, s[c]);
+          w *= mpsi_spline_at(mpm->grid.spline, s[c]);
         }
         if (w > 0.0) add(f, at->index, w, s, data);
       }
