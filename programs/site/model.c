@@ -196,7 +196,7 @@ static bool choose_cells(simulation *sim) {
   double slowest = INFINITY, h = s->h;
   for (int64_t i = 0; i < g->count; i++) slowest = fmin(slowest, g->layer[i].vs);
   sim->height = site_thickness(g);
-  if (isnan(h)) h = slowest / (SITE_PER_WAVE * s->highest);
+  if (isnan(h)) h = slowest / (SITE_PER_WAVE * sim->highest);
   const double cells = fmax(ceil(sim->height / h - 1e-9), 2.0);
   if (cells > SITE_ROWS / 2 - SITE_CELLS)
     return site_refuse(
@@ -218,26 +218,44 @@ static bool choose_cells(simulation *sim) {
   return true;
 }
 
+static void find_water(simulation *sim) {
+  const site_ground *g = &sim->ground;
+  for (int64_t i = 0; i < g->count; i++)
+    sim->flows = sim->flows || !isnan(g->layer[i].permeability);
+  sim->wet = sim->flows || sim->s.undrained;
+  for (int64_t i = 0; i < g->count; i++)
+    sim->liquefies = sim->liquefies || (sim->wet && g->layer[i].law == SITE_CYCLIC_SAND);
+}
+
+/* The default of --max-frequency. Layers that yield stick and slip, and their accelerations have
+ * more of high frequencies; liquefied sand carries none. */
+static void choose_frequency(simulation *sim) {
+  const site_ground *g = &sim->ground;
+  const settings *s = &sim->s;
+  bool yields = false;
+  for (int64_t i = 0; i < g->count; i++) yields = yields || g->layer[i].law != SITE_ELASTIC;
+  sim->highest = yields && !sim->liquefies ? SITE_FREQUENCY_YIELDING : SITE_FREQUENCY;
+  if (site_is_pulse(s)) sim->highest = fmax(sim->highest, s->frequency);
+  if (!isnan(s->highest)) sim->highest = s->highest;
+}
+
 /* Everything from files. */
 static mps_status read_input(mps_context *context, simulation *sim) {
   if (sim->m.a->domain) {
     site_refuse(&sim->m, "the columns of free-field sides are for one process");
     return MPS_ERROR_ARGUMENT;
   }
-  if (!site_read_ground(&sim->m, &sim->s, &sim->ground) || !choose_cells(sim))
-    return MPS_ERROR_ARGUMENT;
+  if (!site_read_ground(&sim->m, &sim->s, &sim->ground)) return MPS_ERROR_ARGUMENT;
+  find_water(sim);
+  choose_frequency(sim);
+  if (!choose_cells(sim)) return MPS_ERROR_ARGUMENT;
   return site_make_motion(context, sim);
 }
 
 /* What follows from ground and motion. */
 static bool complete(simulation *sim) {
   const settings *s = &sim->s;
-  for (int64_t i = 0; i < sim->ground.count; i++)
-    sim->flows = sim->flows || !isnan(sim->ground.layer[i].permeability);
-  sim->wet = sim->flows || s->undrained;
-  for (int64_t i = 0; i < sim->ground.count; i++)
-    sim->liquefies = sim->liquefies || (sim->wet && sim->ground.layer[i].law == SITE_CYCLIC_SAND);
-  sim->flip_time = !isnan(s->flip_time) ? s->flip_time : sim->liquefies ? 0.0 : 1.0 / s->highest;
+  sim->flip_time = !isnan(s->flip_time) ? s->flip_time : sim->liquefies ? 0.0 : 1.0 / sim->highest;
   sim->volumetric = s->volumetric == MPS_MPM_VOLUMETRIC_BY_LAW && sim->wet
                         ? MPS_MPM_VOLUMETRIC_POINT
                         : s->volumetric;

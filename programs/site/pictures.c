@@ -9,8 +9,8 @@
 static bool draw_surface(app *a, const simulation *sim, bool exact) {
   return plot_draw(a, sim->s.out, "surface", "site/surface",
                    "end = %.9g; outcrop = %d; highest = %.9g; long = %d; exact = %d",
-                   sim->sample[sim->count - 1].t, sim->s.base != SITE_RIGID, sim->s.highest,
-                   sim->duration * sim->s.highest >= 2.0, exact);
+                   sim->sample[sim->count - 1].t, sim->s.base != SITE_RIGID, sim->highest,
+                   sim->duration * sim->highest >= 2.0, exact);
 }
 
 static bool draw_profile(app *a, const simulation *sim) {

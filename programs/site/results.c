@@ -56,7 +56,7 @@ static bool make_series(app *a, const simulation *sim, site_series *out) {
 /* ---- spectra --------------------------------------------------------------------------------- */
 
 static void find_response(const simulation *sim, findings *f) {
-  const double shortest = 0.5 / sim->s.highest, longest = fmax(4.0, 8.0 * shortest);
+  const double shortest = 0.5 / sim->highest, longest = fmax(4.0, 8.0 * shortest);
   for (int k = 0; k < SITE_PERIODS; k++) {
     const double T = shortest * pow(longest / shortest, (double)k / (SITE_PERIODS - 1));
     f->period[k] = T;
@@ -117,7 +117,7 @@ static comparison compare_layers(const simulation *sim, const findings *f) {
 }
 
 static void find_amplification(const simulation *sim, findings *f) {
-  site_transform(&f->series, sim->s.highest, &f->fourier);
+  site_transform(&f->series, sim->highest, &f->fourier);
   for (int64_t k = 0; k < f->fourier.count; k++)
     f->fourier.exact[k] = site_exact(sim, (double)(k + 1) * f->fourier.step);
   site_smooth(&f->fourier);

@@ -12,6 +12,8 @@
 
 #include <mps/signal.h>
 
+#define SITE_FREQUENCY 10.0          /* Hz: default of the highest one */
+#define SITE_FREQUENCY_YIELDING 20.0 /* of layers that yield */
 enum { SITE_ELASTIC, SITE_SMALL_STRAIN, SITE_MOHR_COULOMB, SITE_CYCLIC_SAND, SITE_LAWS };
 enum { SITE_COMPLIANT, SITE_RIGID };
 enum { SITE_LAYERS = 100, SITE_ROWS = 4000, SITE_SAMPLES = 400000, SITE_CELLS = 4 };
@@ -46,7 +48,7 @@ typedef struct settings {
   double scale, step, frequency, amplitude;
   int64_t cycles;
   double courant;
-  double h, highest, flip_time; /* m, Hz, s */
+  double h, highest, flip_time; /* m, Hz, s; NaN: not given */
   double sample, duration;      /* s */
   double damping;               /* 1/s, viscous */
   double permeability, porosity, bulk;
@@ -89,6 +91,7 @@ typedef struct simulation {
   double spacing, duration; /* m, s */
   double start; /* s, of the solver where the motion begins, after the ground has come to rest */
   double record_end, record_peak; /* s, m/s2 */
+  double highest;                 /* Hz: --max-frequency or its default */
   bool wet, flows, liquefies;     /* liquefies: some saturated cyclic sand */
   int64_t rows, across, loop_row; /* of particles; in a row; -1: none */
   int64_t samples, count;         /* in all, recorded so far */
@@ -98,6 +101,7 @@ typedef struct simulation {
 
 /* options.c: completes the settings; why they are not consistent, NULL: good. */
 const char *site_settle(settings *s, const option *table);
+bool site_is_pulse(const settings *s); /* no record of a file */
 
 /* Writes the reason why the model is not made; returns false. */
 bool site_refuse(mpm_model *m, const char *format, ...) APP_PRINTF(2, 3);
