@@ -68,26 +68,13 @@ static bool write(app *a, const simulation *sim) {
 
 static bool draw(app *a, const simulation *sim) {
   const settings *s = &sim->s;
-  output f;
-  if (!plot_open(&f, a, s->out, "section", 800, 720)) return false;
-  output_text(&f,
-              "set title \"Stresses at x = %g m after a settlement of %.3g mm\\n{/*0.85 %s, half "
-              "width %g m, h = %g m}\"\nset xlabel 'stress, compression positive (kPa)'\n"
-              "set ylabel 'depth (m)'\nset yrange [%.9g:0]\n",
-              s->section, 1e3 * footing_row_of(sim, footing_rows(sim) - 1)->path,
-              s->shape == STRIP ? "strip" : "circle", s->half_width, s->h, s->depth);
-  plot_key_below(&f);
-  output_text(&f, "plot 'section.csv' every ::1 using 2:1 with lines linewidth 2 linecolor rgb "
-                  "'#1f4e8c' title 'vertical', \\\n"
-                  "  '' every ::1 using 3:1 with lines linewidth 2 linecolor rgb '#2e8b57' title "
-                  "'horizontal', \\\n"
-                  "  '' every ::1 using 4:1 with lines linewidth 2 linecolor rgb '#c0392b' title "
-                  "'shear'");
-  if (s->shape == STRIP)
-    output_text(&f, ", \\\n  '' every ::1 using 6:1 with lines dashtype '--' linecolor rgb "
-                    "'#1f4e8c' title 'vertical, elastic half space'");
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "section");
+  return plot_draw(a, s->out, "section", "footing/section",
+                   "first = 'Stresses at x = %g m after a settlement of %.3g mm'\nsecond = '%s, "
+                   "half width %g m, "
+                   "h = %g m'\ndepth = %.9g; strip = %d",
+                   s->section, 1e3 * footing_row_of(sim, footing_rows(sim) - 1)->path,
+                   s->shape == STRIP ? "strip" : "circle", s->half_width, s->h, s->depth,
+                   s->shape == STRIP);
 }
 
 bool footing_write_section(app *a, const simulation *sim) {
