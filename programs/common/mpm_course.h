@@ -15,8 +15,6 @@ typedef struct mpm_course_options {
   const char *checkpoint, *restart;
   double every_checkpoint; /* s; NaN: a tenth of the run */
 } mpm_course_options;
-#define MPM_COURSE_DEFAULTS                                                                        \
-  { .every_checkpoint = NAN }
 #define MPM_COURSE_OPTIONS(o, most)                                                                \
   OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, most), &(o)->frames, NULL),                      \
       RESUME_OPTIONS(&(o)->checkpoint, &(o)->every_checkpoint, "default a tenth of the run",       \

@@ -490,13 +490,25 @@ bool options_word(int k, char *out, size_t size) {
   return true;
 }
 
+/* That of the row; results go to out/PROGRAM without its "mps-". */
+static void set_default(const options_program *program, option *o) {
+  static char out[MAX_NAME + 8];
+  for (int k = 0; o->number && k < (o->count > 1 ? o->count : 1); k++)
+    if (o->number[k] == 0.0) o->number[k] = o->standard;
+  if (o->integer && *o->integer == 0) *o->integer = (int64_t)o->standard;
+  if (o->choice && *o->choice == 0) *o->choice = (int)o->standard;
+  o->usual = o->number && o->count < 2 ? *o->number : 0.0;
+  if (!o->text || *o->text || strcmp(o->name, "out") != 0) return;
+  snprintf(out, sizeof out, "out/%s", program->name + 4 * (strncmp(program->name, "mps-", 4) == 0));
+  *o->text = out;
+}
+
 int options_parse(const options_program *program, int argc, char **argv) {
   const char *name = "";
   typed.count = argc, typed.word = argv;
   ranks_hush();
   ranks_keep_options(argc, argv);
-  for (option *o = program->table; o->name || o->help; o++)
-    o->usual = o->number && o->count < 2 ? *o->number : 0.0;
+  for (option *o = program->table; o->name || o->help; o++) set_default(program, o);
   const char *fault = vocabulary_complete(program->table, &name);
   if (fault) {
     complain("%s: --%s is %s", program->name, name, fault);

@@ -64,8 +64,8 @@ resume resume_of_fluid(const char *key, const option *table, void (*pass)(void *
 
 /* Rows of a program's table of options. */
 #define RESUME_OPTIONS(checkpoint, every, note, restart)                                           \
-  OPTION_TEXT("checkpoint", checkpoint, NULL), OPTION_NUMBER("every-checkpoint", every, note),     \
-      OPTION_TEXT("restart", restart, NULL)
+  OPTION_TEXT("checkpoint", checkpoint, NULL),                                                     \
+      OPTION_NUMBER("every-checkpoint", every, note, NAN), OPTION_TEXT("restart", restart, NULL)
 
 /* The files of a run, before it begins, by one rule for all programs. A restarted run replaces no
  * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,
