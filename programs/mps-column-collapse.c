@@ -216,16 +216,12 @@ static void name_course(simulation *sim) {
     snprintf(what, sizeof what, "column_%s", c->name);
   else
     snprintf(what, sizeof what, "column");
-  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost, /* warned once for all columns */
-                             .options = &sim->s.course,
-                             .m = &sim->m,
-                             .directory = sim->s.out,
-                             .what = what,
-                             .duration = case_end(&sim->s, c),
-                             .key = "mps-column-collapse 2",
-                             .table = options_read(),
-                             .pass = pass,
-                             .user = sim};
+  const bool lost = sim->course.saves.lost; /* warned once for all columns */
+  sim->course =
+      mpm_course_of(&sim->s.course, &sim->m, sim->s.out, "mps-column-collapse 2", pass, sim);
+  sim->course.what = what;
+  sim->course.duration = case_end(&sim->s, c);
+  sim->course.saves.lost = lost;
 }
 
 static mps_status build(mps_context *context, void *user) {
@@ -442,7 +438,7 @@ static void summarise(output *f, const simulation *sim) {
   }
   const comparison far = compare_runout(s, c), high = compare_height(s, c);
   json_integer(f, "columns", sim->count);
-  JSON_NUMBERS(f, {"h", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
+  JSON_NUMBERS(f, {"cell", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
                {"runout", runout(s, c)});
   json_comparison(f, "runout_law", &far);
   JSON_NUMBERS(f, {"runout_error", compare_error(&far)}, {"runout_error_worst", worst},

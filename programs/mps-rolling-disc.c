@@ -135,14 +135,10 @@ static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   static const rows_column columns[] = {{"x", "m", 0}, {"v", "m/s", 0}, {"omega", "rad/s", 0}, {0}};
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = s->body == BODY_SLOPE ? "disc" : "slope",
-                             .duration = s->duration,
-                             .key = "mps-rolling-disc 2",
-                             .table = options_read(),
-                             .columns = columns};
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-rolling-disc 2", NULL, NULL);
+  sim->course.what = s->body == BODY_SLOPE ? "disc" : "slope";
+  sim->course.duration = s->duration;
+  sim->course.columns = columns;
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -317,11 +313,10 @@ static bool finish(app *a, void *user) {
   output f;
   if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
-  JSON_NUMBERS(&f, {"h", s->h}, {"mu", s->mu}, {"x", x});
+  JSON_NUMBERS(&f, {"cell", s->h}, {"mu", s->mu}, {"x", x});
   json_comparison(&f, "x_theory", &path);
   json_number(&f, "x_error_05", compare_error(&path)); /* at the end */
-  json_number_if(&f, !isnan(worst_at), "x_error_worst", worst);
-  json_number(&f, "omega_ratio", ratio);
+  JSON_NUMBERS(&f, {"x_error_worst", !isnan(worst_at) ? worst : NAN}, {"omega_ratio", ratio});
   json_end(&f);
   if (!output_close(&f) || !draw(a, s)) return false;
   app_tell_results(a, s->out);

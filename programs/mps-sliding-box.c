@@ -137,14 +137,10 @@ static mps_status build(mps_context *context, void *user) {
   const settings *s = &sim->s;
   static const rows_column columns[] = {
       {"Fx", "N/m", 0}, {"Fy", "N/m", 0}, {"impulse", "N s/m", 2}, {0}};
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = "block",
-                             .duration = T_END,
-                             .key = "mps-sliding-box 2",
-                             .table = options_read(),
-                             .columns = columns};
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-sliding-box 2", NULL, NULL);
+  sim->course.what = "block";
+  sim->course.duration = T_END;
+  sim->course.columns = columns;
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = fill(context, s, &sim->m.particles);
   if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
@@ -239,7 +235,7 @@ static bool finish(app *a, void *user) {
   if (count > 0) fx /= count, fy /= count; /* none: the run ended before */
   output f;
   if (!write_forces(a, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
   const comparison force = compare_force(s, count > 0 ? fy : NAN, smooth);
   json_comparison(&f, "Fy_smooth", &force);

@@ -147,8 +147,8 @@ static bool open_case(output *out, app *a, const settings *s, const stability_ca
     json_comparison(&f, "dt_linear", &linear);
   else
     json_number(&f, "dt_linear", NAN);
-  json_number_if(&f, known, "dt_stepping", x->stepping);
-  json_number_if(&f, known, "dt_stepping_unstable", x->unstable);
+  JSON_NUMBERS(&f, {"dt_stepping", known ? x->stepping : NAN},
+               {"dt_stepping_unstable", known ? x->unstable : NAN});
   if (known)
     json_comparison(&f, "dt_table2", &table2);
   else

@@ -120,11 +120,9 @@ static coefficients divide(const settings *s, double q) {
 static bool write_rows(app *a, const settings *s, const char *name, const footing_row *row,
                        int count) {
   output f;
-  if (!output_open(&f, a, s->out, name)) return false;
-  csv_header(&f, "settlement_mm,q_kPa,q_over_c?");
+  if (!csv_open(&f, a, s->out, name, "settlement_mm,q_kPa,q_over_c?")) return false;
   for (int k = 0; k < count; k++) {
-    const double line[] = {row[k].path * 1e3, row[k].q * 1e-3, divide(s, row[k].q).c};
-    csv_row(&f, 3, line);
+    CSV_LINE(&f, row[k].path * 1e3, row[k].q * 1e-3, divide(s, row[k].q).c);
   }
   return output_close(&f);
 }
@@ -150,8 +148,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
   json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
-  json_number(&f, "h", s->h);
-  json_number(&f, "flip_time", s->flip_time);
+  JSON_NUMBERS(&f, {"cell", s->h}, {"flip_time", s->flip_time});
   sand_write(&f, &s->voids, s->model == DRUCKER_PRAGER ? s->psi : 0.0);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
@@ -166,17 +163,13 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   const coefficients n = divide(s, c->last);
   json_number(&f, "q", c->last);
   json_comparison(&f, "q_exact", &c->limit);
-  json_number(&f, "q_exact_smooth", c->limits.smooth);
-  json_number(&f, "q_exact_rough", c->limits.rough);
-  json_number(&f, "q_davis", c->limits.davis);
-  json_number(&f, "q_deformed", c->deformed);
-  json_number(&f, "young_undeformed", s->pace[FOOTING_UNDEFORMED].young);
-  json_number(&f, "rate_undeformed", s->pace[FOOTING_UNDEFORMED].rate);
-  json_number(&f, "q_over_c", n.c);
-  json_number(&f, "q_over_c_undeformed", divide(s, c->undeformed).c);
-  json_number(&f, "q_over_c_per_mm", divide(s, c->slope).c);
-  json_number(&f, "q_over_surcharge", n.q);
-  json_number(&f, "q_over_weight", n.gamma);
+  JSON_NUMBERS(&f, {"q_exact_smooth", c->limits.smooth}, {"q_exact_rough", c->limits.rough},
+               {"q_davis", c->limits.davis}, {"q_deformed", c->deformed},
+               {"young_undeformed", s->pace[FOOTING_UNDEFORMED].young},
+               {"rate_undeformed", s->pace[FOOTING_UNDEFORMED].rate}, {"q_over_c", n.c},
+               {"q_over_c_undeformed", divide(s, c->undeformed).c},
+               {"q_over_c_per_mm", divide(s, c->slope).c}, {"q_over_surcharge", n.q},
+               {"q_over_weight", n.gamma});
   json_end(&f);
   return output_close(&f);
 }

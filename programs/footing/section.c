@@ -48,20 +48,16 @@ static bool write(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double q = footing_row_of(sim, footing_rows(sim) - 1)->q;
   output f;
-  if (!output_open(&f, a, s->out, "section.csv")) return false;
-  csv_header(&f, "depth_m,vertical_kPa?,horizontal_kPa?,shear_kPa?,plastic_strain?,elastic_kPa?");
+  if (!csv_open(&f, a, s->out, "section.csv",
+                "depth_m,vertical_kPa?,horizontal_kPa?,shear_kPa?,plastic_strain?,elastic_kPa?"))
+    return false;
   for (int64_t k = 0; k < sim->points; k++) {
     const double *stress = sim->profile + 3 * sim->points + STRESSES * k;
     const double depth = s->depth - sim->profile[3 * k + 1];
-    const double row[] = {depth,
-                          -1e-3 * stress[1],
-                          -1e-3 * stress[0],
-                          1e-3 * stress[3],
-                          sim->profile[(3 + STRESSES) * sim->points + k],
-                          s->shape == STRIP
-                              ? 1e-3 * (boussinesq(s, q, depth) + s->density * s->gravity * depth)
-                              : NAN};
-    csv_row(&f, 6, row);
+    CSV_LINE(&f, depth, -1e-3 * stress[1], -1e-3 * stress[0], 1e-3 * stress[3],
+             sim->profile[(3 + STRESSES) * sim->points + k],
+             s->shape == STRIP ? 1e-3 * (boussinesq(s, q, depth) + s->density * s->gravity * depth)
+                               : NAN);
   }
   return output_close(&f);
 }

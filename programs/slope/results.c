@@ -52,33 +52,27 @@ static comparison compare_circles(const simulation *sim, slope_circle *circle) {
 static bool write_trials(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "trials.csv")) return false;
-  csv_header(&f, "trial,factor,phi_deg,cohesion_Pa,moved_over_height,t_s,failed,speed?");
+  if (!csv_open(&f, a, s->out, "trials.csv",
+                "trial,factor,phi_deg,cohesion_Pa,moved_over_height,t_s,failed,speed?"))
+    return false;
   for (int k = 0; k < ended(sim); k++) {
     const trial *t = &sim->trial[k];
     const double degree = 180.0 / 3.14159265358979323846;
-    const double row[] = {k + 1.0,
-                          t->factor,
-                          atan(tan(s->phi / degree) / t->factor) * degree,
-                          s->cohesion / t->factor,
-                          t->moved[t->rows - 1] / s->height,
-                          t->t[t->rows - 1],
-                          t->failed,
-                          s->runout ? NAN : slope_speed(s, t, (int)fmin(6, t->rows - 1))};
-    csv_row(&f, 8, row);
+    CSV_LINE(&f, k + 1.0, t->factor, atan(tan(s->phi / degree) / t->factor) * degree,
+             s->cohesion / t->factor, t->moved[t->rows - 1] / s->height, t->t[t->rows - 1],
+             t->failed, s->runout ? NAN : slope_speed(s, t, (int)fmin(6, t->rows - 1)));
   }
   return output_close(&f);
 }
 
 static bool write_motion(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "motion.csv")) return false;
-  csv_header(&f, "trial,factor,t_s,moved_over_height");
+  if (!csv_open(&f, a, sim->s.out, "motion.csv", "trial,factor,t_s,moved_over_height"))
+    return false;
   for (int k = 0; k <= sim->now; k++) {
     const trial *t = &sim->trial[k];
     for (int i = 0; i < t->rows; i++) {
-      const double row[] = {k + 1.0, t->factor, t->t[i], t->moved[i] / sim->s.height};
-      csv_row(&f, 4, row);
+      CSV_LINE(&f, k + 1.0, t->factor, t->t[i], t->moved[i] / sim->s.height);
     }
   }
   return output_close(&f);
@@ -91,28 +85,26 @@ static bool write_summary(app *a, const simulation *sim) {
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   slope_bracket(sim, ended(sim), &stands, &fails);
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   sand_write(&f, &s->voids, s->psi);
   json_number(&f, "c_over_gamma_H", s->cohesion / (s->density * s->gravity * s->height));
   json_integer(&f, "trials", ended(sim));
-  json_number(&f, "factor_of_safety", factor);
-  json_number_if(&f, stands > 0.0, "stands", stands);
-  json_number(&f, "fails", fails);
-  json_number(&f, "young", slope_young(s));
-  json_number(&f, "flows", s->runout ? NAN : SLOPE_FLOWS);
-  json_number(&f, "stability_number", stability_number(s, factor));
-  json_number_if(&f, slope_pool(s) > 0.0, "pool", slope_pool(s));
+  JSON_NUMBERS(&f, {"factor_of_safety", factor}, {"stands", stands > 0.0 ? stands : NAN},
+               {"fails", fails}, {"young", slope_young(s)},
+               {"flows", s->runout ? NAN : SLOPE_FLOWS},
+               {"stability_number", stability_number(s, factor)},
+               {"pool", slope_pool(s) > 0.0 ? slope_pool(s) : NAN});
   slope_circle circle, pole;
   const comparison spirals = compare_spirals(sim, &pole), circles = compare_circles(sim, &circle);
   const bool fails_so = compare_holds(&circles);
   json_comparison(&f, "log_spirals", &spirals);
   json_number(&f, "log_spirals_davis", davis_factor(s));
   json_comparison(&f, "slip_circles", &circles);
-  json_number_if(&f, fails_so, "circle_x", circle.x + s->crest);
-  json_number_if(&f, fails_so, "circle_y", circle.y + s->base);
-  json_number_if(&f, fails_so, "circle_radius", circle.radius);
-  json_number_if(&f, s->runout && ended(sim) > 0, "runout", sim->front);
-  json_number_if(&f, s->runout && ended(sim) > 0, "lost_behind_crest", sim->lost);
+  JSON_NUMBERS(&f, {"circle_x", fails_so ? circle.x + s->crest : NAN},
+               {"circle_y", fails_so ? circle.y + s->base : NAN},
+               {"circle_radius", fails_so ? circle.radius : NAN},
+               {"runout", s->runout && ended(sim) > 0 ? sim->front : NAN},
+               {"lost_behind_crest", s->runout && ended(sim) > 0 ? sim->lost : NAN});
   json_end(&f);
   return output_close(&f);
 }

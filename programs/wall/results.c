@@ -174,7 +174,7 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   const settings *s = &sim->s;
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   sand_write(&f, &s->voids, largest_dilation(s));
   JSON_NUMBERS(&f, {"flip_time", s->flip_time}, {"K", p->across}, {"K_along", p->along},
                {"K_resultant", hypot(p->across, p->along)}, {"force_height", p->height});
