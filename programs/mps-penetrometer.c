@@ -1,5 +1,5 @@
-/* mps-penetrometer - a cone, a sphere or a mesh pushed into clay, sand or elastic ground, in space
- * and, to compare, by the axisymmetric solver.
+/* mps-penetrometer - a cone, a sphere or a mesh pushed into clay, sand or elastic ground,
+ * about an axis or in space.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer/penetrometer.h"
 
@@ -19,8 +19,11 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("adhesion", &s->alpha, "no bound if not given", NAN),
       MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("corner", &s->corner, "with --inset 0", 0.6),
-      OPTION_NUMBER("inset", &s->inset, "--axisymmetric; default 0.6, sand 0.75, elastic 0", NAN),
-      OPTION_NUMBER("depth", &s->depth, "of the lowest point, where the run ends", 0.15),
+      OPTION_NUMBER("inset", &s->inset, "--symmetry axial; default 0.6, sand 0.75, elastic 0", NAN),
+      OPTION_NUMBER("depth", &s->depth,
+                    "of the lowest point, where the run ends; default 1.5 diameters; "
+                    "a cone in clay, without --start and --soil too, from 4 to 5.7",
+                    NAN),
       OPTION_NUMBER("start", &s->start, NULL),
       OPTION_NUMBER("rate", &s->rate, NULL, 0.25),
       OPTION_HEADING("Soil"),
@@ -28,14 +31,14 @@ int main(int argc, char **argv) {
                        "von Mises, Drucker-Prager (inscribed cone), linear elastic, Tresca, "
                        "modified Cam-Clay with water in its pores"),
       OPTION_TEXT_OF("soil", "WxWxH", &s->soil,
-                     "width, breadth and depth; default 6x6x4 diameters"),
+                     "width, breadth and depth; default 6x6x4 diameters, of the deep cone 12x12x9"),
       OPTION_NUMBER("cohesion", &s->cohesion, "of clay, tresca; of sand, default 0", 10e3),
       OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 60.0), &s->phi, "of sand", 35.0),
       OPTION_NUMBER("psi", &s->psi, "of sand"),
       OPTION_NUMBER("emax", &s->e_max, "of sand", SAND_E_MAX),
       OPTION_NUMBER("young", &s->young, NULL, 2.8e6),
       OPTION_NUMBER("poisson", &s->poisson, "of mcc, default 0.25; with --ir else 0.49", 0.4),
-      OPTION_NUMBER("ir", &s->ir, NULL, NAN),
+      OPTION_NUMBER("ir", &s->ir, "default 100 of the deep cone", NAN),
       OPTION_NUMBER("M", &s->M, NULL, 0.92),
       OPTION_NUMBER("lambda", &s->lambda, NULL, 0.205),
       OPTION_NUMBER("kappa", &s->kappa, NULL, 0.044),
@@ -52,7 +55,9 @@ int main(int argc, char **argv) {
       OPTION_CHOICE_OF("sides", "roller|free", &s->sides,
                        "they stay, or move with ground that has no stress at rest"),
       OPTION_HEADING("Grid"),
-      OPTION_CHOICE_OF("symmetry", "quarter|whole", &s->model, NULL),
+      OPTION_CHOICE_OF("symmetry", "axial|quarter|whole", &s->model,
+                       "axial: a cylinder with the section of --soil; --tip stl and "
+                       "--also-axisymmetric ask for space"),
       OPTION_NUMBER("cell", &s->h, NULL, 0.0125),
       OPTION_INTEGER_IN("ppc", OPTION_FROM_TO(1.0, 64.0), &s->ppc,
                         "in space a cube: 1, 8, 27 or 64", 8),
@@ -62,15 +67,14 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("flip-time", &s->flip_time,
                     "default diameter/(40 rate) in clay, tresca and sand, else 0", NAN),
       OPTION_HEADING("Run"),
-      OPTION_FLAG("axisymmetric", &s->axisymmetric,
-                  "in a cylinder with the section of --soil, in place of space"),
       OPTION_FLAG("also-axisymmetric", &s->both, NULL),
       MPM_COURSE_OPTIONS(&s->course, 200),
       OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
       "mps-penetrometer",
-      "A rigid cone, sphere or mesh pushed into soil (WLS-MPM in space; von Mises, Tresca,\n"
+      "A rigid cone, sphere or mesh pushed into soil (WLS-MPM about an axis or in space; Tresca, "
+      "von Mises,\n"
       "Drucker-Prager, Cam-Clay or elastic): its resistance by tip and shaft along the path,\n"
       "and the soil in section.",
       table};

@@ -48,10 +48,10 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("flip-time", &s->flip_time, "default: by the cell and the wave speed", NAN),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("rest", &s->rest, NULL),
-      OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 1000.0), &s->frames,
+      OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 1000.0), &s->course.frames,
                         "at equal steps of depth; as many tables, and up to 4 in pictures", 4),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a tenth of the run",
-                     &s->restart),
+      RESUME_OPTIONS(&s->course.checkpoint, &s->course.every_checkpoint,
+                     "default a tenth of the run", &s->course.restart),
       OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
@@ -75,8 +75,7 @@ int main(int argc, char **argv) {
   if (!reason) reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};
-  const mpm_model_places places = {&s->out, &s->checkpoint, s->restart};
-  p.table = table;
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
   const int result = mpm_model_run(&program, s->threads, &places, &p.m, &parts, &p);
   pile_free(&p);
   return result;
