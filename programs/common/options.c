@@ -652,10 +652,19 @@ static bool recorded(const char *record, const char *name, char *out, size_t siz
   return false;
 }
 
-bool options_agree(const option *table, const char *record, char *why, size_t size) {
+/* Whether `name` is one of "a|b|c". */
+static bool is_among(const char *names, const char *name) {
+  const size_t length = strlen(name);
+  for (const char *at = names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL)
+    if (strcspn(at, "|") == length && strncmp(at, name, length) == 0) return true;
+  return false;
+}
+
+bool options_agree(const option *table, const char *record, const char *others, char *why,
+                   size_t size) {
   for (const option *o = table; o->name || o->help; o++) {
     char now[256], then[256] = "unknown";
-    if (!o->name || options_free(o->name)) continue;
+    if (!o->name || options_free(o->name) || is_among(others, o->name)) continue;
     describe_value(o, now, sizeof now);
     if (recorded(record, o->name, then, sizeof then) && strcmp(now, then) == 0) continue;
     snprintf(why, size, "--%s is %s, was %s", o->name, now, then);

@@ -104,9 +104,10 @@ bool options_free(const char *name);
 /* "name=value" lines of all other options, to be kept with a checkpoint. False when `size` is too
  * small. */
 bool options_record(const option *table, char *text, size_t size);
-/* Compares with such lines. False, and in `why` the first option that differs: "--rest is 0.2 s,
- * was 0.3". */
-bool options_agree(const option *table, const char *record, char *why, size_t size);
+/* Compares with such lines, but for `others`, "a|b" or NULL. False, and in `why` the first option
+ * that differs: "--rest is 0.2 s, was 0.3". */
+bool options_agree(const option *table, const char *record, const char *others, char *why,
+                   size_t size);
 
 /* "--young is 200 Pa: write 200kPa if that is meant": the k-th number of those read last that has
  * no unit and is far below what is usual, as one of another unit may be. False: there is none. */

@@ -15,6 +15,7 @@
 #include "app.h"
 #include "options.h"
 
+#include <mps/dynamics.h>
 #include <mps/experimental/domain.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
@@ -43,6 +44,8 @@ typedef struct resume {
   void *user;                                /* of pass */
   mps_mpm *mpm;                              /* the solver: this one */
   mps_fluid *fluid;                          /* or this */
+  mps_dynamics *dynamics;                    /* or this */
+  const char *others; /* "a|b": options that the run may go on with others of; NULL: none */
   app *a;             /* its warnings are kept too: summary.json has those of the whole run */
   mps_domain *domain; /* of several ranks: saving, peeking and restoring are collective */
 } resume;

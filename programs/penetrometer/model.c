@@ -14,7 +14,7 @@
 double pen_radius(const penetrometer *p) { return 0.5 * p->s.diameter; }
 
 double pen_shoulder(const penetrometer *p) {
-  return pen_radius(p) / tan(0.5 * p->s.angle * PEN_PI / 180.0);
+  return pen_radius(p) / tan(0.5 * p->s.angle * PUSH_PI / 180.0);
 }
 
 double pen_gap(const penetrometer *p) {
@@ -125,7 +125,7 @@ static void find_size(const penetrometer *p, pen_run *r) {
   for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(asked[c] / s->h - 1e-6);
   r->push.factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
   if (r->geometry == MPS_MPM_GEOMETRY_SPACE) return;
-  r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
+  r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PUSH_PI) / s->h);
   r->size[1] = r->size[2];
   r->push.factor = 1.0;
 }

@@ -8,7 +8,6 @@
 
 #include "penetration/push.h"
 
-#define PEN_PI PUSH_PI
 #define PEN_WATER 1000.0 /* kg/m3, in pores */
 
 enum { PEN_CONE, PEN_SPHERE, PEN_STL };                             /* --tip */

@@ -28,7 +28,7 @@ static bool draw_force(app *a, const penetrometer *p) {
       "first = '%s'; second = 'diameter %g m, h = %g m, %g m/s, {/Symbol m} = %g'\nclay = %d; unit "
       "= %.9g; runs = %d; space = %d; parts = %d; hertz = %.9g; above = %d; fallen = %d",
       title_of(p), p->s.diameter, p->s.h, p->s.rate, p->s.friction, clay,
-      clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3, (int)p->runs,
+      clay ? PUSH_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3, (int)p->runs,
       p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE, p->s.tip == PEN_CONE && p->s.friction > 0.0,
       hertz ? pen_hertz(p, 1.0) : NAN, pen_reached(&p->run[0]) <= 0.0, p->s.start > 0.0);
 }

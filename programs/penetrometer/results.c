@@ -26,7 +26,7 @@ double pen_hertz(const penetrometer *p, double depth) {
   return depth > 0.0 ? 4.0 / 3.0 * stiffness * sqrt(pen_radius(p)) * pow(depth, 1.5) : 0.0;
 }
 
-static double base_area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
+static double base_area(const penetrometer *p) { return PUSH_PI * pen_radius(p) * pen_radius(p); }
 
 /* Means over the last part of the path (N); of Hertz' force too. */
 typedef struct mean {

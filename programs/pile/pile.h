@@ -10,7 +10,6 @@
 
 #define PILE_ROWS 5       /* a cell of path */
 #define PILE_GRAVITY 9.81 /* m/s2 */
-#define PILE_PI PUSH_PI
 
 typedef struct pile_settings {
   double inner_diameter, wall;        /* m */

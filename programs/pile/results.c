@@ -11,16 +11,16 @@
 /* ---- engineering estimates ------------------------------------------------------------------- */
 
 double pile_beta_shaft(const pile *p, double depth) {
-  return PILE_PI * p->outer * p->k0 * p->s.friction * p->s.density * PILE_GRAVITY * depth * depth;
+  return PUSH_PI * p->outer * p->k0 * p->s.friction * p->s.density * PILE_GRAVITY * depth * depth;
 }
 
 double pile_nq(const pile *p) {
-  const double phi = p->s.phi * PILE_PI / 180.0;
-  return exp(PILE_PI * tan(phi)) * pow(tan(0.25 * PILE_PI + 0.5 * phi), 2.0);
+  const double phi = p->s.phi * PUSH_PI / 180.0;
+  return exp(PUSH_PI * tan(phi)) * pow(tan(0.25 * PUSH_PI + 0.5 * phi), 2.0);
 }
 
 static double tip_nq(const pile *p, const push_row *row) {
-  const double base = PILE_PI * (p->outer * p->outer - p->inner * p->inner);
+  const double base = PUSH_PI * (p->outer * p->outer - p->inner * p->inner);
   if (!(row->depth > 0.0)) return NAN; /* the tip has not reached the soil */
   return row->smooth[PILE_TIP] / base / (p->s.density * PILE_GRAVITY * row->depth);
 }
