@@ -228,7 +228,7 @@ static bool draw_bands(app *a, const simulation *sim, const mpm_snapshot *shot) 
               "palette = 'blues'\n"
               "cb_least = 0; cb_most = %.9g\ncover(k) = 'set object 1 rectangle from %.9g,%.9g to "
               "%.9g,%.9g fillcolor rgb \"#888888\" fillstyle solid front'\n",
-              0.5 * mpm_snapshot_most(shot, 2), fmax(def.lower[0], -s->half_width), base[1],
+              0.25 * mpm_snapshot_most(shot, 2), fmax(def.lower[0], -s->half_width), base[1],
               s->half_width, top);
   return plot_end(&f, s->out, "shear_bands", "maps");
 }
