@@ -27,7 +27,7 @@ typedef struct pen_settings {
   double start;                 /* m, depth at the beginning; 0: above the ground */
   double alpha;                 /* of the cohesion; NaN: no bound */
   double corner, inset; /* radius of the tip's edges; how far before them faces end; cells */
-  const char *soil;     /* "WxWxD" in diameters */
+  const char *soil;     /* "WxWxH", m */
   double width, breadth, height;           /* m, what `soil` says */
   double e_max;                            /* of sand */
   double cohesion, phi, psi;               /* Pa, degrees */
