@@ -52,21 +52,18 @@ static int find_size(const options_program *program, settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.problem = {.height = 1.0, .load = 1e4},
-                  .method = elastic_settings_defaults(30e9, 0.2),
-                  .spacing = NAN,
-                  .length = NAN,
-                  .out = "out/cantilever"};
+  *s = (settings){0};
   option table[] = {
       OPTION_HEADING("Beam"),
-      OPTION_NUMBER("spacing", &s->spacing, "default a twentieth of --height"),
+      OPTION_NUMBER("spacing", &s->spacing, "default a twentieth of --height", NAN),
       OPTION_NUMBER(
           "length", &s->length,
           "from the loaded end to the wall, whole particles; default 5 times --height and half a "
-          "particle"),
-      OPTION_NUMBER("height", &s->problem.height, "of the section"),
-      ELASTIC_MATERIAL(&s->method),
-      OPTION_NUMBER("end-load", &s->problem.load, NULL),
+          "particle",
+          NAN),
+      OPTION_NUMBER("height", &s->problem.height, "of the section", 1.0),
+      ELASTIC_MATERIAL(&s->method, 30e9, 0.2),
+      OPTION_NUMBER("end-load", &s->problem.load, NULL, 1e4),
       OPTION_CHOICE_OF("support", "exact|clamp", &s->wall, NULL),
       ELASTIC_METHOD(&s->method),
       OPTION_HEADING("Running"),

@@ -216,16 +216,12 @@ static void name_course(simulation *sim) {
     snprintf(what, sizeof what, "column_%s", c->name);
   else
     snprintf(what, sizeof what, "column");
-  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost, /* warned once for all columns */
-                             .options = &sim->s.course,
-                             .m = &sim->m,
-                             .directory = sim->s.out,
-                             .what = what,
-                             .duration = case_end(&sim->s, c),
-                             .key = "mps-column-collapse 2",
-                             .table = options_read(),
-                             .pass = pass,
-                             .user = sim};
+  const bool lost = sim->course.saves.lost; /* warned once for all columns */
+  sim->course =
+      mpm_course_of(&sim->s.course, &sim->m, sim->s.out, "mps-column-collapse 2", pass, sim);
+  sim->course.what = what;
+  sim->course.duration = case_end(&sim->s, c);
+  sim->course.saves.lost = lost;
 }
 
 static mps_status build(mps_context *context, void *user) {
@@ -442,7 +438,7 @@ static void summarise(output *f, const simulation *sim) {
   }
   const comparison far = compare_runout(s, c), high = compare_height(s, c);
   json_integer(f, "columns", sim->count);
-  JSON_NUMBERS(f, {"h", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
+  JSON_NUMBERS(f, {"cell", s->h}, {"aspect", c->aspect}, {"phi", c->phi}, {"cohesion", c->cohesion},
                {"runout", runout(s, c)});
   json_comparison(f, "runout_law", &far);
   JSON_NUMBERS(f, {"runout_error", compare_error(&far)}, {"runout_error_worst", worst},
@@ -530,50 +526,36 @@ static int complete(const options_program *program, simulation *sim) {
 }
 
 int main(int argc, char **argv) {
-  static simulation sim = {.s = {.aspect = 2.0,
-                                 .width = 0.1,
-                                 .h = NAN,
-                                 .phi = 35.0,
-                                 .voids = SAND_VOIDS,
-                                 .bed_friction = NAN,
-                                 .young = 1e6,
-                                 .poisson = 0.3,
-                                 .density = 1600.0,
-                                 .falls = 8.0,
-                                 .courant = 0.5,
-                                 .ppc = 9,
-                                 .spline = 1,
-                                 .flip_time = NAN,
-                                 .course = MPM_COURSE_DEFAULTS,
-                                 .out = "out/column-collapse"}};
+  static simulation sim;
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Column"),
       OPTION_FLAG("paper", &s->paper, NULL),
-      OPTION_NUMBER("aspect", &s->aspect, NULL),
-      OPTION_NUMBER("width", &s->width, "L0 from the wall, or radius of the cylinder"),
+      OPTION_NUMBER("aspect", &s->aspect, NULL, 2.0),
+      OPTION_NUMBER("width", &s->width, "L0 from the wall, or radius of the cylinder", 0.1),
       OPTION_FLAG("axisymmetric", &s->axisymmetric, "a cylinder"),
       OPTION_FLAG("sweep", &s->sweep, NULL),
       OPTION_FLAG("compare", &s->compare, NULL),
       OPTION_HEADING("Soil (Drucker-Prager)"),
-      OPTION_NUMBER("phi", &s->phi, NULL),
+      OPTION_NUMBER("phi", &s->phi, NULL, 35.0),
       OPTION_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
       SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE("cone", &s->cone, NULL),
-      OPTION_NUMBER("young", &s->young, NULL),
-      OPTION_NUMBER("poisson", &s->poisson, NULL),
-      OPTION_NUMBER("density", &s->density, "in bulk"),
+      OPTION_NUMBER("young", &s->young, NULL, 1e6),
+      OPTION_NUMBER("poisson", &s->poisson, NULL, 0.3),
+      OPTION_NUMBER("density", &s->density, "in bulk", 1600.0),
       OPTION_HEADING("Bed"),
-      OPTION_NUMBER("friction", &s->bed_friction, "of the bed (default: soil sticks to it)"),
+      OPTION_NUMBER("friction", &s->bed_friction, "of the bed (default: soil sticks to it)", NAN),
       OPTION_HEADING("Grid"),
-      MPM_MODEL_GRID(s, "default width/20"),
+      MPM_MODEL_GRID(s, NAN, 9, 0.5, "default width/20"),
       OPTION_CHOICE("volumetric", &s->volumetric, NULL),
       MPM_METHOD_OPTIONS(&s->method),
       OPTION_NUMBER("flip-time", &s->flip_time,
-                    "which takes energy out of the flow; default: by the cell and the wave speed"),
+                    "which takes energy out of the flow; default: by the cell and the wave speed",
+                    NAN),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("falls", &s->falls, "if the column does not come to rest before"),
+      OPTION_NUMBER("falls", &s->falls, "if the column does not come to rest before", 8.0),
       MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTIONS_OF_ALL(s),
       {0}};

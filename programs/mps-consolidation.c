@@ -7,22 +7,7 @@
 #include <math.h>
 
 int main(int argc, char **argv) {
-  static simulation sim = {.s = {.nu = 0.2,
-                                 .young = 1e6,
-                                 .M = 0.92,
-                                 .lambda = 0.205,
-                                 .kappa = 0.044,
-                                 .e0 = 1.4,
-                                 .initial = 100e3,
-                                 .ratio = 5.0,
-                                 .cell = NAN,
-                                 .load = NAN,
-                                 .duration = NAN,
-                                 .courant = NAN,
-                                 .damping = NAN,
-                                 .stiffness = 100.0,
-                                 .course = MPM_COURSE_DEFAULTS,
-                                 .out = "out/consolidation"}};
+  static simulation sim;
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground and water"),
@@ -31,37 +16,40 @@ int main(int argc, char **argv) {
                        "half width a = 1 m between plates; sphere of radius a = 1 m; half space "
                        "under a strip of half width B = 1 m, undrained; cylinder of radius a = 1 m "
                        "that a vertical drain in its axis consolidates under a rigid plate"),
-      OPTION_NUMBER("drain-ratio", &s->ratio, NULL),
-      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.45), &s->nu, "of the grains' frame"),
-      OPTION_NUMBER("young", &s->young, "of the grains' frame"),
-      OPTION_NUMBER("M", &s->M, NULL),
-      OPTION_NUMBER_IN("lambda", OPTION_FROM_TO(1e-3, 1.0), &s->lambda, NULL),
-      OPTION_NUMBER_IN("kappa", OPTION_FROM_TO(1e-4, 1.0), &s->kappa, NULL),
-      OPTION_NUMBER_IN("e0", OPTION_FROM_TO(0.1, 10.0), &s->e0, "mcc"),
-      OPTION_NUMBER("initial", &s->initial, NULL),
+      OPTION_NUMBER("drain-ratio", &s->ratio, NULL, 5.0),
+      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.45), &s->nu, "of the grains' frame", 0.2),
+      OPTION_NUMBER("young", &s->young, "of the grains' frame", 1e6),
+      OPTION_NUMBER("M", &s->M, NULL, 0.92),
+      OPTION_NUMBER_IN("lambda", OPTION_FROM_TO(1e-3, 1.0), &s->lambda, NULL, 0.205),
+      OPTION_NUMBER_IN("kappa", OPTION_FROM_TO(1e-4, 1.0), &s->kappa, NULL, 0.044),
+      OPTION_NUMBER_IN("e0", OPTION_FROM_TO(0.1, 10.0), &s->e0, "mcc", 1.4),
+      OPTION_NUMBER("initial", &s->initial, NULL, 100e3),
       OPTION_NUMBER(
           "load", &s->load,
-          "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5; mcc initial"),
+          "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5; mcc initial", NAN),
       OPTION_CHOICE_OF("drainage", "top|bottom|both", &s->drained, NULL),
       OPTION_TEXT("layers", &s->layers,
                   "thickness_m, permeability_m_s, modulus_Pa (M'); terzaghi: the model is 1 m "
                   "high, times and settlements are printed of the layers as they are"),
       OPTION_NUMBER("load-ramp", &s->ramp, NULL),
       OPTION_TEXT("loads", &s->loads, NULL),
-      OPTION_NUMBER("water-stiffness", &s->stiffness, NULL),
+      OPTION_NUMBER("water-stiffness", &s->stiffness, NULL, 100.0),
       OPTION_TEXT("times", &s->times, NULL),
       OPTION_NUMBER(
           "time-unit", &s->duration,
           "default 300 times that of a wave through H, mandel and barron 1000, large with "
-          "--load-ramp 2000, and longer where the permeability would else be above 1 mm/s"),
+          "--load-ramp 2000, and longer where the permeability would else be above 1 mm/s",
+          NAN),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER_IN(
           "cell", OPTION_FROM_TO(1.0 / MOST_CELLS, 0.5), &s->cell,
-          "a whole number of which is in H, a or B = 1 m; default 0.05, mandel 0.1, strip 0.25"),
-      OPTION_NUMBER("courant", &s->courant, "default 0.7, of --scheme implicit 0.5"),
+          "a whole number of which is in H, a or B = 1 m; default 0.05, mandel 0.1, strip 0.25",
+          NAN),
+      OPTION_NUMBER("courant", &s->courant, "default 0.7, of --scheme implicit 0.5", NAN),
       OPTION_CHOICE_OF("scheme", "explicit|implicit", &s->scheme, NULL),
       OPTION_CHOICE("solver", &s->solver, "of implicit pressures"),
-      OPTION_NUMBER("mass-damping", &s->damping, "default half a wave velocity over H; strip none"),
+      OPTION_NUMBER("mass-damping", &s->damping, "default half a wave velocity over H; strip none",
+                    NAN),
       OPTION_HEADING("Run"),
       MPM_COURSE_OPTIONS(&s->course, MOST_TIMES),
       OPTIONS_OF_ALL(s),

@@ -308,7 +308,7 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
     energy = fmax(energy, (sim->heap[k].kinetic + sim->heap[k].potential) / scale);
     kinetic = fmax(kinetic, sim->heap[k].kinetic / scale);
   }
-  json_number(f, "h", s->h);
+  json_number(f, s->method == METHOD_MPS ? "spacing" : "cell", s->h);
   json_integer(f, "n2", s->n2);
   if (s->method == METHOD_MPM) json_number(f, "sound_speed", speed_of_sound(s));
   JSON_NUMBERS(f, {"mass", last->mass},
@@ -323,17 +323,17 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   const misfit set = compare(sim, z, sim->Z, T, shift);
   const comparison experiment = compare_experiment(sim, &front);
   const bool holds = compare_holds(&experiment);
-  json_number_if(f, holds, "front_error_rms", front.rms);
-  json_number_if(f, holds, "front_error_max", front.worst);
-  json_number_if(f, holds, "front_clock_shift", shift);
-  json_number_if(f, holds, "front_error_rms_clock", set.rms);
+  JSON_NUMBERS(f, {"front_error_rms", holds ? front.rms : NAN},
+               {"front_error_max", holds ? front.worst : NAN},
+               {"front_clock_shift", holds ? shift : NAN},
+               {"front_error_rms_clock", holds ? set.rms : NAN});
   const double fit = best_shift(sim, z, T);
   json_number_if(f, holds, "front_clock_fit", fit);
   const misfit fitted = compare(sim, z, sim->Z, T, fit);
-  json_number_if(f, holds, "front_error_rms_fit", fitted.rms);
-  json_number_if(f, holds, "front_error_max_clock", set.worst);
-  json_number_if(f, holds, "height_error_rms", wall.rms);
-  json_number_if(f, holds, "height_error_max", wall.worst);
+  JSON_NUMBERS(f, {"front_error_rms_fit", holds ? fitted.rms : NAN},
+               {"front_error_max_clock", holds ? set.worst : NAN},
+               {"height_error_rms", holds ? wall.rms : NAN},
+               {"height_error_max", holds ? wall.worst : NAN});
   json_reason(f, "experiment_reason", &experiment);
   json_number(f, "detached_max", detached);
   compare_tell(&experiment);
@@ -347,7 +347,6 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  if (sim->series && !app_check(a, mps_recorder_close(&sim->series))) return false;
   if (s->impact)
     return mpm_snapshots_write(a, s->out, "particles.csv", "pressure_Pa", FRAMES, sim->shot) &&
            draw_water(a, sim, sqrt(2.0 * G / s->base)) && dam_impact_write(a, sim);
@@ -403,27 +402,11 @@ static int complete(const options_program *program, settings *s) {
                                    "speed of the water: it is to be all but incompressible");
   if (isnan(s->duration) && s->impact) s->duration = 7.0 * sqrt(0.5 * s->base / G);
   if (isnan(s->duration)) s->duration = 6.0 * sqrt(s->base / (G * (double)s->n2));
-  if (isnan(s->every_checkpoint)) s->every_checkpoint = 0.2 * s->duration;
   return -1;
 }
 
 int main(int argc, char **argv) {
-  static simulation sim = {.s = {.h = NAN,
-                                 .base = NAN,
-                                 .viscosity = 1e-3,
-                                 .sound = NAN,
-                                 .duration = NAN,
-                                 .tank = 6.0,
-                                 .disturb = 0.1,
-                                 .tolerance = WAVES_TOLERANCE,
-                                 .n2 = 2,
-                                 .courant = 0.5,
-                                 .ppc = 4,
-                                 .state = MPS_MATERIAL_STATE_EQUATION_TAIT,
-                                 .spline = 1,
-                                 .frames = 60,
-                                 .every_checkpoint = NAN,
-                                 .out = "out/dam-break"}};
+  static simulation sim = {.s = {.course = {.frames = 60}}};
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Method"),
@@ -434,30 +417,30 @@ int main(int argc, char **argv) {
           "--spacing in place of --cell, and of the options of the grid none is read"),
       OPTION_FLAG("impact", &s->impact, NULL),
       OPTION_HEADING("Water"),
-      OPTION_NUMBER("width", &s->base, "a of the column (default .05715)"),
-      OPTION_INTEGER("n2", &s->n2, NULL),
-      OPTION_NUMBER("tank", &s->tank, NULL),
-      OPTION_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL),
-      OPTION_NUMBER("sound-speed", &s->sound, NULL),
-      OPTION_CHOICE_OF("equation-of-state", "tait|linear", &s->state, NULL),
+      OPTION_NUMBER("width", &s->base, "a of the column (default .05715)", NAN),
+      OPTION_INTEGER("n2", &s->n2, NULL, 2),
+      OPTION_NUMBER("tank", &s->tank, NULL, 6.0),
+      OPTION_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL, 1e-3),
+      OPTION_NUMBER("sound-speed", &s->sound, NULL, NAN),
+      OPTION_CHOICE_OF("equation-of-state", "tait|linear", &s->state, NULL,
+                       MPS_MATERIAL_STATE_EQUATION_TAIT),
       OPTION_CHOICE_OF("negative-pressure", "none|full", &s->tension, NULL),
       OPTION_CHOICE_OF("bed", "slip|fixed", &s->bed, NULL),
       OPTION_FLAG("still", &s->rest, NULL),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("cell", &s->h, "default width/40"),
-      OPTION_NUMBER("spacing", &s->h, "of --method mps; default width/20, with --impact width/60"),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_NUMBER("courant", &s->courant, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
+      OPTION_NUMBER("cell", &s->h, "default width/40", NAN),
+      OPTION_NUMBER("spacing", &s->h, "of --method mps; default width/20, with --impact width/60",
+                    NAN),
+      OPTION_INTEGER("ppc", &s->ppc, NULL, 4),
+      OPTION_NUMBER("courant", &s->courant, NULL, 0.5),
+      OPTION_CHOICE("spline", &s->spline, NULL, 1),
       MPM_METHOD_OPTIONS(&s->variant),
       OPTION_CHOICE("volumetric", &s->volumetric, NULL),
-      OPTION_NUMBER("disturb", &s->disturb, "of MPS"),
+      OPTION_NUMBER("disturb", &s->disturb, "of MPS", 0.1),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", &s->duration, "default T = 6"),
-      OPTION_INTEGER("frames", &s->frames, NULL),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a fifth of the run",
-                     &s->restart),
+      OPTION_NUMBER("duration", &s->duration, "default T = 6", NAN),
+      MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {"mps-dam-break",
@@ -471,10 +454,8 @@ int main(int argc, char **argv) {
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
   const mpm_model_parts parts = {dam_build, dam_march, finish};
-  const mpm_model_places places = {&s->out, &s->checkpoint, s->restart};
-  sim.table = table;
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
   code = mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
-  mps_recorder_destroy(&sim.series);
   free(sim.gauge_t);
   free(sim.gauge_p);
   for (int k = 0; k < FRAMES; k++) mpm_snapshot_free(&sim.shot[k]);

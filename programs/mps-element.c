@@ -17,7 +17,7 @@ int main(int argc, char **argv) {
   static element x;
   static option table[ELEMENT_OPTIONS];
   settings *s = &x.s;
-  x.s = element_defaults();
+  x.s.threads = 1;
   element_options(s, table);
   const options_program program = {
       "mps-element",

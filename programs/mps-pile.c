@@ -11,68 +11,47 @@
 #define PAPER_XI 0.6 /* Nakamura (58) */
 
 int main(int argc, char **argv) {
-  static pile p = {.s = {.inner_diameter = 0.15,
-                         .wall = 0.01,
-                         .friction = 0.53,
-                         .rate = 0.1,
-                         .depth = 1.0,
-                         .xi = NAN,
-                         .k = NAN,
-                         .soil = "0.4x3",
-                         .density = 1600.0,
-                         .young = 1e6,
-                         .poisson = 0.333,
-                         .phi = 38.0,
-                         .voids = SAND_VOIDS,
-                         .k0 = NAN,
-                         .h = 0.005,
-                         .flip_time = NAN,
-                         .courant = 0.5,
-                         .ppc = 4,
-                         .spline = 1,
-                         .frames = 4,
-                         .every_checkpoint = NAN,
-                         .out = "out/pile"}};
+  static pile p = {.s = {.soil = "0.4x3"}};
   pile_settings *s = &p.s;
   option table[] = {
       OPTION_HEADING("Pile"),
       OPTION_FLAG("paper", &s->paper, NULL),
-      OPTION_NUMBER("inner-diameter", &s->inner_diameter, NULL),
-      OPTION_NUMBER("wall-thickness", &s->wall, "by --contact penalty at least 2 cells"),
-      OPTION_NUMBER("friction", &s->friction, "of its surface, tan(delta)"),
-      OPTION_NUMBER("depth", &s->depth, "of the tip, where the run ends"),
-      OPTION_NUMBER("rate", &s->rate, NULL),
+      OPTION_NUMBER("inner-diameter", &s->inner_diameter, NULL, 0.15),
+      OPTION_NUMBER("wall-thickness", &s->wall, "by --contact penalty at least 2 cells", 0.01),
+      OPTION_NUMBER("friction", &s->friction, "of its surface, tan(delta)", 0.53),
+      OPTION_NUMBER("depth", &s->depth, "of the tip, where the run ends", 1.0),
+      OPTION_NUMBER("rate", &s->rate, NULL, 0.1),
       MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("corner", &s->corner, "with --inset 0"),
       OPTION_NUMBER("inset", &s->inset, NULL),
-      OPTION_NUMBER("k", &s->k, "default 4 (K + 4G/3)"),
-      OPTION_NUMBER("xi", &s->xi, NULL),
+      OPTION_NUMBER("k", &s->k, "default 4 (K + 4G/3)", NAN),
+      OPTION_NUMBER("xi", &s->xi, NULL, NAN),
       OPTION_HEADING("Soil"),
       OPTION_TEXT_OF("soil", "WxH", &s->soil, "radius and depth"),
-      OPTION_NUMBER("density", &s->density, NULL),
-      OPTION_NUMBER("young", &s->young, NULL),
-      OPTION_NUMBER("poisson", &s->poisson, NULL),
-      OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 60.0), &s->phi, NULL),
+      OPTION_NUMBER("density", &s->density, NULL, 1600.0),
+      OPTION_NUMBER("young", &s->young, NULL, 1e6),
+      OPTION_NUMBER("poisson", &s->poisson, NULL, 0.333),
+      OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 60.0), &s->phi, NULL, 38.0),
       OPTION_NUMBER("psi", &s->psi, NULL),
       SAND_OPTIONS(&s->voids),
       OPTION_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE_OF("cone", "inscribed|circumscribed|planestrain", &s->cone,
                        "inscribed: Nakamura (56)"),
-      OPTION_NUMBER_IN("k0", OPTION_FROM_TO(1e-3, 5.0), &s->k0, "default nu/(1 - nu)"),
+      OPTION_NUMBER_IN("k0", OPTION_FROM_TO(1e-3, 5.0), &s->k0, "default nu/(1 - nu)", NAN),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("cell", &s->h, NULL),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
-      OPTION_NUMBER("courant", &s->courant, "Nakamura (49)"),
+      OPTION_NUMBER("cell", &s->h, NULL, 0.005),
+      OPTION_INTEGER("ppc", &s->ppc, NULL, 4),
+      OPTION_CHOICE("spline", &s->spline, NULL, 1),
+      OPTION_NUMBER("courant", &s->courant, "Nakamura (49)", 0.5),
       OPTION_CHOICE("volumetric", &s->volumetric, NULL),
       MPM_METHOD_OPTIONS(&s->method),
-      OPTION_NUMBER("flip-time", &s->flip_time, "default: by the cell and the wave speed"),
+      OPTION_NUMBER("flip-time", &s->flip_time, "default: by the cell and the wave speed", NAN),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("rest", &s->rest, NULL),
-      OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 1000.0), &s->frames,
-                        "at equal steps of depth; as many tables, and up to 4 in pictures"),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a tenth of the run",
-                     &s->restart),
+      OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 1000.0), &s->course.frames,
+                        "at equal steps of depth; as many tables, and up to 4 in pictures", 4),
+      RESUME_OPTIONS(&s->course.checkpoint, &s->course.every_checkpoint,
+                     "default a tenth of the run", &s->course.restart),
       OPTIONS_OF_ALL(s),
       {0}};
   const options_program program = {
@@ -96,8 +75,7 @@ int main(int argc, char **argv) {
   if (!reason) reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};
-  const mpm_model_places places = {&s->out, &s->checkpoint, s->restart};
-  p.table = table;
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
   const int result = mpm_model_run(&program, s->threads, &places, &p.m, &parts, &p);
   pile_free(&p);
   return result;

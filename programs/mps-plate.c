@@ -53,18 +53,16 @@ static int find_spacing(const options_program *program, settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.plate = {.spacing = NAN, .side = 1.0, .radius = 1.0, .tension = 100e6},
-                  .method = elastic_settings_defaults(210e9, 0.3),
-                  .out = "out/plate"};
+  *s = (settings){0};
   option table[] = {OPTION_HEADING("Plate"),
                     OPTION_CHOICE_OF("case", "tension|hole", &s->shape,
                                      "square, or quarter of a plate with a hole"),
                     OPTION_NUMBER("spacing", &s->plate.spacing,
-                                  "default a seventeenth of --side; hole: 1/40.5 of --radius"),
-                    OPTION_NUMBER("side", &s->plate.side, NULL),
-                    OPTION_NUMBER("radius", &s->plate.radius, NULL),
-                    OPTION_NUMBER("edge-stress", &s->plate.tension, NULL),
-                    ELASTIC_MATERIAL(&s->method),
+                                  "default a seventeenth of --side; hole: 1/40.5 of --radius", NAN),
+                    OPTION_NUMBER("side", &s->plate.side, NULL, 1.0),
+                    OPTION_NUMBER("radius", &s->plate.radius, NULL, 1.0),
+                    OPTION_NUMBER("edge-stress", &s->plate.tension, NULL, 100e6),
+                    ELASTIC_MATERIAL(&s->method, 210e9, 0.3),
                     ELASTIC_METHOD(&s->method),
                     OPTION_HEADING("Running"),
                     OPTIONS_OF_ALL(s),

@@ -35,43 +35,34 @@ static const char purpose[] = "An elastic flap in plane strain as a participant 
                               "those of preCICE's perpendicular flap.";
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.flap = {.width = 0.1,
-                           .height = 1.0,
-                           .spacing = 0.0125,
-                           .young = 4e6,
-                           .poisson = 0.3,
-                           .density = 3000.0,
-                           .bending = 1.0,
-                           .dt = 0.01},
-                  .coupling = {.config = "precice-config.xml",
+  *s = (settings){.coupling = {.config = "precice-config.xml",
                                .name = "Solid",
                                .mesh = "Solid-Mesh",
                                .force = "Force",
-                               .displacement = "Displacement"},
-                  .frames = 20,
-                  .out = "out/precice"};
+                               .displacement = "Displacement"}};
   const char *data = s->coupling.force, *velocity = NULL;
-  option table[] = {OPTION_HEADING("Flap"),
-                    OPTION_NUMBER("width", &s->flap.width, "rounded to whole spacings"),
-                    OPTION_NUMBER("height", &s->flap.height, "rounded to whole spacings"),
-                    OPTION_NUMBER("x", &s->flap.x, "middle of its foot"),
-                    OPTION_NUMBER("y", &s->flap.y, NULL),
-                    OPTION_NUMBER("spacing", &s->flap.spacing, NULL),
-                    OPTION_NUMBER("young", &s->flap.young, NULL),
-                    OPTION_NUMBER("poisson", &s->flap.poisson, NULL),
-                    OPTION_NUMBER("density", &s->flap.density, NULL),
-                    OPTION_NUMBER("bending", &s->flap.bending, NULL),
-                    OPTION_HEADING("Coupling"),
-                    LOOP_OPTIONS(s->coupling),
-                    OPTION_CHOICE_OF("reads", "force|stress", &s->reads, NULL),
-                    OPTION_TEXT("data", &data, NULL),
-                    OPTION_TEXT("displacement", &s->coupling.displacement, "that are written"),
-                    OPTION_TEXT("velocity", &velocity, "that are written"),
-                    OPTION_NUMBER("dt", &s->flap.dt, "at most; preCICE may ask for shorter ones"),
-                    OPTION_HEADING("Running"),
-                    OPTION_INTEGER("frames", &s->frames, NULL),
-                    OPTIONS_OF_ALL(s),
-                    {0}};
+  option table[] = {
+      OPTION_HEADING("Flap"),
+      OPTION_NUMBER("width", &s->flap.width, "rounded to whole spacings", 0.1),
+      OPTION_NUMBER("height", &s->flap.height, "rounded to whole spacings", 1.0),
+      OPTION_NUMBER("x", &s->flap.x, "middle of its foot"),
+      OPTION_NUMBER("y", &s->flap.y, NULL),
+      OPTION_NUMBER("spacing", &s->flap.spacing, NULL, 0.0125),
+      OPTION_NUMBER("young", &s->flap.young, NULL, 4e6),
+      OPTION_NUMBER("poisson", &s->flap.poisson, NULL, 0.3),
+      OPTION_NUMBER("density", &s->flap.density, NULL, 3000.0),
+      OPTION_NUMBER("bending", &s->flap.bending, NULL, 1.0),
+      OPTION_HEADING("Coupling"),
+      LOOP_OPTIONS(s->coupling),
+      OPTION_CHOICE_OF("reads", "force|stress", &s->reads, NULL),
+      OPTION_TEXT("data", &data, NULL),
+      OPTION_TEXT("displacement", &s->coupling.displacement, "that are written"),
+      OPTION_TEXT("velocity", &velocity, "that are written"),
+      OPTION_NUMBER("dt", &s->flap.dt, "at most; preCICE may ask for shorter ones", 0.01),
+      OPTION_HEADING("Running"),
+      OPTION_INTEGER("frames", &s->frames, NULL, 20),
+      OPTIONS_OF_ALL(s),
+      {0}};
   const options_program program = {"mps-precice", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;

@@ -135,14 +135,10 @@ static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   static const rows_column columns[] = {{"x", "m", 0}, {"v", "m/s", 0}, {"omega", "rad/s", 0}, {0}};
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = s->body == BODY_SLOPE ? "disc" : "slope",
-                             .duration = s->duration,
-                             .key = "mps-rolling-disc 2",
-                             .table = options_read(),
-                             .columns = columns};
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-rolling-disc 2", NULL, NULL);
+  sim->course.what = s->body == BODY_SLOPE ? "disc" : "slope";
+  sim->course.duration = s->duration;
+  sim->course.columns = columns;
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -317,11 +313,10 @@ static bool finish(app *a, void *user) {
   output f;
   if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
-  JSON_NUMBERS(&f, {"h", s->h}, {"mu", s->mu}, {"x", x});
+  JSON_NUMBERS(&f, {"cell", s->h}, {"mu", s->mu}, {"x", x});
   json_comparison(&f, "x_theory", &path);
   json_number(&f, "x_error_05", compare_error(&path)); /* at the end */
-  json_number_if(&f, !isnan(worst_at), "x_error_worst", worst);
-  json_number(&f, "omega_ratio", ratio);
+  JSON_NUMBERS(&f, {"x_error_worst", !isnan(worst_at) ? worst : NAN}, {"omega_ratio", ratio});
   json_end(&f);
   if (!output_close(&f) || !draw(a, s)) return false;
   app_tell_results(a, s->out);
@@ -335,41 +330,31 @@ static bool finish(app *a, void *user) {
 }
 
 int main(int argc, char **argv) {
-  static simulation sim = {.s = {.h = 0.01,
-                                 .angle = 30.0,
-                                 .k = 2e6,
-                                 .young = 1e6,
-                                 .poisson = 0.3,
-                                 .duration = 0.5,
-                                 .courant = 0.5,
-                                 .ppc = 4,
-                                 .spline = 1,
-                                 .course = MPM_COURSE_DEFAULTS,
-                                 .out = "out/rolling-disc"}};
+  static simulation sim;
   settings *s = &sim.s;
-  option table[] = {
-      OPTION_HEADING("Disc and slope"),
-      OPTION_FLAG("paper", &s->paper, NULL),
-      OPTION_CHOICE_OF("body", "slope|disc", &s->body, NULL),
-      OPTION_NUMBER("slope-angle", &s->angle, NULL),
-      OPTION_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
-      MPM_MODEL_CONTACT(&s->contact),
-      OPTION_NUMBER("k", &s->k, NULL),
-      OPTION_NUMBER("young", &s->young, NULL),
-      OPTION_NUMBER("poisson", &s->poisson, NULL),
-      OPTION_HEADING("Grid"),
-      OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.05), &s->h, "the disc's radius R is 0.05 m"),
-      OPTION_INTEGER("ppc", &s->ppc, NULL),
-      OPTION_NUMBER("courant", &s->courant, NULL),
-      OPTION_CHOICE("spline", &s->spline, NULL),
-      MPM_METHOD_OPTIONS(&s->method),
-      OPTION_CHOICE_OF("fill", "lattice|rings", &s->fill, NULL),
-      OPTION_HEADING("Run"),
-      OPTION_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
-                       "x_error_05 is that at its end"),
-      MPM_COURSE_OPTIONS(&s->course, SAMPLES),
-      OPTIONS_OF_ALL(s),
-      {0}};
+  option table[] = {OPTION_HEADING("Disc and slope"),
+                    OPTION_FLAG("paper", &s->paper, NULL),
+                    OPTION_CHOICE_OF("body", "slope|disc", &s->body, NULL),
+                    OPTION_NUMBER("slope-angle", &s->angle, NULL, 30.0),
+                    OPTION_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
+                    MPM_MODEL_CONTACT(&s->contact),
+                    OPTION_NUMBER("k", &s->k, NULL, 2e6),
+                    OPTION_NUMBER("young", &s->young, NULL, 1e6),
+                    OPTION_NUMBER("poisson", &s->poisson, NULL, 0.3),
+                    OPTION_HEADING("Grid"),
+                    OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.05), &s->h,
+                                     "the disc's radius R is 0.05 m", 0.01),
+                    OPTION_INTEGER("ppc", &s->ppc, NULL, 4),
+                    OPTION_NUMBER("courant", &s->courant, NULL, 0.5),
+                    OPTION_CHOICE("spline", &s->spline, NULL, 1),
+                    MPM_METHOD_OPTIONS(&s->method),
+                    OPTION_CHOICE_OF("fill", "lattice|rings", &s->fill, NULL),
+                    OPTION_HEADING("Run"),
+                    OPTION_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
+                                     "x_error_05 is that at its end", 0.5),
+                    MPM_COURSE_OPTIONS(&s->course, SAMPLES),
+                    OPTIONS_OF_ALL(s),
+                    {0}};
   const options_program program = {
       "mps-rolling-disc",
       "A disc of radius 0.05 m slips or rolls down a slope (WLS-MPM): Nakamura, Figures 12 to 14.\n"

@@ -137,14 +137,10 @@ static mps_status build(mps_context *context, void *user) {
   const settings *s = &sim->s;
   static const rows_column columns[] = {
       {"Fx", "N/m", 0}, {"Fy", "N/m", 0}, {"impulse", "N s/m", 2}, {0}};
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = "block",
-                             .duration = T_END,
-                             .key = "mps-sliding-box 2",
-                             .table = options_read(),
-                             .columns = columns};
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-sliding-box 2", NULL, NULL);
+  sim->course.what = "block";
+  sim->course.duration = T_END;
+  sim->course.columns = columns;
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = fill(context, s, &sim->m.particles);
   if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
@@ -239,7 +235,7 @@ static bool finish(app *a, void *user) {
   if (count > 0) fx /= count, fy /= count; /* none: the run ended before */
   output f;
   if (!write_forces(a, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
   const comparison force = compare_force(s, count > 0 ? fy : NAN, smooth);
   json_comparison(&f, "Fy_smooth", &force);
@@ -257,33 +253,22 @@ static bool finish(app *a, void *user) {
 }
 
 int main(int argc, char **argv) {
-  static simulation sim = {.s = {.h = 0.02,
-                                 .k = 2e6,
-                                 .offset = 0.0,
-                                 .mu = 0.3,
-                                 .young = 1e6,
-                                 .poisson = 0.3,
-                                 .density = 1000.0,
-                                 .courant = 0.5,
-                                 .ppc = 4,
-                                 .spline = 1,
-                                 .course = MPM_COURSE_DEFAULTS,
-                                 .out = "out/sliding-box"}};
+  static simulation sim;
   settings *s = &sim.s;
   option table[] = {OPTION_HEADING("Block"),
                     OPTION_FLAG("paper", &s->paper, NULL),
-                    OPTION_NUMBER("young", &s->young, NULL),
-                    OPTION_NUMBER("poisson", &s->poisson, NULL),
-                    OPTION_NUMBER("density", &s->density, NULL),
+                    OPTION_NUMBER("young", &s->young, NULL, 1e6),
+                    OPTION_NUMBER("poisson", &s->poisson, NULL, 0.3),
+                    OPTION_NUMBER("density", &s->density, NULL, 1000.0),
                     OPTION_HEADING("Contact"),
                     MPM_MODEL_CONTACT(&s->contact),
-                    OPTION_NUMBER("k", &s->k, NULL),
-                    OPTION_NUMBER("friction", &s->mu, "of the lower plate"),
+                    OPTION_NUMBER("k", &s->k, NULL, 2e6),
+                    OPTION_NUMBER("friction", &s->mu, "of the lower plate", 0.3),
                     OPTION_HEADING("Grid"),
-                    OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.1), &s->h, NULL),
-                    OPTION_INTEGER("ppc", &s->ppc, NULL),
-                    OPTION_NUMBER("courant", &s->courant, NULL),
-                    OPTION_CHOICE("spline", &s->spline, NULL),
+                    OPTION_NUMBER_IN("cell", OPTION_FROM_TO(1e-4, 0.1), &s->h, NULL, 0.02),
+                    OPTION_INTEGER("ppc", &s->ppc, NULL, 4),
+                    OPTION_NUMBER("courant", &s->courant, NULL, 0.5),
+                    OPTION_CHOICE("spline", &s->spline, NULL, 1),
                     MPM_METHOD_OPTIONS(&s->method),
                     OPTION_NUMBER("offset", &s->offset, NULL),
                     OPTION_NUMBER("turn", &s->turn, NULL),

@@ -38,18 +38,7 @@ static void choose_velocities(settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
-                  .spacing = 1.0,
-                  .velocity = NAN,
-                  .vs = NAN,
-                  .vp = NAN,
-                  .m = {.kind = METHOD_BOTH,
-                        .f1 = 1.0,
-                        .f2 = NAN,
-                        .criterion = NAN,
-                        .accuracy = 1.01,
-                        .duration = NAN},
-                  .out = "out/stability"};
+  *s = (settings){0};
   method *m = &s->m;
   option table[] = {
       OPTION_HEADING("Study"),
@@ -57,22 +46,23 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_FLAG("study", &s->study, NULL),
       OPTION_HEADING("One case"),
       OPTION_CHOICE("wave", &s->wave, NULL),
-      OPTION_NUMBER_IN("spacing", OPTION_FROM_TO(0.01, 10.0), &s->spacing, NULL),
-      OPTION_NUMBER("vs", &s->vs, "default half of Vp, 100 m/s if neither is given"),
-      OPTION_NUMBER("vp", &s->vp, "default twice Vs"),
-      OPTION_NUMBER("wave-velocity", &s->velocity, NULL),
+      OPTION_NUMBER_IN("spacing", OPTION_FROM_TO(0.01, 10.0), &s->spacing, NULL, 1.0),
+      OPTION_NUMBER("vs", &s->vs, "default half of Vp, 100 m/s if neither is given", NAN),
+      OPTION_NUMBER("vp", &s->vp, "default twice Vs", NAN),
+      OPTION_NUMBER("wave-velocity", &s->velocity, NULL, NAN),
       OPTION_NUMBER("damping", &s->damping, NULL),
-      OPTION_CHOICE("integrator", &s->integrator, NULL),
+      OPTION_CHOICE("integrator", &s->integrator, NULL, MPS_DYNAMICS_INTEGRATOR_VERLET),
       OPTION_HEADING("Method"),
       OPTION_CHOICE_OF("method", "linear|stepping|both", &m->kind,
-                       "linear theory (fast), bisection by time stepping, or both"),
-      OPTION_NUMBER("criterion", &m->criterion, NULL),
-      OPTION_NUMBER("accuracy", &m->accuracy, NULL),
+                       "linear theory (fast), bisection by time stepping, or both", METHOD_BOTH),
+      OPTION_NUMBER("criterion", &m->criterion, NULL, NAN),
+      OPTION_NUMBER("accuracy", &m->accuracy, NULL, 1.01),
       OPTION_NUMBER("duration", &m->duration,
-                    "of each run; default 0.5 s and 1.1 travel times over 100 m"),
-      OPTION_NUMBER("f1", &m->f1, NULL),
+                    "of each run; default 0.5 s and 1.1 travel times over 100 m", NAN),
+      OPTION_NUMBER("f1", &m->f1, NULL, 1.0),
       OPTION_NUMBER("f2", &m->f2,
-                    "default 14, of the study 15 Hz: f1 + f2 = 16 Hz gives the paper's Table 2"),
+                    "default 14, of the study 15 Hz: f1 + f2 = 16 Hz gives the paper's Table 2",
+                    NAN),
       OPTION_CHOICE("rotation", &m->rotation, NULL),
       OPTION_CHOICE("torque", &m->torque, NULL),
       OPTION_HEADING("Running and results"),
@@ -157,8 +147,8 @@ static bool open_case(output *out, app *a, const settings *s, const stability_ca
     json_comparison(&f, "dt_linear", &linear);
   else
     json_number(&f, "dt_linear", NAN);
-  json_number_if(&f, known, "dt_stepping", x->stepping);
-  json_number_if(&f, known, "dt_stepping_unstable", x->unstable);
+  JSON_NUMBERS(&f, {"dt_stepping", known ? x->stepping : NAN},
+               {"dt_stepping_unstable", known ? x->unstable : NAN});
   if (known)
     json_comparison(&f, "dt_table2", &table2);
   else

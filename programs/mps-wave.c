@@ -58,7 +58,8 @@ static bool build_ground(app *a, const settings *s, simulation *sim) {
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
   sim->particles = mps_particles_count(particles);
   if (!app_check(a, parts_sum(def.domain, &sim->particles))) return false;
-  sim->so_far = (results_so_far){.s = s, .record = &sim->record, .peaks = &sim->peaks};
+  sim->so_far =
+      (results_so_far){.s = s, .record = &sim->record, .peaks = &sim->peaks, .same = true};
   return field_create(a, s, particles, sim->particles, &sim->peaks);
 }
 

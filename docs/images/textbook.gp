@@ -54,7 +54,7 @@ set terminal pngcairo size 900,520 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-cones.png'
 set title 'Smooth cone of 60° in deep clay (Tresca), D/8, from a hole 4 D deep'
 set xlabel 'penetration over D'; set ylabel 'N_{kt}'; set key bottom right
-cone(ir) = folder('mps-penetrometer_--axisymmetric_--law_tresca_--ir_'.ir.'_').'force.csv'
+cone(ir) = folder('mps-penetrometer_--law_tresca_--ir_'.ir.'_').'force.csv'
 lu(ir) = 3.4 + 1.6*log(ir)
 plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) every ::1 using (($1 - 0.4)/0.1):10 with lines lw 2 lc rgb word(green.' '.blue.' '.grey, k + 1) title 'Ir = '.word('50 100 200', k + 1), \
   lu(50) dt '--' lc rgb green notitle, lu(100) dt '--' lc rgb blue notitle, lu(200) dt '--' lc rgb grey title 'Lu et al. (2004)'

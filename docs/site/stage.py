@@ -158,7 +158,7 @@ def bibtex(text):
 
 # Parts of pictures for the start page: left, top, right, bottom as fractions.
 CARDS = {"card-pile.png": ("pile.png", 0.585, 0.105, 0.975, 0.915), "card-earthquake.png": ("slope.png", 0.08, 0.18, 0.85, 0.78),
-         "card-seawall.png": ("seawall-waves.png", 0.5, 0.025, 0.9, 0.29), "card-footing.png": ("footing.png", 0.1275, 0.1, 0.822, 0.824),
+         "card-seawall.png": ("seawall-waves.png", 0.5, 0.025, 0.9, 0.29), "card-footing.png": ("footing.png", 0.107, 0.064, 0.842, 0.882),
          "card-cone.png": ("penetrometer.png", 0.07, 0.12, 0.425, 0.885), "card-columns.png": ("column-collapse.png", 0.4967, 0.0467, 0.6942, 0.2734)}
 
 

@@ -57,20 +57,19 @@ static bool open_summary(output *out, const model *m, const elastic_method *meth
   json_integer(&f, "particles", m->nx * m->ny);
   json_integer_if(&f, known, "unknowns", m->report.unknowns);
   JSON_NUMBERS(&f, {"length", m->problem->length}, {"height", m->problem->height});
-  json_number_if(&f, known, "tip", m->tip);
-  json_number_if(&f, known, "tip_exact", m->tip_exact);
-  json_number_if(&f, known, "tip_error", m->tip_error);
-  json_number_if(&f, known, "stress_l2_error", m->stress_error);
-  json_number_if(&f, known, "strain_energy", m->energy);
-  json_number_if(&f, known, "equilibrium_error", m->equilibrium);
-  json_number_if(&f, known, "residual", m->report.residual);
+  JSON_NUMBERS(&f, {"tip", known ? m->tip : NAN}, {"tip_exact", known ? m->tip_exact : NAN},
+               {"tip_error", known ? m->tip_error : NAN},
+               {"stress_l2_error", known ? m->stress_error : NAN},
+               {"strain_energy", known ? m->energy : NAN},
+               {"equilibrium_error", known ? m->equilibrium : NAN},
+               {"residual", known ? m->report.residual : NAN});
   json_integer_if(&f, known, "nnz_matrix", m->report.matrix_nonzeros);
   json_integer_if(&f, known, "nnz_factor", m->report.factor_nonzeros);
-  json_number_if(&f, known, "flops_factor", m->report.factor_flops);
-  json_number_if(&f, known, "seconds_assemble", m->report.seconds_assemble);
-  json_number_if(&f, known, "seconds_analyse", m->report.seconds_analyse);
-  json_number_if(&f, known, "seconds_factor", m->report.seconds_factor);
-  json_number_if(&f, known, "seconds_solve", m->report.seconds_solve);
+  JSON_NUMBERS(&f, {"flops_factor", known ? m->report.factor_flops : NAN},
+               {"seconds_assemble", known ? m->report.seconds_assemble : NAN},
+               {"seconds_analyse", known ? m->report.seconds_analyse : NAN},
+               {"seconds_factor", known ? m->report.seconds_factor : NAN},
+               {"seconds_solve", known ? m->report.seconds_solve : NAN});
   json_end(&f);
   *out = f;
   return true;

@@ -233,13 +233,3 @@ bool area_image(app *a, const char *directory, const char *file, const area_def 
   area_write(&f, def, count, row, out);
   return output_close(&f);
 }
-
-void area_plot(output *script, const char *name, const area *image, double length) {
-  const double step = image->pixel / length;
-  output_text(script,
-              "'%s' binary skip=%lld array=(%lld,%lld) format='%%float' origin=(%.9g,%.9g) "
-              "dx=%.9g dy=%.9g using 1 with image notitle",
-              name, (long long)image->offset, (long long)image->columns, (long long)image->rows,
-              image->lower[0] / length + 0.5 * step, image->lower[1] / length + 0.5 * step, step,
-              step);
-}

@@ -44,8 +44,3 @@ bool area_image(app *a, const char *directory, const char *file, const area_def 
  * divided by `length` (m). */
 void area_set(output *script, const char *file, const area_def *def, int64_t count,
               const area *images, double length);
-
-/* The element of a gnuplot `plot` that draws it from the file of that name: lengths divided by
- * `length` (m). Values are read as they are: an expression for each pixel takes ten times as long.
- */
-void area_plot(output *script, const char *name, const area *image, double length);

@@ -8,14 +8,30 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+mpm_course mpm_course_of(const mpm_course_options *options, mpm_model *m, const char *directory,
+                         const char *key, void (*pass)(void *user, resume_bytes *b), void *user) {
+  return (mpm_course){.options = options,
+                      .m = m,
+                      .directory = directory,
+                      .key = key,
+                      .table = options_read(),
+                      .pass = pass,
+                      .user = user};
+}
+
 static resume parts(const mpm_course *c) {
   return (resume){.key = c->key,
                   .table = c->table,
                   .pass = c->pass,
                   .user = c->user,
                   .mpm = c->m->mpm,
+                  .fluid = c->m->fluid,
                   .a = c->m->a,
                   .domain = c->m->a->domain};
+}
+
+static double now(const mpm_course *c) {
+  return c->m->fluid ? mps_fluid_time(c->m->fluid) : mps_mpm_time(c->m->mpm);
 }
 
 static mps_status save(void *user) {
@@ -53,17 +69,17 @@ mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) 
   if (status == MPS_OK && o->restart && restores) {
     status = resume_restore(context, &r, o->restart);
     if (c->columns) rows_look(&c->rows), c->m->samples = c->rows.count;
-    c->from = mps_mpm_time(c->m->mpm);
+    c->from = now(c);
   }
   const double every = isnan(o->every_checkpoint) ? 0.1 * c->duration : o->every_checkpoint;
   const bool lost = c->saves.lost; /* of the previous model: one warning */
   c->saves = (resume_schedule){
       .path = o->checkpoint, .every = every, .save = save, .user = c, .lost = lost};
-  resume_schedule_at(&c->saves, mps_mpm_time(c->m->mpm));
+  resume_schedule_at(&c->saves, now(c));
   return status;
 }
 
-static mps_status write_frame(mpm_course *c) {
+mps_status mpm_course_frame(mpm_course *c) {
   mps_status status = MPS_OK;
   if (!c->opened) status = mpm_model_series(c->m, c->directory, c->what, c->from, &c->series);
   c->opened = true;
@@ -78,13 +94,13 @@ mps_status mpm_course_add(mpm_course *c, const void *row) {
 
 mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples) {
   mps_status status = MPS_OK;
-  if (frame_is_due(k, samples, c->options->frames)) status = write_frame(c);
-  if (status == MPS_OK) resume_save_when_due(c->m->a, &c->saves, mps_mpm_time(c->m->mpm));
+  if (frame_is_due(k, samples, c->options->frames)) status = mpm_course_frame(c);
+  if (status == MPS_OK) resume_save_when_due(c->m->a, &c->saves, now(c));
   return status;
 }
 
 mps_status mpm_course_end(mpm_course *c, mps_status status) {
-  if (status == MPS_ERROR_CANCELLED && c->m->mpm) {
+  if (status == MPS_ERROR_CANCELLED && (c->m->mpm || c->m->fluid)) {
     resume_save_now(c->m->a, &c->saves);
     if (c->m->a->rank == 0) resume_tell(&c->saves);
   }

@@ -1,7 +1,7 @@
-/* mpm_course.h - the course of a WLS-MPM run from sample to sample: its frames for ParaView, its
- * checkpoints and restart (resume.h). A program builds its model between mpm_course_peek and
- * mpm_course_begin, and calls mpm_course_sample after each sample and mpm_course_end at last.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* mpm_course.h - the course of a run, of WLS-MPM or a fluid, from sample to sample: its frames for
+ * ParaView, its checkpoints and restart (resume.h). A program builds its model between
+ * mpm_course_peek and mpm_course_begin, and calls mpm_course_sample after each sample and
+ * mpm_course_end at last. SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
 #include "mpm_heap.h"
@@ -15,8 +15,6 @@ typedef struct mpm_course_options {
   const char *checkpoint, *restart;
   double every_checkpoint; /* s; NaN: a tenth of the run */
 } mpm_course_options;
-#define MPM_COURSE_DEFAULTS                                                                        \
-  { .every_checkpoint = NAN }
 #define MPM_COURSE_OPTIONS(o, most)                                                                \
   OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, most), &(o)->frames, NULL),                      \
       RESUME_OPTIONS(&(o)->checkpoint, &(o)->every_checkpoint, "default a tenth of the run",       \
@@ -41,6 +39,9 @@ typedef struct mpm_course {
   resume_schedule saves;
 } mpm_course;
 
+/* With what all courses have; `what`, `duration` and `columns` are the program's to set. */
+mpm_course mpm_course_of(const mpm_course_options *options, mpm_model *m, const char *directory,
+                         const char *key, void (*pass)(void *user, resume_bytes *b), void *user);
 /* The options of the checkpoint that the run continues from are these; nothing to do without one.
  */
 mps_status mpm_course_peek(mpm_course *c, mps_context *context);
@@ -55,6 +56,8 @@ mps_status mpm_course_add(mpm_course *c, const void *row);
  * are due. Where a run ends before its time, that sample is the last one, `k` = `samples`: the
  * series has its end. */
 mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples);
+/* A frame at another time. */
+mps_status mpm_course_frame(mpm_course *c);
 /* Closes the series, of a run that ended with `status`, and writes a checkpoint of one that Ctrl-C
  * has ended. Returns `status`, or that of an error here. */
 mps_status mpm_course_end(mpm_course *c, mps_status status);

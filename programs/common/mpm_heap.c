@@ -150,9 +150,20 @@ mps_status mpm_snapshot_take(mpm_model *m, double time, const char *field, mpm_s
   return mpm_model_tell(m, status, 0, NULL);
 }
 
+mps_status mpm_snapshot_last(const mpm_model *m, double time, const char *field,
+                             mpm_snapshot *shot) {
+  return take(m->whole ? m->whole : m->particles, time, field, shot);
+}
+
 void mpm_snapshot_free(mpm_snapshot *shot) {
   free(shot->row);
   *shot = (mpm_snapshot){0};
+}
+
+double mpm_snapshot_most(const mpm_snapshot *shot, int column) {
+  double most = 0.0;
+  for (int64_t k = 0; k < shot->count; k++) most = fmax(most, shot->row[3 * k + column]);
+  return most;
 }
 
 bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,

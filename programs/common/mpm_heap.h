@@ -45,7 +45,12 @@ typedef struct mpm_snapshot {
  * Replaces the former contents of `shot`; free with mpm_snapshot_free. Collective: of several ranks
  * rank 0 receives it. */
 mps_status mpm_snapshot_take(mpm_model *m, double time, const char *field, mpm_snapshot *shot);
+/* The same on rank 0 alone, of the particles that mpm_model_whole has seen last. */
+mps_status mpm_snapshot_last(const mpm_model *m, double time, const char *field,
+                             mpm_snapshot *shot);
 void mpm_snapshot_free(mpm_snapshot *shot);
+/* The greatest number >= 0 of a column: 0 x, 1 y, 2 the value. */
+double mpm_snapshot_most(const mpm_snapshot *shot, int column);
 /* DIR/NAME: a line frame,t_s,x_m,y_m,VALUE for each particle of each shot. */
 bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,
                          int count, const mpm_snapshot *shots);

@@ -93,10 +93,12 @@ mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
                              void *user);
 
-/* Rows of the grid: side of a cell, particles in it, time step, degree of the weights. */
-#define MPM_MODEL_GRID(s, note)                                                                    \
-  OPTION_NUMBER("cell", &(s)->h, note), OPTION_INTEGER("ppc", &(s)->ppc, NULL),                    \
-      OPTION_NUMBER("courant", &(s)->courant, NULL), OPTION_CHOICE("spline", &(s)->spline, NULL)
+/* Rows of the grid with their defaults: side of a cell, particles in it, time step, degree of the
+ * weights. */
+#define MPM_MODEL_GRID(s, cell_, ppc_, courant_, note)                                             \
+  OPTION_NUMBER("cell", &(s)->h, note, cell_), OPTION_INTEGER("ppc", &(s)->ppc, NULL, ppc_),       \
+      OPTION_NUMBER("courant", &(s)->courant, NULL, courant_),                                     \
+      OPTION_CHOICE("spline", &(s)->spline, NULL, 1)
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
 #define MPM_MODEL_CONTACT(value) OPTION_CHOICE("contact", value, NULL)
 /* Why an option of penalty contact alone, --k or --xi, cannot be given; NULL where it can. */

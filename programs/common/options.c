@@ -490,13 +490,25 @@ bool options_word(int k, char *out, size_t size) {
   return true;
 }
 
+/* That of the row; results go to out/PROGRAM without its "mps-". */
+static void set_default(const options_program *program, option *o) {
+  static char out[MAX_NAME + 8];
+  for (int k = 0; o->number && k < (o->count > 1 ? o->count : 1); k++)
+    if (o->number[k] == 0.0) o->number[k] = o->standard;
+  if (o->integer && *o->integer == 0) *o->integer = (int64_t)o->standard;
+  if (o->choice && *o->choice == 0) *o->choice = (int)o->standard;
+  o->usual = o->number && o->count < 2 ? *o->number : 0.0;
+  if (!o->text || *o->text || strcmp(o->name, "out") != 0) return;
+  snprintf(out, sizeof out, "out/%s", program->name + 4 * (strncmp(program->name, "mps-", 4) == 0));
+  *o->text = out;
+}
+
 int options_parse(const options_program *program, int argc, char **argv) {
   const char *name = "";
   typed.count = argc, typed.word = argv;
   ranks_hush();
   ranks_keep_options(argc, argv);
-  for (option *o = program->table; o->name || o->help; o++)
-    o->usual = o->number && o->count < 2 ? *o->number : 0.0;
+  for (option *o = program->table; o->name || o->help; o++) set_default(program, o);
   const char *fault = vocabulary_complete(program->table, &name);
   if (fault) {
     complain("%s: --%s is %s", program->name, name, fault);
@@ -640,10 +652,19 @@ static bool recorded(const char *record, const char *name, char *out, size_t siz
   return false;
 }
 
-bool options_agree(const option *table, const char *record, char *why, size_t size) {
+/* Whether `name` is one of "a|b|c". */
+static bool is_among(const char *names, const char *name) {
+  const size_t length = strlen(name);
+  for (const char *at = names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL)
+    if (strcspn(at, "|") == length && strncmp(at, name, length) == 0) return true;
+  return false;
+}
+
+bool options_agree(const option *table, const char *record, const char *others, char *why,
+                   size_t size) {
   for (const option *o = table; o->name || o->help; o++) {
     char now[256], then[256] = "unknown";
-    if (!o->name || options_free(o->name)) continue;
+    if (!o->name || options_free(o->name) || is_among(others, o->name)) continue;
     describe_value(o, now, sizeof now);
     if (recorded(record, o->name, then, sizeof then) && strcmp(now, then) == 0) continue;
     snprintf(why, size, "--%s is %s, was %s", o->name, now, then);

@@ -1,10 +1,10 @@
 /* options.h - command line options from a table: parsing, checks and --help.
  *
- * A program lists its options with variables that hold the defaults:
+ * A program lists its options with variables and defaults:
  *   option table[] = {
  *     OPTION_HEADING("Ground"),
- *     OPTION_NUMBER("young", &young, "of the plate"),
- *     OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &phi, NULL),
+ *     OPTION_NUMBER("young", &young, "of the plate", 2e11),
+ *     OPTION_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &phi, NULL, 30.0),
  *     {0}};
  * Kind, unit, range and meaning are those of the table of all options (vocabulary.c); a row may
  * have another range, and adds words of its own or NULL. --name VALUE and --name=VALUE both work;
@@ -33,6 +33,7 @@ typedef struct option {
   const char *unit;   /* unit, or kind of the value: FILE; of a choice: "S|P" */
   const char *help;   /* of a heading; else written by options_parse */
   const char *note;   /* of the program, after the help; NULL: none */
+  double standard;    /* default of a number, integer or choice; 0: what the variable holds */
   option_range range; /* of numbers and integers */
   int count;          /* of numbers separated by commas; 0 and 1: one number */
   bool *flag;
@@ -47,30 +48,30 @@ typedef struct option {
   double usual;      /* the default of a number */
 } option;
 
-/* Rows of the table. */
+/* Rows of the table: name, variable, note or NULL, and a default other than 0. */
 #define OPTION_HEADING(help_)                                                                      \
   { .help = (help_) }
 #define OPTION_FLAG(name_, value, note_)                                                           \
   { .name = (name_), .flag = (value), .note = (note_) }
-#define OPTION_NUMBER(name_, value, note_)                                                         \
-  { .name = (name_), .number = (value), .note = (note_) }
-#define OPTION_NUMBER_IN(name_, range_, value, note_)                                              \
-  { .name = (name_), .range = range_, .number = (value), .note = (note_) }
-#define OPTION_NUMBERS(name_, count_, value, note_)                                                \
-  { .name = (name_), .count = (count_), .number = (value), .note = (note_) }
-#define OPTION_INTEGER(name_, value, note_)                                                        \
-  { .name = (name_), .integer = (value), .note = (note_) }
-#define OPTION_INTEGER_IN(name_, range_, value, note_)                                             \
-  { .name = (name_), .range = range_, .integer = (value), .note = (note_) }
+#define OPTION_NUMBER(name_, value, ...)                                                           \
+  { .name = (name_), .number = (value), .note = __VA_ARGS__ }
+#define OPTION_NUMBER_IN(name_, range_, value, ...)                                                \
+  { .name = (name_), .range = range_, .number = (value), .note = __VA_ARGS__ }
+#define OPTION_NUMBERS(name_, count_, value, ...)                                                  \
+  { .name = (name_), .count = (count_), .number = (value), .note = __VA_ARGS__ }
+#define OPTION_INTEGER(name_, value, ...)                                                          \
+  { .name = (name_), .integer = (value), .note = __VA_ARGS__ }
+#define OPTION_INTEGER_IN(name_, range_, value, ...)                                               \
+  { .name = (name_), .range = range_, .integer = (value), .note = __VA_ARGS__ }
 #define OPTION_TEXT(name_, value, note_)                                                           \
   { .name = (name_), .text = (value), .note = (note_) }
-#define OPTION_CHOICE(name_, value, note_)                                                         \
-  { .name = (name_), .choice = (value), .note = (note_) }
+#define OPTION_CHOICE(name_, value, ...)                                                           \
+  { .name = (name_), .choice = (value), .note = __VA_ARGS__ }
 /* Where the table of all leaves it to the program, or of some of the words there: "S|P", "WxH". */
 #define OPTION_TEXT_OF(name_, what_, value, note_)                                                 \
   { .name = (name_), .unit = (what_), .text = (value), .note = (note_) }
-#define OPTION_CHOICE_OF(name_, words_, value, note_)                                              \
-  { .name = (name_), .unit = (words_), .choice = (value), .note = (note_) }
+#define OPTION_CHOICE_OF(name_, words_, value, ...)                                                \
+  { .name = (name_), .unit = (words_), .choice = (value), .note = __VA_ARGS__ }
 /* Rows that every program has. */
 #define OPTIONS_OF_ALL(s)                                                                          \
   OPTION_TEXT("out", &(s)->out, NULL), OPTION_INTEGER("threads", &(s)->threads, NULL)
@@ -103,9 +104,10 @@ bool options_free(const char *name);
 /* "name=value" lines of all other options, to be kept with a checkpoint. False when `size` is too
  * small. */
 bool options_record(const option *table, char *text, size_t size);
-/* Compares with such lines. False, and in `why` the first option that differs: "--rest is 0.2 s,
- * was 0.3". */
-bool options_agree(const option *table, const char *record, char *why, size_t size);
+/* Compares with such lines, but for `others`, "a|b" or NULL. False, and in `why` the first option
+ * that differs: "--rest is 0.2 s, was 0.3". */
+bool options_agree(const option *table, const char *record, const char *others, char *why,
+                   size_t size);
 
 /* "--young is 200 Pa: write 200kPa if that is meant": the k-th number of those read last that has
  * no unit and is far below what is usual, as one of another unit may be. False: there is none. */

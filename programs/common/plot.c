@@ -73,50 +73,6 @@ bool plot_begin(output *script, app *a, const char *directory, const char *name)
   return true;
 }
 
-bool plot_end(output *script, const char *directory, const char *name, const char *template) {
-  char file[80];
-  app *a = script->a;
-  if (!script->stream) return true; /* plot_begin has said why */
-  snprintf(file, sizeof file, "%s.gp", template);
-  if (append(script, file)) return plot_close(script, directory, name);
-  output_discard(script);
-  return no_template(a, file);
-}
-
-bool plot_draw(app *a, const char *directory, const char *name, const char *template,
-               const char *variables, ...) {
-  output script;
-  if (!plot_begin(&script, a, directory, name)) return false;
-  va_list args;
-  va_start(args, variables);
-  output_list(&script, variables, args);
-  va_end(args);
-  output_text(&script, "\n");
-  return plot_end(&script, directory, name, template);
-}
-
-/* ---- scripts that are written by the program ------------------------------------------------- */
-
-bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
-               int height) {
-  if (!plot_begin(script, a, directory, name)) return false;
-  output_text(script, "width = %d\nheight = %d\n", width, height);
-  (void)append(script, "style.gp");
-  output_text(
-      script,
-      "unset datafile columnheaders\nset key inside vertical right top noreverse Right height 0\n");
-  return true;
-}
-
-void plot_key_below(output *script) { output_text(script, "eval below\n"); }
-
-void plot_colours(output *script, double least, double most, double lowest, double highest) {
-  output_text(
-      script,
-      "cb_least = %.9g; cb_most = %.9g; cb_lowest = %.9g; cb_highest = %.9g\neval colours\n", least,
-      most, lowest, highest);
-}
-
 /* ---- gnuplot --------------------------------------------------------------------------------- */
 
 enum { NOT_FOUND = 127, NO_DIRECTORY = 126 };
@@ -216,15 +172,31 @@ static bool draw(app *a, const char *directory, const char *name, const char *ki
                    status == 0 ? "the picture is cut off, as on a full disk" : reason_of(said));
 }
 
-bool plot_close(output *script, const char *directory, const char *name) {
+bool plot_end(output *script, const char *directory, const char *name, const char *template) {
+  char file[80], stem[64];
   app *a = script->a;
-  char stem[64];
-  const bool animated = strstr(name, ".gif") != NULL;
-  if (!script->stream) return true;
+  if (!script->stream) return true; /* plot_begin has said why */
+  snprintf(file, sizeof file, "%s.gp", template);
+  if (!append(script, file)) {
+    output_discard(script);
+    return no_template(a, file);
+  }
   snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
   output_text(script, "unset output\nundefine picture\n");
   if (!output_close(script)) return false;
   progress_clear(&a->bar);
   fflush(stdout);
-  return draw(a, directory, stem, animated ? "gif" : "png");
+  return draw(a, directory, stem, strstr(name, ".gif") ? "gif" : "png");
+}
+
+bool plot_draw(app *a, const char *directory, const char *name, const char *template,
+               const char *variables, ...) {
+  output script;
+  if (!plot_begin(&script, a, directory, name)) return false;
+  va_list args;
+  va_start(args, variables);
+  output_list(&script, variables, args);
+  va_end(args);
+  output_text(&script, "\n");
+  return plot_end(&script, directory, name, template);
 }

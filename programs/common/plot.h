@@ -14,15 +14,3 @@ bool plot_draw(app *a, const char *directory, const char *name, const char *temp
 /* The same with variables written between the two by output_text and area_set. */
 bool plot_begin(output *script, app *a, const char *directory, const char *name);
 bool plot_end(output *script, const char *directory, const char *name, const char *template);
-
-/* Without a template: NAME.gp with the common style, which the program continues, and draws. */
-bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
-               int height);
-bool plot_close(output *script, const char *directory, const char *name);
-
-/* Colours from `least` to `most`, taken to round numbers; `lowest` and `highest` are those of the
- * values shown. An end of the scale is marked where values lie beyond it. */
-void plot_colours(output *script, double least, double most, double lowest, double highest);
-
-/* The key below the plot, clear of the name of the x axis. */
-void plot_key_below(output *script);

@@ -87,7 +87,9 @@ mps_status resume_save(const resume *r, const char *path) {
   mps_checkpoint info;
   mps_status status = agree(r, pack(r, &info));
   if (status == MPS_OK)
-    status = r->fluid ? mps_fluid_save(r->fluid, path, &info) : mps_mpm_save(r->mpm, path, &info);
+    status = r->fluid      ? mps_fluid_save(r->fluid, path, &info)
+             : r->dynamics ? mps_dynamics_save(r->dynamics, path, &info)
+                           : mps_mpm_save(r->mpm, path, &info);
   free(info.user_data);
   return status;
 }
@@ -109,8 +111,9 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
   char differs[600] = "";
   mps_status status = read_bytes(context, r, path, &info);
   why[0] = '\0';
-  if (status == MPS_OK && (!memchr(info.user_data, '\0', OPTIONS) ||
-                           !options_agree(r->table, info.user_data, differs, sizeof differs))) {
+  if (status == MPS_OK &&
+      (!memchr(info.user_data, '\0', OPTIONS) ||
+       !options_agree(r->table, info.user_data, r->others, differs, sizeof differs))) {
     snprintf(why, size, "%.150s was made with other options: %.200s", path, differs);
     status = MPS_ERROR_ARGUMENT;
   }
@@ -139,8 +142,9 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
   mps_checkpoint info;
   mps_status status = agree(r, read_bytes(context, r, path, &info));
   if (status == MPS_OK)
-    status =
-        r->fluid ? mps_fluid_restore(r->fluid, path, &info) : mps_mpm_restore(r->mpm, path, &info);
+    status = r->fluid      ? mps_fluid_restore(r->fluid, path, &info)
+             : r->dynamics ? mps_dynamics_restore(r->dynamics, path, &info)
+                           : mps_mpm_restore(r->mpm, path, &info);
   if (status == MPS_OK) status = unpack(r, &info);
   free(info.user_data);
   return agree(r, status);

@@ -15,6 +15,7 @@
 #include "app.h"
 #include "options.h"
 
+#include <mps/dynamics.h>
 #include <mps/experimental/domain.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
@@ -43,6 +44,8 @@ typedef struct resume {
   void *user;                                /* of pass */
   mps_mpm *mpm;                              /* the solver: this one */
   mps_fluid *fluid;                          /* or this */
+  mps_dynamics *dynamics;                    /* or this */
+  const char *others; /* "a|b": options that the run may go on with others of; NULL: none */
   app *a;             /* its warnings are kept too: summary.json has those of the whole run */
   mps_domain *domain; /* of several ranks: saving, peeking and restoring are collective */
 } resume;
@@ -64,8 +67,8 @@ resume resume_of_fluid(const char *key, const option *table, void (*pass)(void *
 
 /* Rows of a program's table of options. */
 #define RESUME_OPTIONS(checkpoint, every, note, restart)                                           \
-  OPTION_TEXT("checkpoint", checkpoint, NULL), OPTION_NUMBER("every-checkpoint", every, note),     \
-      OPTION_TEXT("restart", restart, NULL)
+  OPTION_TEXT("checkpoint", checkpoint, NULL),                                                     \
+      OPTION_NUMBER("every-checkpoint", every, note, NAN), OPTION_TEXT("restart", restart, NULL)
 
 /* The files of a run, before it begins, by one rule for all programs. A restarted run replaces no
  * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,

@@ -16,12 +16,10 @@ typedef struct sand_voids {
  * no sand dilates further. */
 #define SAND_E0 0.5
 #define SAND_E_MAX 0.95
-#define SAND_VOIDS                                                                                 \
-  { SAND_E0, SAND_E_MAX }
-
 #define SAND_RANGE OPTION_FROM_TO(0.01, 20.0)
 #define SAND_OPTIONS(voids)                                                                        \
-  OPTION_NUMBER("e0", &(voids)->e0, NULL), OPTION_NUMBER("emax", &(voids)->e_max, NULL)
+  OPTION_NUMBER("e0", &(voids)->e0, NULL, SAND_E0),                                                \
+      OPTION_NUMBER("emax", &(voids)->e_max, NULL, SAND_E_MAX)
 
 /* A reason why they are not consistent; NULL: good. */
 static inline const char *sand_check(const sand_voids *v) {

@@ -51,7 +51,7 @@ static const struct {
            "with 1e15"),
     NUMBER("adhesion", "1", FROM_TO(0.001, 10.0),
            "shear stress on the surface at most, over the cohesion"),
-    FLAG("also-axisymmetric", "after the run in space, the same by --axisymmetric, to compare"),
+    FLAG("also-axisymmetric", "after the run in space, the same about an axis, to compare"),
     NUMBER("amplitude", "m", FROM_TO(0.0, 1e3), "amplitude"),
     INTEGER("animation", "N", FROM_TO(0.0, 400.0),
             "frames of an animation of the last three periods (0: none)"),
@@ -389,7 +389,8 @@ static const struct {
     CHOICE("support", NULL, "motion of the supported end: as (11) says, or none"),
     NUMBER("surcharge", "Pa", FROM_TO(0.0, 1e9), "vertical pressure on the surface"),
     FLAG("sweep", "columns of a = 0.5, 1, 2, 3, 4, 6 against the law"),
-    CHOICE("symmetry", NULL, "quarter: rollers on two planes through the axis"),
+    CHOICE("symmetry", NULL,
+           "about an axis; in space, a quarter with rollers on its planes, or all"),
     NUMBER("tank", "widths", FROM_TO(1.5, 1000.0), "distance of the far wall of the tank"),
     NUMBER("tension", "Pa", STRENGTH, "largest tension; default: up to the apex"),
     INTEGER("threads", "N", FROM_TO(0.0, 1024.0), "threads; 0: all processors"),
@@ -567,7 +568,7 @@ static const char others[] =
     "file-column levels-column;input record;input-column record-column;"
     "input-scale record-scale;input-step record-step;input-unit record-unit;load end-load;"
     "mesh coupling-mesh;model law;model symmetry;"
-    "no-space axisymmetric alone: it leaves the run in space out;path travel;ramp load-ramp;"
+    "axisymmetric symmetry axial;no-space symmetry axial;path travel;ramp load-ramp;"
     "ratio drain-ratio;ratio frequency-ratio;re influence;rest still;"
     "ricker-frequency frequency;ricker-time peak-time;scheme method;slope incline;"
     "state equation-of-state;step dt;stiffness water-stiffness;tension edge-stress;"

@@ -34,7 +34,8 @@ mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, doub
 /* Solver of the pressure equation, and its tolerance: rows of a table of options, and what the
  * first requires. False: the reason in `why`. Collective. */
 #define WAVES_SOLVER(solver, tolerance)                                                            \
-  OPTION_CHOICE("solver", solver, NULL), OPTION_NUMBER("tolerance", tolerance, NULL)
+  OPTION_CHOICE("solver", solver, NULL),                                                           \
+      OPTION_NUMBER("tolerance", tolerance, NULL, WAVES_TOLERANCE)
 #define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
 bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size);
 

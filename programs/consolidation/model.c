@@ -461,15 +461,10 @@ static mps_status make_law(mps_context *context, simulation *sim) {
 mps_status consolidation_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = "ground",
-                             .duration = s->duration * sim->time[sim->times - 1] * sim->steps,
-                             .key = "mps-consolidation 1",
-                             .table = options_read(),
-                             .pass = consolidation_pass,
-                             .user = sim};
+  sim->course =
+      mpm_course_of(&s->course, &sim->m, s->out, "mps-consolidation 1", consolidation_pass, sim);
+  sim->course.what = "ground";
+  sim->course.duration = s->duration * sim->time[sim->times - 1] * sim->steps;
   mps_mpm_def def = solver_of(s);
   mps_totals totals;
   mps_status status = mpm_course_peek(&sim->course, context);

@@ -123,15 +123,15 @@ static bool write_summary(app *a, const simulation *sim) {
   json_text(&f, "case", names[sim->s.kase]);
   json_integer(&f, "cells", (int64_t)sim->s.cells);
   JSON_NUMBERS(&f, {"T", last->T}, {"load", sim->s.load}, {"settlement", last->settlement});
-  json_number_if(&f, holds, "settlement_exact", last->settlement_exact);
-  json_number(&f, "U", last->U);
-  json_number_if(&f, holds, "U_exact", last->U_exact);
-  json_number_if(&f, sim->s.layers != NULL, "height", sim->height);
-  json_number_if(&f, sim->s.layers != NULL, "t", real_time(sim, last));
-  json_number_if(&f, holds, "pressure_error", worst);
+  JSON_NUMBERS(&f, {"settlement_exact", holds ? last->settlement_exact : NAN}, {"U", last->U},
+               {"U_exact", holds ? last->U_exact : NAN},
+               {"height", sim->s.layers != NULL ? sim->height : NAN},
+               {"t", sim->s.layers != NULL ? real_time(sim, last) : NAN},
+               {"pressure_error", holds ? worst : NAN});
   json_reason(&f, "exact_reason", &exact);
-  json_number(&f, "centre_pressure", last->u[sim->points - 1]);
-  json_number_if(&f, holds, "centre_pressure_exact", exact_at(sim, sim->rows - 1, sim->points - 1));
+  JSON_NUMBERS(
+      &f, {"centre_pressure", last->u[sim->points - 1]},
+      {"centre_pressure_exact", holds ? exact_at(sim, sim->rows - 1, sim->points - 1) : NAN});
   JSON_NUMBERS(&f, {"plate_force", last->force}, {"degree", last->degree},
                {"degree_equal_strain", last->degree_equal}, {"water_start_kg", last->water.start},
                {"water_kg", last->water.mass}, {"entered_kg", last->water.entered},

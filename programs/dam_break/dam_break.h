@@ -3,10 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
-#include "common/mpm_heap.h"
+#include "common/mpm_course.h"
 #include "common/mpm_method.h"
-#include "common/mpm_model.h"
-#include "common/resume.h"
 
 #include <mps/fluid.h>
 
@@ -25,10 +23,9 @@ typedef struct settings {
   int method, state, tension, spline, volumetric, bed, solver;
   mpm_method variant;
   bool paper;
-  int64_t frames;
   bool rest, impact;
-  double every_checkpoint; /* s */
-  const char *out, *checkpoint, *restart;
+  mpm_course_options course;
+  const char *out;
 } settings;
 
 typedef struct simulation {
@@ -40,11 +37,7 @@ typedef struct simulation {
   mpm_snapshot shot[FRAMES];
   double *gauge_t, *gauge_p; /* s, Pa: of --impact, after each step */
   int64_t gauges, gauge_room;
-  mps_recorder *series; /* rank 0; made with the first frame */
-  bool opened;
-  const option *table;
-  resume_schedule saves;
-  double restarted; /* s, NaN: from the start */
+  mpm_course course;
 } simulation;
 
 static inline double column_height(const settings *s) {

@@ -8,10 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-elastic_settings elastic_settings_defaults(double young, double poisson) {
-  return (elastic_settings){.young = young, .poisson = poisson, .radius_ratio = NAN, .alpha = 1.0};
-}
-
 int elastic_prefer(const options_program *program, const elastic_settings *s,
                    const option_preset *paper) {
   static const option_preset method[] = {{"method", "published"}, {0}};

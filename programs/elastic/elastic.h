@@ -16,7 +16,6 @@ typedef struct elastic_settings {
   bool paper;
 } elastic_settings;
 
-elastic_settings elastic_settings_defaults(double young, double poisson);
 /* With --paper the published method, unless another is given. Returns -1, or an exit code. */
 int elastic_prefer(const options_program *program, const elastic_settings *s,
                    const option_preset *paper);
@@ -48,15 +47,15 @@ bool elastic_pull(app *a, mps_elastic *elastic, int64_t count, const int64_t *fa
 const char *elastic_method_name(const elastic_settings *s);
 
 /* Rows of an option table. */
-#define ELASTIC_MATERIAL(s)                                                                        \
-  OPTION_NUMBER_IN("young", OPTION_FROM_TO(1e-6, 1e16), &(s)->young, NULL),                        \
-      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, NULL),              \
+#define ELASTIC_MATERIAL(s, young_, poisson_)                                                      \
+  OPTION_NUMBER_IN("young", OPTION_FROM_TO(1e-6, 1e16), &(s)->young, NULL, young_),                \
+      OPTION_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, NULL, poisson_),    \
       OPTION_CHOICE("state", &(s)->state, NULL)
 #define ELASTIC_METHOD(s)                                                                          \
   OPTION_HEADING("Method"), OPTION_FLAG("paper", &(s)->paper, NULL),                               \
       OPTION_CHOICE_OF("method", "conservative|published", &(s)->method, "discretisation"),        \
-      OPTION_NUMBER("influence", &(s)->radius_ratio, NULL),                                        \
-      OPTION_NUMBER("stabilisation", &(s)->alpha, NULL),                                           \
+      OPTION_NUMBER("influence", &(s)->radius_ratio, NULL, NAN),                                   \
+      OPTION_NUMBER("stabilisation", &(s)->alpha, NULL, 1.0),                                      \
       OPTION_CHOICE_OF("n", "local|constant", &(s)->divisor, NULL)
 
 /* Results at a particle: position, displacement, stress xx, yy, xy, von Mises stress. */

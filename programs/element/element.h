@@ -87,7 +87,6 @@ typedef struct element {
 } element;
 
 enum { ELEMENT_OPTIONS = 80 }; /* rows of the table at most, with the empty one */
-settings element_defaults(void);
 /* Writes the table, whose values are those of `s`. */
 void element_options(settings *s, option *table);
 

@@ -6,6 +6,7 @@
 
 #include "characteristics.h"
 #include "common/mpm_course.h"
+#include "common/mpm_heap.h"
 #include "common/mpm_method.h"
 #include "common/mpm_model.h"
 #include "common/sand.h"
@@ -60,7 +61,6 @@ typedef struct simulation {
   footing_row undeformed[FOOTING_SAMPLES]; /* of the first run, once it has ended */
   int undeformed_rows;
   mps_context *context;
-  double strain;   /* largest plastic strain */
   double *profile; /* of --section: points, stresses, plastic strains; NULL: none */
   int64_t points;
   mpm_course course;

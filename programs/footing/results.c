@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #define PI 3.14159265358979323846
 #define GROWTH 0.1   /* of the pressure, over the second half of the path: more is no capacity */
@@ -121,11 +120,9 @@ static coefficients divide(const settings *s, double q) {
 static bool write_rows(app *a, const settings *s, const char *name, const footing_row *row,
                        int count) {
   output f;
-  if (!output_open(&f, a, s->out, name)) return false;
-  csv_header(&f, "settlement_mm,q_kPa,q_over_c?");
+  if (!csv_open(&f, a, s->out, name, "settlement_mm,q_kPa,q_over_c?")) return false;
   for (int k = 0; k < count; k++) {
-    const double line[] = {row[k].path * 1e3, row[k].q * 1e-3, divide(s, row[k].q).c};
-    csv_row(&f, 3, line);
+    CSV_LINE(&f, row[k].path * 1e3, row[k].q * 1e-3, divide(s, row[k].q).c);
   }
   return output_close(&f);
 }
@@ -138,28 +135,10 @@ static bool write_pressure(app *a, const simulation *sim) {
           write_rows(a, &sim->s, "pressure_deformed.csv", sim->course.rows.row, footing_rows(sim)));
 }
 
-static bool write_particles(app *a, const settings *s, simulation *sim) {
-  mps_particles *set = sim->m.whole ? sim->m.whole : sim->m.particles;
-  mps_view x, strain;
+static bool write_particles(app *a, const settings *s, const mpm_snapshot *shot) {
   output f;
-  if (!app_check(a, mps_particles_view(set, "position", &x)) ||
-      !app_check(a, mps_particles_view(set, "plastic_strain", &strain)))
-    return false;
-  int64_t *rows = mpm_rows_by_id(set);
-  if (!rows) return app_no_memory(a);
-  if (!output_open(&f, a, s->out, "particles.csv")) {
-    free(rows);
-    return false;
-  }
-  csv_header(&f, "x_m,y_m,plastic_strain");
-  for (int64_t i = 0; i < x.shape[0]; i++) {
-    const int64_t k = rows[i];
-    const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
-                          *mps_view_f64(&strain, k, 0)};
-    sim->strain = fmax(sim->strain, row[2]);
-    csv_row(&f, 3, row);
-  }
-  free(rows);
+  if (!csv_open(&f, a, s->out, "particles.csv", "x_m,y_m,plastic_strain")) return false;
+  for (int64_t k = 0; k < shot->count; k++) csv_row(&f, 3, shot->row + 3 * k);
   return output_close(&f);
 }
 
@@ -169,8 +148,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
   json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
-  json_number(&f, "h", s->h);
-  json_number(&f, "flip_time", s->flip_time);
+  JSON_NUMBERS(&f, {"cell", s->h}, {"flip_time", s->flip_time});
   sand_write(&f, &s->voids, s->model == DRUCKER_PRAGER ? s->psi : 0.0);
   json_number(&f, "friction", s->mu);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
@@ -185,57 +163,36 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   const coefficients n = divide(s, c->last);
   json_number(&f, "q", c->last);
   json_comparison(&f, "q_exact", &c->limit);
-  json_number(&f, "q_exact_smooth", c->limits.smooth);
-  json_number(&f, "q_exact_rough", c->limits.rough);
-  json_number(&f, "q_davis", c->limits.davis);
-  json_number(&f, "q_deformed", c->deformed);
-  json_number(&f, "young_undeformed", s->pace[FOOTING_UNDEFORMED].young);
-  json_number(&f, "rate_undeformed", s->pace[FOOTING_UNDEFORMED].rate);
-  json_number(&f, "q_over_c", n.c);
-  json_number(&f, "q_over_c_undeformed", divide(s, c->undeformed).c);
-  json_number(&f, "q_over_c_per_mm", divide(s, c->slope).c);
-  json_number(&f, "q_over_surcharge", n.q);
-  json_number(&f, "q_over_weight", n.gamma);
+  JSON_NUMBERS(&f, {"q_exact_smooth", c->limits.smooth}, {"q_exact_rough", c->limits.rough},
+               {"q_davis", c->limits.davis}, {"q_deformed", c->deformed},
+               {"young_undeformed", s->pace[FOOTING_UNDEFORMED].young},
+               {"rate_undeformed", s->pace[FOOTING_UNDEFORMED].rate}, {"q_over_c", n.c},
+               {"q_over_c_undeformed", divide(s, c->undeformed).c},
+               {"q_over_c_per_mm", divide(s, c->slope).c}, {"q_over_surcharge", n.q},
+               {"q_over_weight", n.gamma});
   json_end(&f);
   return output_close(&f);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
-/* A level line; none where there is no solution. */
-static void draw_limit(output *f, double value, const char *dash, const char *title) {
-  if (!isnan(value))
-    output_text(f, ", \\\n  %.9g dashtype '%s' linecolor rgb '#c0392b' title '%s'", value, dash,
-                title);
-}
-
 static bool draw_pressure(app *a, const simulation *sim, const capacity *c) {
   const settings *s = &sim->s;
   const bool two = sim->now == FOOTING_DEFORMED, circle = s->shape == CIRCLE;
   const footing_limits *l = &c->limits;
-  output f;
-  if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
-  output_text(&f,
-              "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, %s %g m, "
-              "%g mm/s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
-              "set ylabel 'pressure (kPa)'\nset key right bottom opaque\n"
-              "set yrange [0:*]\nplot '%s' every ::1 using 1:2 with lines "
-              "linecolor rgb '#1f4e8c' title 'WLS-MPM%s'",
-              circle ? "Circular" : "Strip", s->model == VON_MISES ? "cohesive" : "frictional",
-              s->h, circle ? "radius" : "half width", s->half_width, 1e3 * s->rate, s->mu,
-              two ? "pressure_deformed.csv" : "pressure.csv", two ? ", as it deforms" : "");
-  if (two) draw_limit(&f, 1e-3 * c->last, "..", "WLS-MPM, capacity of the undeformed ground");
-  if (l->smooth == l->rough) {
-    draw_limit(&f, 1e-3 * l->exact, "--", l->source);
-  } else {
-    if (l->exact != l->rough)
-      draw_limit(&f, 1e-3 * l->smooth, "--", circle ? "smooth base, Shield" : "smooth base, exact");
-    if (l->exact != l->smooth)
-      draw_limit(&f, 1e-3 * l->rough, "-.",
-                 circle ? "rough base, Eason, Shield" : "rough base, exact");
-  }
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "pressure");
+  const bool one = l->smooth == l->rough; /* the base does not matter */
+  return plot_draw(
+      a, s->out, "pressure", "footing/pressure",
+      "first = '%s footing on %s ground'\nsecond = 'h = %g m, %s %g m, %g mm/s, friction of the "
+      "base "
+      "%g'\nfile = '%s'; undeformed = %.9g; exact = %.9g; source = '%s'\nsmooth = %.9g; rough = "
+      "%.9g; smooth_source = 'smooth base, %s'; rough_source = 'rough base, %s'",
+      circle ? "Circular" : "Strip", s->model == VON_MISES ? "cohesive" : "frictional", s->h,
+      circle ? "radius" : "half width", s->half_width, 1e3 * s->rate, s->mu,
+      two ? "pressure_deformed.csv" : "pressure.csv", two ? 1e-3 * c->last : NAN,
+      one ? 1e-3 * l->exact : NAN, l->source, one || l->exact == l->rough ? NAN : 1e-3 * l->smooth,
+      one || l->exact == l->smooth ? NAN : 1e-3 * l->rough, circle ? "Shield" : "exact",
+      circle ? "Eason, Shield" : "exact");
 }
 
 /* `user`: the corner of the footing, m. */
@@ -244,61 +201,36 @@ static bool in_footing(const void *user, double x, double y) {
   return fabs(x) < corner[0] && y > corner[1];
 }
 
-/* shear_bands.bin: the plastic strain. */
-static bool image_bands(app *a, const settings *s, const simulation *sim, const double *lower,
-                        const double *upper, area *image) {
-  mps_particles *set = sim->m.whole ? sim->m.whole : sim->m.particles;
-  mps_view x, strain;
-  output f;
-  if (!app_check(a, mps_particles_view(set, "position", &x)) ||
-      !app_check(a, mps_particles_view(set, "plastic_strain", &strain)))
-    return false;
-  double *row = malloc((size_t)(x.shape[0] + 1) * 3 * sizeof *row);
-  if (!row) return app_no_memory(a);
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    row[3 * k] = *mps_view_f64(&x, k, 0);
-    row[3 * k + 1] = *mps_view_f64(&x, k, 1);
-    row[3 * k + 2] = *mps_view_f64(&strain, k, 0);
-  }
+/* The mechanism reaches farther in frictional ground. */
+static bool draw_bands(app *a, const simulation *sim, const mpm_snapshot *shot) {
+  const settings *s = &sim->s;
+  const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
+  const double right = fmin(s->width, wide * s->half_width);
   const double base[2] = {s->half_width,
                           s->depth - footing_row_of(sim, footing_rows(sim) - 1)->path};
-  const area_def def = {.spacing = mps_particles_spacing(set),
-                        .slit = AREA_SLIT_SHEARED,
-                        .lower = {lower[0], lower[1]},
-                        .upper = {upper[0], upper[1]},
-                        .walled = true,
-                        .side = AREA_SIDE,
-                        .solid = in_footing,
-                        .user = base};
-  const bool good = output_open(&f, a, s->out, "shear_bands.bin");
-  if (good) area_write(&f, &def, x.shape[0], row, image);
-  free(row);
-  return good && output_close(&f);
-}
-
-/* The mechanism reaches farther in frictional ground. */
-static bool draw_bands(app *a, const settings *s, const simulation *sim) {
-  const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
-  const double upper[2] = {fmin(s->width, wide * s->half_width), top};
-  const double left = footing_is_whole(s) ? -upper[0] : 0.0;
-  const double lower[2] = {left, fmax(0.0, s->depth - 3.0 * s->half_width)};
+  const area_def def = {
+      .spacing = mps_particles_spacing(sim->m.particles),
+      .slit = AREA_SLIT_SHEARED,
+      .lower = {footing_is_whole(s) ? -right : 0.0, fmax(0.0, s->depth - 3.0 * s->half_width)},
+      .upper = {right, top},
+      .walled = true,
+      .side = AREA_SIDE,
+      .solid = in_footing,
+      .user = base};
   area image;
-  if (!image_bands(a, s, sim, lower, upper, &image)) return false;
   output f;
-  if (!plot_open(&f, a, s->out, "shear_bands", 1100, s->model == VON_MISES ? 660 : 440))
+  if (!mpm_snapshots_image(a, s->out, "shear_bands.bin", 1, shot, &def, &image) ||
+      !plot_begin(&f, a, s->out, "shear_bands"))
     return false;
+  area_set(&f, "shear_bands.bin", &def, 1, &image, 1.0);
   output_text(&f,
-              "set title 'Plastic strain (-)'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
-              "set size ratio -1\nset palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')\n"
-              "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
-              "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n",
-              left, upper[0], lower[1], top, fmax(left, -s->half_width),
-              s->depth - footing_row_of(sim, footing_rows(sim) - 1)->path, s->half_width, top);
-  plot_colours(&f, 0.0, 0.5 * sim->strain, image.least, image.most);
-  output_text(&f, "plot ");
-  area_plot(&f, "shear_bands.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "shear_bands");
+              "titles[1] = 'Plastic strain (-)'; x_name = 'x (m)'; y_name = 'y (m)'; cb_name = ''; "
+              "palette = 'blues'\n"
+              "cb_least = 0; cb_most = %.9g\ncover(k) = 'set object 1 rectangle from %.9g,%.9g to "
+              "%.9g,%.9g fillcolor rgb \"#888888\" fillstyle solid front'\n",
+              0.25 * mpm_snapshot_most(shot, 2), fmax(def.lower[0], -s->half_width), base[1],
+              s->half_width, top);
+  return plot_end(&f, s->out, "shear_bands", "maps");
 }
 
 /* ---- the end --------------------------------------------------------------------------------- */
@@ -357,10 +289,14 @@ bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   const capacity c = measure(sim);
+  mpm_snapshot shot = {0};
   if (!isnan(c.last)) warn_of_growth(a, &c); /* before the summary, which lists it */
-  if (!write_pressure(a, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
-      !draw_pressure(a, sim, &c) || !draw_bands(a, s, sim) || !footing_write_section(a, sim))
-    return false;
+  const bool good = app_check(a, mpm_snapshot_last(&sim->m, 0.0, "plastic_strain", &shot)) &&
+                    write_pressure(a, sim) && write_particles(a, s, &shot) &&
+                    write_summary(a, sim, &c) && draw_pressure(a, sim, &c) &&
+                    draw_bands(a, sim, &shot) && footing_write_section(a, sim);
+  mpm_snapshot_free(&shot);
+  if (!good) return false;
   app_tell_results(a, s->out);
   print(sim, &c);
   return true;

@@ -197,17 +197,12 @@ static void name_course(simulation *sim) {
   settings *s = &sim->s;
   const footing_pace *p = &s->pace[sim->now];
   s->run = *p;
-  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost,
-                             .options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = s->twice && sim->now == 0 ? "ground_undeformed" : "ground",
-                             .duration = p->settlement / p->rate,
-                             .key = "mps-footing 5",
-                             .table = options_read(),
-                             .pass = pass,
-                             .user = sim,
-                             .columns = columns};
+  const bool lost = sim->course.saves.lost;
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-footing 5", pass, sim);
+  sim->course.what = s->twice && sim->now == 0 ? "ground_undeformed" : "ground";
+  sim->course.duration = p->settlement / p->rate;
+  sim->course.columns = columns;
+  sim->course.saves.lost = lost;
 }
 
 mps_status footing_build(mps_context *context, void *user) {

@@ -48,46 +48,29 @@ static bool write(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double q = footing_row_of(sim, footing_rows(sim) - 1)->q;
   output f;
-  if (!output_open(&f, a, s->out, "section.csv")) return false;
-  csv_header(&f, "depth_m,vertical_kPa?,horizontal_kPa?,shear_kPa?,plastic_strain?,elastic_kPa?");
+  if (!csv_open(&f, a, s->out, "section.csv",
+                "depth_m,vertical_kPa?,horizontal_kPa?,shear_kPa?,plastic_strain?,elastic_kPa?"))
+    return false;
   for (int64_t k = 0; k < sim->points; k++) {
     const double *stress = sim->profile + 3 * sim->points + STRESSES * k;
     const double depth = s->depth - sim->profile[3 * k + 1];
-    const double row[] = {depth,
-                          -1e-3 * stress[1],
-                          -1e-3 * stress[0],
-                          1e-3 * stress[3],
-                          sim->profile[(3 + STRESSES) * sim->points + k],
-                          s->shape == STRIP
-                              ? 1e-3 * (boussinesq(s, q, depth) + s->density * s->gravity * depth)
-                              : NAN};
-    csv_row(&f, 6, row);
+    CSV_LINE(&f, depth, -1e-3 * stress[1], -1e-3 * stress[0], 1e-3 * stress[3],
+             sim->profile[(3 + STRESSES) * sim->points + k],
+             s->shape == STRIP ? 1e-3 * (boussinesq(s, q, depth) + s->density * s->gravity * depth)
+                               : NAN);
   }
   return output_close(&f);
 }
 
 static bool draw(app *a, const simulation *sim) {
   const settings *s = &sim->s;
-  output f;
-  if (!plot_open(&f, a, s->out, "section", 800, 720)) return false;
-  output_text(&f,
-              "set title \"Stresses at x = %g m after a settlement of %.3g mm\\n{/*0.85 %s, half "
-              "width %g m, h = %g m}\"\nset xlabel 'stress, compression positive (kPa)'\n"
-              "set ylabel 'depth (m)'\nset yrange [%.9g:0]\n",
-              s->section, 1e3 * footing_row_of(sim, footing_rows(sim) - 1)->path,
-              s->shape == STRIP ? "strip" : "circle", s->half_width, s->h, s->depth);
-  plot_key_below(&f);
-  output_text(&f, "plot 'section.csv' every ::1 using 2:1 with lines linewidth 2 linecolor rgb "
-                  "'#1f4e8c' title 'vertical', \\\n"
-                  "  '' every ::1 using 3:1 with lines linewidth 2 linecolor rgb '#2e8b57' title "
-                  "'horizontal', \\\n"
-                  "  '' every ::1 using 4:1 with lines linewidth 2 linecolor rgb '#c0392b' title "
-                  "'shear'");
-  if (s->shape == STRIP)
-    output_text(&f, ", \\\n  '' every ::1 using 6:1 with lines dashtype '--' linecolor rgb "
-                    "'#1f4e8c' title 'vertical, elastic half space'");
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "section");
+  return plot_draw(a, s->out, "section", "footing/section",
+                   "first = 'Stresses at x = %g m after a settlement of %.3g mm'\nsecond = '%s, "
+                   "half width %g m, "
+                   "h = %g m'\ndepth = %.9g; strip = %d",
+                   s->section, 1e3 * footing_row_of(sim, footing_rows(sim) - 1)->path,
+                   s->shape == STRIP ? "strip" : "circle", s->half_width, s->h, s->depth,
+                   s->shape == STRIP);
 }
 
 bool footing_write_section(app *a, const simulation *sim) {

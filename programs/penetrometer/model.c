@@ -6,14 +6,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
+#define START 4.0   /* diameters */
+#define INDEX 100.0 /* G/su */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
 double pen_radius(const penetrometer *p) { return 0.5 * p->s.diameter; }
 
 double pen_shoulder(const penetrometer *p) {
-  return pen_radius(p) / tan(0.5 * p->s.angle * PEN_PI / 180.0);
+  return pen_radius(p) / tan(0.5 * p->s.angle * PUSH_PI / 180.0);
 }
 
 double pen_gap(const penetrometer *p) {
@@ -37,10 +38,10 @@ static double radius_below(const pen_settings *s) {
 
 static const char *check_tip(const pen_settings *s) {
   if ((s->tip == PEN_STL) != (s->mesh != NULL)) return "--tip stl and --mesh belong together";
-  if (s->tip == PEN_STL && (s->axisymmetric || s->both))
-    return "--axisymmetric and --also-axisymmetric are for --tip cone and sphere";
-  if (s->axisymmetric && s->both)
-    return "--axisymmetric and --also-axisymmetric exclude each other";
+  if (s->tip == PEN_STL && (s->model == PEN_AXIAL || s->both))
+    return "--symmetry axial and --also-axisymmetric are for --tip cone and sphere";
+  if (s->model == PEN_AXIAL && s->both)
+    return "--symmetry axial and --also-axisymmetric exclude each other";
   if (s->diameter < s->h * (4.0 - 1e-9)) return "--diameter must be at least 4 cells of --cell";
   return NULL;
 }
@@ -53,19 +54,36 @@ static double flip_time_of(const pen_settings *s) {
 }
 
 static const char *settle_edges(pen_settings *s, const option *table) {
-  const bool has = s->axisymmetric && s->law != PEN_ELASTIC;
+  const bool has = s->model == PEN_AXIAL && s->law != PEN_ELASTIC;
   const double usual = has ? (s->law == PEN_SAND ? 0.75 : 0.6) : 0.0;
-  if (s->inset > 0.0 && !s->axisymmetric) return "--inset is for --axisymmetric";
+  if (s->inset > 0.0 && s->model != PEN_AXIAL) return "--inset is for --symmetry axial";
   return mpm_model_settle_edges(table, s->contact, usual, &s->corner, &s->inset);
+}
+
+/* Without a place of its own the cone is deep in clay without stress, where its resistance is
+ * known: it begins in a hole of START diameters, far from all sides. */
+static void choose_place(pen_settings *s, const option *table) {
+  const bool placed = options_given(table, "depth") || options_given(table, "start") ||
+                      options_given(table, "soil") || s->surcharge > 0.0 || s->gravity > 0.0;
+  const bool space = s->tip == PEN_STL || s->both;
+  if (space && !options_given(table, "symmetry")) s->model = PEN_QUARTER;
+  const bool deep = !placed && s->model == PEN_AXIAL && s->tip == PEN_CONE &&
+                    (s->law == PEN_CLAY || s->law == PEN_TRESCA);
+  const double D = s->diameter;
+  if (deep) s->start = START * D;
+  if (deep && !options_given(table, "sides")) s->sides = PEN_FREE;
+  if (deep && isnan(s->ir) && !options_given(table, "young")) s->ir = INDEX;
+  if (isnan(s->depth)) s->depth = deep ? (START + 1.7) * D : 1.5 * D;
+  s->width = s->breadth = (deep ? 12.0 : 6.0) * D, s->height = (deep ? 9.0 : 4.0) * D;
 }
 
 const char *pen_check(penetrometer *p, const option *table) {
   pen_settings *s = &p->s;
+  choose_place(s, table);
   if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   const char *reason = check_tip(s);
   if (!reason) reason = settle_edges(s, table);
   if (reason) return reason;
-  s->width = s->breadth = 6.0 * s->diameter, s->height = 4.0 * s->diameter;
   double *const sides[] = {&s->width, &s->breadth, &s->height};
   if (s->soil && !options_lengths(s->soil, "m", 3, sides))
     return "--soil must be three lengths in m, WxWxH, such as 0.6x0.6x0.4";
@@ -77,7 +95,7 @@ const char *pen_check(penetrometer *p, const option *table) {
     return "--depth must end 4 cells of --cell above the bottom of the soil";
   const double cells = s->width * s->breadth * s->height / (s->h * s->h * s->h);
   const char *large = mpm_model_too_large(cells * (double)s->ppc);
-  if (large && !s->axisymmetric) return large;
+  if (large && s->model != PEN_AXIAL) return large;
   const double edge = nearbyint(cbrt((double)s->ppc));
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -92,7 +110,8 @@ const char *pen_check(penetrometer *p, const option *table) {
   p->hold = pen_vertical(p, s->start) > 0.0 ? ramp_of(p) : 0.0;
   p->t_end = p->hold + pen_path(p) / s->rate + 0.5 * ramp_of(p);
   p->runs = s->both ? 2 : 1;
-  p->run[0].geometry = s->axisymmetric ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
+  p->run[0].geometry =
+      s->model == PEN_AXIAL ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
   p->run[1].geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   return NULL;
 }
@@ -104,11 +123,11 @@ static void find_size(const penetrometer *p, pen_run *r) {
   const pen_settings *s = &p->s;
   const double asked[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
   for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(asked[c] / s->h - 1e-6);
-  r->factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
+  r->push.factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
   if (r->geometry == MPS_MPM_GEOMETRY_SPACE) return;
-  r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
+  r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PUSH_PI) / s->h);
   r->size[1] = r->size[2];
-  r->factor = 1.0;
+  r->push.factor = 1.0;
 }
 
 /* Lower end of the box across axis c: on the axis where the model is cut there. */
@@ -215,14 +234,6 @@ static mps_status check_mesh(const penetrometer *p, pen_run *r) {
   return r->m.why[0] ? MPS_ERROR_ARGUMENT : MPS_OK;
 }
 
-/* Contact stiffness as in mps-pile: the pressure below a tip must not use up the offset. */
-static double penalty_of(const penetrometer *p, const pen_run *r) {
-  const double spacing = mps_particles_spacing(r->m.particles), dt = mps_mpm_dt(r->m.mpm);
-  const double limit = p->s.density * spacing * spacing / (dt * dt);
-  const double k = STIFFNESS * fmin(mps_material_wave_modulus(r->m.material), limit);
-  return r->geometry == MPS_MPM_GEOMETRY_SPACE ? k * spacing : k;
-}
-
 static mps_status make_tip(penetrometer *p, pen_run *r) {
   const int up = pen_up(r);
   const double ramp = ramp_of(p), rate = p->s.rate, full = p->hold + ramp;
@@ -246,43 +257,44 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
 }
 
 static mps_status add_contact(const penetrometer *p, pen_run *r) {
+  const pen_settings *s = &p->s;
   mps_contact_def contact = mps_contact_defaults();
-  contact.friction = p->s.friction;
-  if (p->s.alpha > 0.0) contact.strength = p->s.alpha * p->s.cohesion;
-  r->penalty = penalty_of(p, r);
-  contact.method = p->s.contact;
-  if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
-  contact.inset = p->s.inset * p->s.h;
-  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
-  return mps_mpm_add_contact(r->m.mpm, r->m.body[0], &contact, NULL);
+  contact.friction = s->friction;
+  if (s->alpha > 0.0) contact.strength = s->alpha * s->cohesion;
+  r->penalty = push_penalty(&r->push);
+  return push_add_contact(&r->push, s->contact, s->corner, s->inset, r->penalty, &contact);
 }
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
-/* A rank may have any number of the particles. */
 static mps_status make_room(const penetrometer *p, pen_run *r) {
-  r->capacity = (int64_t)(pen_path(p) / p->stride) + 2;
-  r->row = calloc((size_t)r->capacity, sizeof *r->row);
-  r->near = calloc((size_t)r->particles * 3, sizeof *r->near);
-  r->distance = calloc((size_t)r->particles, sizeof *r->distance);
+  const double R = pen_radius(p);
+  push *now = &r->push;
+  now->m = &r->m, now->density = p->s.density, now->cell = p->s.h;
+  now->part[PEN_TIP] = "tip", now->part[PEN_SHAFT] = "shaft";
+  now->ground = r->size[pen_up(r)];
+  now->above = p->s.tip == PEN_SPHERE ? R : 0.0;
+  now->upper = p->s.tip == PEN_STL ? INFINITY : R;
   r->point = calloc((size_t)r->particles, sizeof *r->point);
-  r->ratio_min = INFINITY;
-  return r->row && r->near && r->distance && r->point ? MPS_OK : MPS_ERROR_MEMORY;
+  if (!r->point) return MPS_ERROR_MEMORY;
+  return push_begin(now, (int64_t)(pen_path(p) / p->stride) + 2, r->particles);
+}
+
+/* The history of the first run; one about the axis that may follow it is short, and is repeated. */
+static void pass(void *user, resume_bytes *b) {
+  pen_run *r = &((penetrometer *)user)->run[0];
+  push_pass(&r->push, b);
+  resume_pass(b, &r->rest, sizeof r->rest);
 }
 
 static void name_course(penetrometer *p) {
   pen_run *r = &p->run[p->now];
   static mpm_course_options frames_only;
   frames_only.frames = p->s.course.frames;
-  p->course = (mpm_course){.options = p->now == 0 ? &p->s.course : &frames_only,
-                           .m = &r->m,
-                           .directory = p->s.out,
-                           .what = p->now == 0 ? "penetration" : "penetration-axisymmetric",
-                           .duration = p->t_end,
-                           .key = "mps-penetrometer 2",
-                           .table = options_read(),
-                           .pass = pen_pass,
-                           .user = p};
+  p->course = mpm_course_of(p->now == 0 ? &p->s.course : &frames_only, &r->m, p->s.out,
+                            "mps-penetrometer 3", pass, p);
+  p->course.what = p->now == 0 ? "penetration" : "penetration-axisymmetric";
+  p->course.duration = p->t_end;
 }
 
 mps_status pen_build_run(penetrometer *p, bool restores) {
@@ -313,10 +325,7 @@ mps_status pen_build(mps_context *context, void *user) {
 
 void pen_free(penetrometer *p) {
   for (int k = 0; k < 2; k++) {
-    free(p->run[k].row);
-    free(p->run[k].near);
-    free(p->run[k].distance);
-    free(p->run[k].counts.untold);
+    push_free(&p->run[k].push);
     free(p->run[k].point);
   }
 }

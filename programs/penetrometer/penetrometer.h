@@ -6,18 +6,15 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
-#include "common/mpm_course.h"
-#include "common/mpm_model.h"
-#include "common/sand.h"
+#include "penetration/push.h"
 
-#define PEN_PI 3.14159265358979323846
 #define PEN_WATER 1000.0 /* kg/m3, in pores */
 
 enum { PEN_CONE, PEN_SPHERE, PEN_STL };                             /* --tip */
 enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC, PEN_TRESCA, PEN_CAM_CLAY }; /* --law */
-enum { PEN_QUARTER, PEN_WHOLE };                                    /* --symmetry */
+enum { PEN_AXIAL, PEN_QUARTER, PEN_WHOLE };                         /* --symmetry */
 enum { PEN_ROLLERS, PEN_FREE };                                     /* --sides */
-enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
+enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL = PUSH_TOTAL };                /* forces of a row */
 
 typedef struct pen_settings {
   int tip, law, model, sides, volumetric;
@@ -30,7 +27,7 @@ typedef struct pen_settings {
   double start;                 /* m, depth at the beginning; 0: above the ground */
   double alpha;                 /* of the cohesion; NaN: no bound */
   double corner, inset; /* radius of the tip's edges; how far before them faces end; cells */
-  const char *soil;     /* "WxWxD" in diameters */
+  const char *soil;     /* "WxWxH", m */
   double width, breadth, height;           /* m, what `soil` says */
   double e_max;                            /* of sand */
   double cohesion, phi, psi;               /* Pa, degrees */
@@ -39,18 +36,11 @@ typedef struct pen_settings {
   double M, lambda, kappa, e0, ocr;        /* of Cam-Clay; e0 of sand too */
   double permeability;                     /* m/s; NaN: undrained */
   double h, courant, flip_time;            /* m, 1, s; NaN: by law and speed */
-  bool axisymmetric, both;                 /* in place of space; after it */
+  bool both;                               /* after space the same about an axis */
   int64_t ppc, threads;
   mpm_course_options course;
   const char *out;
 } pen_settings;
-
-/* One row of force.csv. */
-typedef struct pen_row {
-  double depth;              /* m */
-  double force[PEN_FORCES];  /* N, upwards: mean over the path since the row before */
-  double smooth[PEN_FORCES]; /* N, mean over a window of the path about the row */
-} pen_row;
 
 /* A particle of the vertical section through the axis, at the end. */
 typedef struct pen_point {
@@ -62,21 +52,12 @@ typedef struct pen_run {
   mps_mpm_geometry geometry;
   mpm_model m;
   double size[3]; /* m: half width, half breadth, height; in axisymmetry radius and height */
-  double factor;  /* of the forces: 1 or 4 */
+  push push;      /* along the path */
   double penalty, dt;
-  pen_row *row;
-  int64_t rows, capacity;
-  double last_time, last_impulse[PEN_FORCES]; /* since the last row */
-  double rest;                                /* N, upwards on the tip before it moves */
-  int64_t inside;                             /* most particles inside the tip at once */
-  mpm_counts counts;                          /* of them */
-  double deepest;                             /* m, the furthest that one was below its surface */
-  double ratio_max, ratio_min;                /* of V/V0 */
+  double rest; /* N, upwards on the tip before it moves */
   int64_t particles, steps;
   pen_point *point;
   int64_t points;
-  double *near;     /* positions of the particles that may be inside the tip, room for all, */
-  double *distance; /* and their distances */
 } pen_run;
 
 /* Undrained ground before the penetration, where it has no weight: Pa. */
@@ -130,13 +111,9 @@ typedef struct pen_factor {
 } pen_factor;
 pen_factor pen_factor_of(const penetrometer *p, double q, double depth);
 
-/* restart.c: what a restarted run needs of its history; `user` is the penetrometer. */
-void pen_pass(void *user, resume_bytes *b);
-
 /* ---- push.c ---------------------------------------------------------------------------------- */
 
 mps_status pen_push(void *user);
-double pen_depth(const penetrometer *p, const pen_run *r);
 double pen_reached(const pen_run *r); /* m: depth of the last row */
 
 /* ---- results.c, pictures.c ------------------------------------------------------------------- */

@@ -28,7 +28,7 @@ static bool draw_force(app *a, const penetrometer *p) {
       "first = '%s'; second = 'diameter %g m, h = %g m, %g m/s, {/Symbol m} = %g'\nclay = %d; unit "
       "= %.9g; runs = %d; space = %d; parts = %d; hertz = %.9g; above = %d; fallen = %d",
       title_of(p), p->s.diameter, p->s.h, p->s.rate, p->s.friction, clay,
-      clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3, (int)p->runs,
+      clay ? PUSH_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3, (int)p->runs,
       p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE, p->s.tip == PEN_CONE && p->s.friction > 0.0,
       hertz ? pen_hertz(p, 1.0) : NAN, pen_reached(&p->run[0]) <= 0.0, p->s.start > 0.0);
 }
@@ -59,18 +59,11 @@ static bool in_tip(const void *user, double x, double z) {
 }
 
 /* A value that all but a few of the points stay below. */
-static int ascending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double most_of(const pen_run *r, bool strain) {
-  double *value = malloc((size_t)(r->points + 1) * sizeof *value), most = 1.0;
-  if (!value) return most;
-  for (int64_t i = 0; i < r->points; i++)
+  double *value = malloc((size_t)(r->points + 1) * sizeof *value);
+  for (int64_t i = 0; value && i < r->points; i++)
     value[i] = strain ? r->point[i].strain : r->point[i].moved;
-  qsort(value, (size_t)r->points, sizeof *value, ascending);
-  if (r->points > 0) most = value[(r->points - 1) * 997 / 1000];
+  const double most = value ? push_most(r->points, value, 0.997) : NAN;
   free(value);
   return most > 0.0 ? most : 1.0;
 }
@@ -131,5 +124,5 @@ static bool draw_section(app *a, const penetrometer *p) {
 }
 
 bool pen_draw(app *a, const penetrometer *p) {
-  return p->run[0].rows == 0 || (draw_force(a, p) && draw_section(a, p));
+  return p->run[0].push.rows == 0 || (draw_force(a, p) && draw_section(a, p));
 }

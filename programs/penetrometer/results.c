@@ -26,24 +26,24 @@ double pen_hertz(const penetrometer *p, double depth) {
   return depth > 0.0 ? 4.0 / 3.0 * stiffness * sqrt(pen_radius(p)) * pow(depth, 1.5) : 0.0;
 }
 
-static double base_area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
+static double base_area(const penetrometer *p) { return PUSH_PI * pen_radius(p) * pen_radius(p); }
 
 /* Means over the last part of the path (N); of Hertz' force too. */
 typedef struct mean {
-  double force[PEN_FORCES], hertz, depth; /* N, N, m */
+  double force[PUSH_FORCES], hertz, depth; /* N, N, m */
 } mean;
 
 static mean mean_of(const penetrometer *p, const pen_run *r) {
   mean m = {{0.0}, 0.0, 0.0};
   int64_t count = 0;
-  for (int64_t i = 0; i < r->rows; i++) {
-    if (r->row[i].depth < p->s.start + (1.0 - LAST) * (pen_reached(r) - p->s.start)) continue;
-    for (int k = 0; k < PEN_FORCES; k++) m.force[k] += r->row[i].force[k];
-    m.hertz += pen_hertz(p, r->row[i].depth);
-    m.depth += r->row[i].depth;
+  for (int64_t i = 0; i < r->push.rows; i++) {
+    if (r->push.row[i].depth < p->s.start + (1.0 - LAST) * (pen_reached(r) - p->s.start)) continue;
+    for (int k = 0; k < PUSH_FORCES; k++) m.force[k] += r->push.row[i].force[k];
+    m.hertz += pen_hertz(p, r->push.row[i].depth);
+    m.depth += r->push.row[i].depth;
     count++;
   }
-  for (int k = 0; k < PEN_FORCES; k++) m.force[k] = count ? m.force[k] / (double)count : NAN;
+  for (int k = 0; k < PUSH_FORCES; k++) m.force[k] = count ? m.force[k] / (double)count : NAN;
   m.hertz = count ? m.hertz / (double)count : NAN;
   m.depth = count ? m.depth / (double)count : NAN;
   return m;
@@ -57,8 +57,8 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
                 "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
                 "q_kPa,q_over_c?,n_kt?"))
     return false;
-  for (int64_t i = 0; i < r->rows; i++) {
-    const pen_row *row = &r->row[i];
+  for (int64_t i = 0; i < r->push.rows; i++) {
+    const push_row *row = &r->push.row[i];
     const double q = row->smooth[PEN_TIP] / base_area(p);
     const double ratio = p->s.cohesion > 0.0 ? q / p->s.cohesion : NAN;
     CSV_LINE(&f, row->depth, row->force[PEN_TOTAL], row->force[PEN_TIP], row->force[PEN_SHAFT],
@@ -87,7 +87,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_text(f, "tip", tips[s->tip]);
   json_text(f, "law", laws[s->law]);
   json_text(f, "geometry", p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric");
-  JSON_NUMBERS(f, {"h", s->h}, {"flip_time", s->flip_time});
+  JSON_NUMBERS(f, {"cell", s->h}, {"flip_time", s->flip_time});
   sand_write(f, &(sand_voids){s->e0, s->e_max}, s->law == PEN_SAND ? s->psi : 0.0);
   JSON_NUMBERS(f, {"diameter", s->diameter}, {"rate", s->rate}, {"friction", s->friction});
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
@@ -213,10 +213,12 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
                  {"axisymmetric_force_total", m[1].force[PEN_TOTAL]},
                  {"space_over_axisymmetric", m[0].force[PEN_TOTAL] / m[1].force[PEN_TOTAL]});
   }
-  json_integer(&f, "particles_inside", r->inside > other->inside ? r->inside : other->inside);
-  JSON_NUMBERS(&f, {"deepest_inside", fmax(r->deepest, other->deepest)},
-               {"volume_ratio_max", fmax(r->ratio_max, other->ratio_max)},
-               {"volume_ratio_min", fmin(r->ratio_min, other->ratio_min)});
+  json_integer(&f, "particles_inside",
+               r->push.seen.inside > other->push.seen.inside ? r->push.seen.inside
+                                                             : other->push.seen.inside);
+  JSON_NUMBERS(&f, {"deepest_inside", fmax(r->push.seen.deepest, other->push.seen.deepest)},
+               {"volume_ratio_max", fmax(r->push.seen.ratio_max, other->push.seen.ratio_max)},
+               {"volume_ratio_min", fmin(r->push.seen.ratio_min, other->push.seen.ratio_min)});
   json_end(&f);
   return output_close(&f);
 }
@@ -255,9 +257,9 @@ static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
   if (elastic) compare_tell(&hertz);
   const cone_theory t = find_cone(p, m);
   tell_factor(&t);
-  if (isfinite(r->ratio_min))
-    printf("V/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
-           (long long)r->inside);
+  if (isfinite(r->push.seen.ratio_min))
+    printf("V/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->push.seen.ratio_min,
+           r->push.seen.ratio_max, (long long)r->push.seen.inside);
   if (p->s.law == PEN_SAND) sand_print(&(sand_voids){p->s.e0, p->s.e_max}, p->s.psi);
 }
 
@@ -266,7 +268,7 @@ bool pen_finish(app *a, void *user) {
   mpm_model *model = &p->run[0].m;
   mps_particles *soil = model->whole ? model->whole : model->particles;
   const mean m[2] = {mean_of(p, &p->run[0]), mean_of(p, &p->run[1])};
-  if (p->runs == 2 && p->run[1].rows < MPM_MODEL_SAMPLES) p->runs = 1; /* interrupted before */
+  if (p->runs == 2 && p->run[1].push.rows < MPM_MODEL_SAMPLES) p->runs = 1; /* interrupted before */
   if (!write_force(a, p, &p->run[0], "force.csv") || !write_section(a, p) ||
       (p->runs == 2 && !write_force(a, p, &p->run[1], "force-axisymmetric.csv")) ||
       !write_summary(a, p, m) || !frame_write(a, soil, p->s.out, "soil.vtkhdf") || !pen_draw(a, p))

@@ -112,13 +112,8 @@ static mps_status set_stress(const penetrometer *p, pen_run *r) {
       status = mps_particles_set(set, "stress", c, -s->surcharge * (c == pen_up(r) ? 1.0 : s->k0));
     return status;
   }
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->k0, .density = NAN};
-  mps_geostatic_def def = mps_geostatic_defaults();
-  def.layers = &layer, def.layer_count = 1;
-  def.gravity = s->gravity;
-  def.surface = r->size[pen_up(r)];
-  def.surcharge = s->surcharge;
-  return mps_particles_set_geostatic(set, &def);
+  r->push.m = &r->m;
+  return push_set_stress(&r->push, s->gravity, s->k0, r->size[pen_up(r)], s->surcharge);
 }
 
 /* ---- laws ------------------------------------------------------------------------------------ */
@@ -203,14 +198,14 @@ static mps_status make_tresca(mps_context *context, const pen_settings *s, mps_m
 }
 
 static mps_status make_sand(mps_context *context, const pen_settings *s, mps_material **out) {
-  const double radian = PEN_PI / 180.0;
-  mps_material_drucker_prager_def sand = mps_material_drucker_prager_defaults();
-  sand.cone = MPS_MATERIAL_CONE_INSCRIBED;
-  sand.young = s->young, sand.poisson = s->poisson;
-  sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
-  sand.cohesion = s->cohesion;
-  sand.void_ratio = s->e0, sand.max_void_ratio = s->e_max;
-  return mps_material_create_drucker_prager(context, &sand, out);
+  const push_sand sand = {.young = s->young,
+                          .poisson = s->poisson,
+                          .phi = s->phi,
+                          .psi = s->psi,
+                          .cohesion = s->cohesion,
+                          .voids = {s->e0, s->e_max},
+                          .cone = MPS_MATERIAL_CONE_INSCRIBED};
+  return push_make_sand(context, &sand, out);
 }
 
 static mps_status make_law(penetrometer *p, pen_run *r) {

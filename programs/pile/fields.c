@@ -5,30 +5,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-static mps_status open_series(mps_context *context, pile *p) {
-  static const char *const fields[] = {"velocity", "stress", "volume", "plastic_strain"};
-  mps_recorder_def def = mps_recorder_defaults();
-  char path[4096];
-  char name[sizeof p->vtk] = "pile.vtkhdf"; /* after a restart the former one stays */
-  if (p->s.restart) snprintf(name, sizeof name, "pile-from-%g.vtkhdf", p->restarted);
-  if (snprintf(path, sizeof path, "%s/%s", p->s.out, name) >= (int)sizeof path)
-    return MPS_OK; /* the CSV files report it */
-  def.path = path;
-  def.xdmf = 1;
-  def.fields = fields;
-  def.field_count = sizeof fields / sizeof *fields;
-  mps_particles *whole;
-  mps_status status = mpm_model_whole(&p->m, &whole);
-  if (status == MPS_OK && whole) status = mps_recorder_create(context, whole, &def, &p->recorder);
-  if (p->recorder) memcpy(p->vtk, name, sizeof name);
-  return mpm_model_tell(&p->m, status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status, 0, NULL);
-}
 
 /* Pictures show frames evenly among all, the last one always. */
 int64_t pile_pictures(const pile *p, int64_t frames) {
-  const int64_t all = p->s.frames, shown = all < PILE_PICTURES ? all : PILE_PICTURES;
+  const int64_t all = p->s.course.frames, shown = all < PILE_PICTURES ? all : PILE_PICTURES;
   return all > 0 ? frames * shown / all : 0;
 }
 
@@ -45,7 +25,7 @@ static mps_status keep(pile *p, mps_particles *set) {
     free(rows);
     return MPS_ERROR_MEMORY;
   }
-  p->frame[p->frames_kept++] = (pile_frame){pile_depth(p), value};
+  p->frame[p->frames_kept++] = (pile_frame){push_depth(&p->push), value};
   for (int64_t i = 0; i < x.shape[0]; i++, value += FIELDS) {
     const int64_t k = rows[i];
     double s[4];
@@ -63,30 +43,37 @@ static mps_status keep(pile *p, mps_particles *set) {
   return MPS_OK;
 }
 
-/* A series that cannot continue is reported, and does not end the run. */
-static void write_frame(pile *p) {
-  if (app_check(p->m.a, mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm)))) return;
-  mps_recorder_destroy(&p->recorder);
-  p->m.failed = true;
-}
-
 mps_status pile_take_frame(pile *p) {
   mps_particles *whole;
-  mps_status status = p->opened ? MPS_OK : open_series(p->m.a->context, p);
-  p->opened = true;
-  if (status == MPS_OK) status = mpm_model_whole(&p->m, &whole);
-  if (status != MPS_OK) return status;
+  mps_status status = mpm_model_whole(&p->m, &whole);
   if (status == MPS_OK && whole && pile_pictures(p, p->frames + 1) > p->frames_kept)
     status = keep(p, whole);
-  if (status == MPS_OK && p->recorder) write_frame(p);
   p->frames++;
-  return mpm_model_tell(&p->m, status, 0, NULL);
+  status = mpm_model_tell(&p->m, status, 0, NULL);
+  return status == MPS_OK ? mpm_course_frame(&p->course) : status;
+}
+
+/* Of a checkpoint: how many there were, and those that are kept. */
+void pile_pass_frames(pile *p, resume_bytes *b) {
+  const size_t bytes = (size_t)p->particles * FIELDS * sizeof(float);
+  int64_t kept = p->frames_kept;
+  resume_pass(b, &p->frames, sizeof p->frames);
+  resume_pass(b, &kept, sizeof kept);
+  if (resume_wrong(b, p->frames < 0 || p->frames > p->s.course.frames ||
+                          kept != pile_pictures(p, p->frames)))
+    return;
+  for (int64_t f = 0; f < kept; f++) {
+    if (f >= p->frames_kept && !(p->frame[f].value = malloc(bytes))) {
+      b->status = MPS_ERROR_MEMORY;
+      return;
+    }
+    if (f >= p->frames_kept) p->frames_kept++;
+    resume_pass(b, &p->frame[f].depth, sizeof p->frame[f].depth);
+    resume_pass(b, p->frame[f].value, bytes);
+  }
 }
 
 bool pile_write_frames(app *a, pile *p) {
-  const bool series = p->recorder != NULL;
-  if (!app_check(a, mps_recorder_close(&p->recorder))) return false;
-  if (series) app_wrote(a, p->vtk);
   for (int64_t f = 0; f < p->frames_kept; f++) {
     char name[32];
     output file;
@@ -105,7 +92,6 @@ bool pile_write_frames(app *a, pile *p) {
 }
 
 void pile_free_frames(pile *p) {
-  mps_recorder_destroy(&p->recorder);
   for (int64_t f = 0; f < p->frames_kept; f++) free(p->frame[f].value);
   p->frames_kept = 0;
 }

@@ -2,15 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
-#include <mps/soil.h>
 #include <mps/mpm.h>
 
 #include <math.h>
 #include <stdlib.h>
 
-#define FOOT 0.5      /* of the wall's thickness */
-#define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
-#define CHATTER 6.0   /* over m/dt^2: a stiffer contact throws particles back and forth */
+#define FOOT 0.5    /* of the wall's thickness */
+#define CHATTER 6.0 /* over m/dt^2: a stiffer contact throws particles back and forth */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -54,35 +52,24 @@ const char *pile_check(pile_settings *s) {
 
 /* ---- soil ------------------------------------------------------------------------------------ */
 
-/* The weight above, and K0 of it sideways. */
-static mps_status set_stress(pile *p) {
-  const pile_settings *s = &p->s;
-  p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = p->k0, .density = NAN};
-  mps_geostatic_def def = mps_geostatic_defaults();
-  def.layers = &layer, def.layer_count = 1;
-  def.gravity = PILE_GRAVITY;
-  def.surface = s->height;
-  return mps_particles_set_geostatic(p->m.particles, &def);
-}
-
 static mps_status make_soil(mps_context *context, pile *p) {
   const pile_settings *s = &p->s;
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->height};
+  const push_sand sand = {.young = s->young,
+                          .poisson = s->poisson,
+                          .phi = s->phi,
+                          .psi = s->psi,
+                          .cohesion = s->cohesion,
+                          .voids = s->voids,
+                          .cone = pile_cone(s)};
   mps_particles_def set = mps_particles_defaults();
   set.spacing = s->h / sqrt((double)s->ppc);
+  p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
   mps_status status = mpm_model_particles(&p->m, context, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(p->m.particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(p->m.particles, "density", 0, s->density);
-  if (status == MPS_OK) status = set_stress(p);
-  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
-  law.cone = pile_cone(s);
-  law.young = s->young, law.poisson = s->poisson;
-  law.friction = s->phi * PILE_PI / 180.0, law.dilation = s->psi * PILE_PI / 180.0;
-  law.cohesion = s->cohesion;
-  law.void_ratio = s->voids.e0, law.max_void_ratio = s->voids.e_max;
-  if (status == MPS_OK) status = mps_material_create_drucker_prager(context, &law, &p->m.material);
-  return status;
+  if (status == MPS_OK) status = push_set_stress(&p->push, PILE_GRAVITY, p->k0, s->height, 0.0);
+  return status == MPS_OK ? push_make_sand(context, &sand, &p->m.material) : status;
 }
 
 /* ---- pile ------------------------------------------------------------------------------------ */
@@ -99,7 +86,7 @@ static mps_status make_pile(mps_context *context, pile *p) {
   static const struct {
     const char *name;
     int64_t edge, edges;
-  } part[PILE_PARTS] = {{"tip", 0, 3}, {"inside", 5, 1}, {"outside", 3, 1}};
+  } part[PUSH_PARTS] = {{"tip", 0, 3}, {"inside", 5, 1}, {"outside", 3, 1}};
   const double t[] = {p->t_start, p->t_end + 1.0}, v[] = {s->rate, s->rate};
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
@@ -107,7 +94,7 @@ static mps_status make_pile(mps_context *context, pile *p) {
   mps_status status =
       mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 6, corner, &p->m.body[0]);
-  for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
+  for (int k = 0; k < PUSH_PARTS && status == MPS_OK; k++)
     status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, part[k].edges, NULL);
   if (status == MPS_OK) status = mps_body_drive(p->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
@@ -120,31 +107,48 @@ static mps_status make_pile(mps_context *context, pile *p) {
 static double penalty_of(const pile *p) {
   const pile_settings *s = &p->s;
   const double spacing = mps_particles_spacing(p->m.particles);
-  const double limit = s->density * spacing * spacing / (p->dt * p->dt);
   if (!isnan(s->k)) return s->k;
-  if (!isnan(s->xi)) return 2.0 * (1.0 - s->xi) * limit;
-  return STIFFNESS * fmin(mps_material_wave_modulus(p->m.material), limit);
+  if (isnan(s->xi)) return push_penalty(&p->push);
+  return 2.0 * (1.0 - s->xi) * s->density * spacing * spacing / (p->dt * p->dt);
 }
 
 static mps_status add_contact(pile *p) {
+  const pile_settings *s = &p->s;
   mps_contact_def contact = mps_contact_defaults();
   p->penalty = penalty_of(p);
-  contact.friction = p->s.friction;
-  contact.method = p->s.contact;
-  if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
-  contact.inset = p->s.inset * p->s.h;
-  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
-  return mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL);
+  contact.friction = s->friction;
+  return push_add_contact(&p->push, s->contact, s->corner, s->inset, p->penalty, &contact);
+}
+
+static void pass(void *user, resume_bytes *b) {
+  pile *p = user;
+  push_pass(&p->push, b);
+  if (b->status == MPS_OK) pile_pass_frames(p, b);
+}
+
+static void prepare(pile *p) {
+  const pile_settings *s = &p->s;
+  p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
+  p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->rate;
+  p->stride = s->h / PILE_ROWS;
+  p->push = (push){.m = &p->m,
+                   .part = {"tip", "inside", "outside"},
+                   .ground = s->height,
+                   .lower = p->inner,
+                   .upper = p->outer,
+                   .density = s->density,
+                   .cell = s->h,
+                   .factor = 1.0};
+  p->course = mpm_course_of(&s->course, &p->m, s->out, "mps-pile 5", pass, p);
+  p->course.what = "pile";
+  p->course.duration = p->t_end;
 }
 
 mps_status pile_build(mps_context *context, void *user) {
   pile *p = user;
   const pile_settings *s = &p->s;
-  p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
-  p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->rate;
-  const double every = isnan(s->every_checkpoint) ? 0.1 * p->t_end : s->every_checkpoint;
-  p->saves = (resume_schedule){.path = s->checkpoint, .every = every, .save = pile_save, .user = p};
-  mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
+  prepare(p);
+  mps_status status = mpm_course_peek(&p->course, context);
   if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
@@ -158,22 +162,19 @@ mps_status pile_build(mps_context *context, void *user) {
   def.upper[0] = s->width;
   def.gravity[1] = -PILE_GRAVITY;
   if (status == MPS_OK) status = make_pile(context, p);
-  if (status == MPS_OK) status = pile_begin(p);
   status = mpm_model_create(&p->m, context, status, &def);
   status = mpm_method_choose(&s->method, p->m.mpm, status);
   p->particles = mps_particles_count(p->m.particles);
   if (status == MPS_OK) status = mpm_model_sum(&p->m, &p->particles);
   if (status != MPS_OK) return status;
   p->dt = mps_mpm_dt(p->m.mpm);
-  status = add_contact(p);
-  if (status == MPS_OK && s->restart) status = pile_restore(context, p);
-  p->restarted = mps_mpm_time(p->m.mpm);
-  return status;
+  status = push_begin(&p->push, (int64_t)((s->depth + s->h) / p->stride) + 2, p->particles);
+  status = app_settle(p->m.a, status);
+  if (status == MPS_OK) status = add_contact(p);
+  return status == MPS_OK ? mpm_course_begin(&p->course, context, true) : status;
 }
 
 void pile_free(pile *p) {
   pile_free_frames(p);
-  free(p->row);
-  free(p->inside.untold);
-  p->row = NULL, p->inside.untold = NULL;
+  push_free(&p->push);
 }

@@ -11,18 +11,11 @@
 
 /* Upper bound of all but a few of the soil's particles: the colour scale ignores single particles
  * under a corner. */
-static int ascending(const void *a, const void *b) {
-  const float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
-
 static double most_of(const pile *p, const pile_frame *frame, int field, double share) {
-  const int64_t count = p->particles;
-  float *value = malloc((size_t)count * sizeof *value);
-  if (!value) return NAN;
-  for (int64_t k = 0; k < count; k++) value[k] = fabsf(frame->value[k * FIELDS + field]);
-  qsort(value, (size_t)count, sizeof *value, ascending);
-  const double most = (double)value[(int64_t)(share * (double)(count - 1))];
+  double *value = malloc((size_t)(p->particles + 1) * sizeof *value);
+  for (int64_t k = 0; value && k < p->particles; k++)
+    value[k] = (double)fabsf(frame->value[k * FIELDS + field]);
+  const double most = value ? push_most(p->particles, value, share) : NAN;
   free(value);
   return most;
 }
@@ -145,7 +138,7 @@ static bool draw_overview(app *a, const pile *p, const section *stress, const se
 }
 
 bool pile_draw(app *a, const pile *p) {
-  if (p->frames_kept == 0 || p->rows == 0) return true;
+  if (p->frames_kept == 0 || p->push.rows == 0) return true;
   static const quantity *const all[3] = {&mean_stress, &deviatoric_stress, &shear_strain};
   section x[3] = {{.q = NULL}};
   bool good = true;

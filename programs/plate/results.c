@@ -63,19 +63,19 @@ static bool open_summary(output *out, const plate *p, const elastic_method *meth
   json_integer_if(&f, known, "particles", known ? mps_particles_count(p->particles) : 0);
   json_number_if(&f, known, "spacing", p->spacing);
   if (p->def->hole) {
-    json_number_if(&f, known, "concentration", p->concentration);
-    json_number(&f, "concentration_exact", 3.0);
-    json_number_if(&f, known, "largest_principal_over_tension", p->largest);
+    JSON_NUMBERS(&f, {"concentration", known ? p->concentration : NAN},
+                 {"concentration_exact", 3.0},
+                 {"largest_principal_over_tension", known ? p->largest : NAN});
   } else {
-    json_number_if(&f, known, "end_displacement", p->end);
-    json_number_if(&f, known, "end_displacement_exact", p->end_exact);
-    json_number_if(&f, known, "displacement_error", p->displacement_error);
+    JSON_NUMBERS(&f, {"end_displacement", known ? p->end : NAN},
+                 {"end_displacement_exact", known ? p->end_exact : NAN},
+                 {"displacement_error", known ? p->displacement_error : NAN});
   }
   json_number_if(&f, known, "stress_l2_error", p->stress_error);
   json_integer_if(&f, known, "unknowns", p->report.unknowns);
   json_integer_if(&f, known, "nnz_factor", p->report.factor_nonzeros);
-  json_number_if(&f, known, "seconds_factor", p->report.seconds_factor);
-  json_number_if(&f, known, "residual", p->report.residual);
+  JSON_NUMBERS(&f, {"seconds_factor", known ? p->report.seconds_factor : NAN},
+               {"residual", known ? p->report.residual : NAN});
   json_end(&f);
   *out = f;
   return true;

@@ -39,8 +39,7 @@ static int parse(settings *s, int argc, char **argv) {
                                .x = block_corner,
                                .dt = 1.0},
                   .step = 5e-4,
-                  .duration = 0.15,
-                  .out = "out/precice-soil"};
+                  .duration = 0.15};
   option table[] = {
       OPTION_HEADING("Soil"),
       OPTION_NUMBER_IN("dt", OPTION_ABOVE_TO(0.0, 1e-3), &s->step,

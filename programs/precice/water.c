@@ -48,8 +48,7 @@ static int parse(settings *s, int argc, char **argv) {
                   .length = 1.5,
                   .depth = 0.9,
                   .spacing = 0.05,
-                  .x = -0.05,
-                  .out = "out/precice-water"};
+                  .x = -0.05};
   option table[] = {
       OPTION_HEADING("Water"),
       OPTION_NUMBER("length", &s->length, "rounded to whole spacings"),

@@ -56,13 +56,7 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(seawall *w) {
-  return (resume){.key = "mps-seawall 5",
-                  .table = w->table,
-                  .pass = pass,
-                  .user = w,
-                  .fluid = w->fluid,
-                  .a = w->a,
-                  .domain = w->a->domain};
+  return resume_of_fluid("mps-seawall 5", w->table, pass, w, w->fluid, w->a);
 }
 
 /* ---- to the file and back -------------------------------------------------------------------- */

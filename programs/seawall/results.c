@@ -31,13 +31,13 @@ static sainflou find_heights(const seawall *w) {
 
 static bool write_force(app *a, const seawall *w) {
   output f;
-  if (!output_open(&f, a, w->s.out, "force.csv")) return false;
-  csv_header(&f, "t_s,force_N,force_10_Hz_N,moment_N_m,level_m?,deflection_m,piston_m");
+  if (!csv_open(&f, a, w->s.out, "force.csv",
+                "t_s,force_N,force_10_Hz_N,moment_N_m,level_m?,deflection_m,piston_m"))
+    return false;
   for (int64_t k = 0; k < w->samples; k++) {
     const seawall_sample *p = &w->sample[k];
     const double slow = seawall_smooth(w, llround(p->t / w->s.dt) - 1);
-    const double row[] = {p->t, p->force, slow, p->moment, p->level, p->deflection, p->piston};
-    csv_row(&f, 7, row);
+    CSV_LINE(&f, p->t, p->force, slow, p->moment, p->level, p->deflection, p->piston);
   }
   return output_close(&f);
 }
@@ -48,13 +48,10 @@ static bool write_pressure(app *a, const seawall *w, double H) {
   const double top = s->depth + H + waves_sainflou_rise(k, s->depth, H);
   const double bed = WAVES_DENSITY * WAVES_G * s->depth + waves_sainflou_bed(k, s->depth, H);
   output f;
-  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
-  csv_header(&f, "y_m,pressure_Pa,sainflou_Pa?");
+  if (!csv_open(&f, a, s->out, "pressure.csv", "y_m,pressure_Pa,sainflou_Pa?")) return false;
   for (int64_t i = 0; i < w->look.points; i++) {
     const double y = w->look.y[i];
-    const double row[] = {y, w->look.pressure[i],
-                          isnan(H) ? NAN : fmax(bed * (1.0 - y / top), 0.0)};
-    csv_row(&f, 3, row);
+    CSV_LINE(&f, y, w->look.pressure[i], isnan(H) ? NAN : fmax(bed * (1.0 - y / top), 0.0));
   }
   return output_close(&f);
 }
@@ -67,9 +64,8 @@ static bool write_wall(app *a, const seawall *w) {
     return false;
   csv_header(&f, "x_m,y_m,u_m,v_m");
   for (int64_t i = 0; i < x.shape[0]; i++) {
-    const double row[] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1),
-                          w->look.displacement[2 * i], w->look.displacement[2 * i + 1]};
-    csv_row(&f, 4, row);
+    CSV_LINE(&f, *mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1), w->look.displacement[2 * i],
+             w->look.displacement[2 * i + 1]);
   }
   return output_close(&f);
 }
@@ -99,30 +95,25 @@ static void summarise(output *f, const seawall *w, const sainflou *h) {
   const seawall_settings *s = &w->s;
   const seawall_sample *at = &w->look.at;
   const bool crest = at->t >= SEAWALL_LOOK - 0.5 * s->sample;
-  json_number(f, "force_at_516", crest ? at->force : NAN);
-  json_number(f, "moment_at_516", crest ? at->moment : NAN);
-  json_number(f, "deflection_at_516", crest ? at->deflection : NAN);
-  json_number(f, "level_at_516", crest ? at->level : NAN);
+  JSON_NUMBERS(f, {"force_at_516", crest ? at->force : NAN},
+               {"moment_at_516", crest ? at->moment : NAN},
+               {"deflection_at_516", crest ? at->deflection : NAN},
+               {"level_at_516", crest ? at->level : NAN});
   double peak_at, crest_at;
   const double peak = find_peak(w, SEAWALL_IMPULSE, INFINITY, &peak_at); /* after the jerk */
   const double most =
       find_peak(w, SEAWALL_LOOK - 0.25 * s->period, SEAWALL_LOOK + 0.25 * s->period, &crest_at);
-  json_number(f, "force_10_hz_at_516", crest ? seawall_smooth(w, llround(at->t / s->dt) - 1) : NAN);
-  json_number(f, "force_crest", crest ? most : NAN);
-  json_number(f, "force_crest_time", crest ? crest_at : NAN);
-  json_number(f, "force_peak", peak);
-  json_number(f, "force_peak_time", peak_at);
-  json_number(f, "sainflou_height", h->harmonic);
-  json_number(f, "sainflou_force", crest_force(w, h->harmonic));
-  json_number(f, "sainflou_height_level", h->level);
-  json_number(f, "sainflou_force_level", crest_force(w, h->level));
-  json_number(f, "havelock_height", h->paddle);
-  json_number(f, "sainflou_force_havelock", crest_force(w, h->paddle));
-  json_number(f, "force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth);
+  JSON_NUMBERS(f,
+               {"force_10_hz_at_516", crest ? seawall_smooth(w, llround(at->t / s->dt) - 1) : NAN},
+               {"force_crest", crest ? most : NAN}, {"force_crest_time", crest ? crest_at : NAN},
+               {"force_peak", peak}, {"force_peak_time", peak_at}, {"sainflou_height", h->harmonic},
+               {"sainflou_force", crest_force(w, h->harmonic)}, {"sainflou_height_level", h->level},
+               {"sainflou_force_level", crest_force(w, h->level)}, {"havelock_height", h->paddle},
+               {"sainflou_force_havelock", crest_force(w, h->paddle)},
+               {"force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth});
   const seawall_sample *last = &w->sample[w->samples - 1];
-  json_number(f, "force_end", last->force);
-  json_number(f, "moment_end", last->moment);
-  json_number(f, "deflection_end", last->deflection);
+  JSON_NUMBERS(f, {"force_end", last->force}, {"moment_end", last->moment},
+               {"deflection_end", last->deflection});
   if (crest)
     printf("t = %.2f s: force %.1f N, moment %.1f N m about the bed, wall moves by %.4g m\n", at->t,
            at->force, at->moment, at->deflection);

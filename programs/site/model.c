@@ -277,14 +277,9 @@ static bool complete(simulation *sim) {
 
 mps_status site_build(mps_context *context, void *user) {
   simulation *sim = user;
-  sim->course = (mpm_course){.options = &sim->s.course,
-                             .m = &sim->m,
-                             .directory = sim->s.out,
-                             .what = "ground",
-                             .key = "mps-site-response 1",
-                             .table = options_read(),
-                             .pass = site_pass,
-                             .user = sim};
+  sim->course =
+      mpm_course_of(&sim->s.course, &sim->m, sim->s.out, "mps-site-response 1", site_pass, sim);
+  sim->course.what = "ground";
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status != MPS_OK) return status;
   status = read_input(context, sim);

@@ -119,23 +119,14 @@ mps_status site_take_sample(simulation *sim) {
  */
 void site_pass(void *user, resume_bytes *b) {
   simulation *sim = user;
-  const site_ground ground = sim->ground;
   const double record[3] = {sim->record_end, sim->record_peak, sim->duration};
-  double former[3] = {record[0], record[1], record[2]};
-  const int64_t rows = sim->rows;
-  resume_pass(b, &sim->ground, sizeof sim->ground);
-  resume_pass(b, former, sizeof former);
-  resume_pass(b, &sim->rows, sizeof sim->rows);
+  const bool same = resume_same(b, &sim->ground, sizeof sim->ground) &&
+                    resume_same(b, record, sizeof record) &&
+                    resume_same(b, &sim->rows, sizeof sim->rows);
   resume_pass(b, &sim->count, sizeof sim->count);
-  const bool same = memcmp(&ground, &sim->ground, sizeof ground) == 0 &&
-                    memcmp(record, former, sizeof record) == 0;
-  if (!same)
-    site_refuse(&sim->m,
-                "the layers or the record have changed since the checkpoint %s was written",
-                sim->s.course.restart);
-  if (resume_wrong(b,
-                   !same || sim->rows != rows || sim->count < 0 || sim->count > sim->samples + 1)) {
-    sim->rows = rows, sim->count = 0;
+  if (!mpm_course_same(&sim->course, b, same, "the layers or the record have") ||
+      resume_wrong(b, sim->count < 0 || sim->count > sim->samples + 1)) {
+    sim->count = 0;
     return;
   }
   resume_pass(b, sim->row, (size_t)sim->rows * sizeof *sim->row);

@@ -149,35 +149,35 @@ static void find_peak(const simulation *sim, findings *f) {
 
 static bool write_surface(app *a, const simulation *sim, const findings *f) {
   output file;
-  if (!output_open(&file, a, sim->s.out, "surface.csv")) return false;
-  csv_header(&file, "time_s,acceleration_m_s2,velocity_m_s,displacement_m,input_acceleration_m_s2,"
-                    "input_velocity_m_s,input_displacement_m,settlement_m");
+  if (!csv_open(&file, a, sim->s.out, "surface.csv",
+                "time_s,acceleration_m_s2,velocity_m_s,displacement_m,input_acceleration_m_s2,"
+                "input_velocity_m_s,input_displacement_m,settlement_m"))
+    return false;
   for (int64_t k = 0; k < sim->count; k++) {
     const site_sample *s = &sim->sample[k];
     const double v = mps_signal_velocity(sim->motion, s->t);
     const double u = mps_signal_displacement(sim->motion, s->t);
-    const double line[] = {s->t, f->series.surface[k], s->v + v, s->u + u, f->series.input[k], v,
-                           u,    s->settlement};
-    csv_row(&file, 8, line);
+    CSV_LINE(&file, s->t, f->series.surface[k], s->v + v, s->u + u, f->series.input[k], v, u,
+             s->settlement);
   }
   return output_close(&file);
 }
 
 static bool write_spectrum(app *a, const simulation *sim, const findings *f) {
   output file;
-  if (!output_open(&file, a, sim->s.out, "spectrum.csv")) return false;
-  csv_header(&file, "period_s,surface_m_s2,input_m_s2,ratio");
+  if (!csv_open(&file, a, sim->s.out, "spectrum.csv", "period_s,surface_m_s2,input_m_s2,ratio"))
+    return false;
   for (int k = 0; k < SITE_PERIODS; k++) {
-    const double line[] = {f->period[k], f->surface[k], f->input[k], f->surface[k] / f->input[k]};
-    csv_row(&file, 4, line);
+    CSV_LINE(&file, f->period[k], f->surface[k], f->input[k], f->surface[k] / f->input[k]);
   }
   return output_close(&file);
 }
 
 static bool write_amplification(app *a, const simulation *sim, const findings *f) {
   output file;
-  if (!output_open(&file, a, sim->s.out, "amplification.csv")) return false;
-  csv_header(&file, "frequency_Hz,surface_over_input,exact?");
+  if (!csv_open(&file, a, sim->s.out, "amplification.csv",
+                "frequency_Hz,surface_over_input,exact?"))
+    return false;
   for (int64_t k = 0; k < f->fourier.count; k++) {
     const double line[] = {(double)(k + 1) * f->fourier.step,
                            f->fourier.surface[k] / f->fourier.input[k], f->fourier.exact[k]};
@@ -188,24 +188,16 @@ static bool write_amplification(app *a, const simulation *sim, const findings *f
 
 static bool write_profile(app *a, const simulation *sim) {
   output file;
-  if (!output_open(&file, a, sim->s.out, "profile.csv")) return false;
-  csv_header(&file, "depth_m,layer,acceleration_m_s2,velocity_m_s,relative_displacement_m,"
-                    "shear_strain,shear_stress_Pa,ru,last_ru,settlement_m,last_displacement_m");
+  if (!csv_open(&file, a, sim->s.out, "profile.csv",
+                "depth_m,layer,acceleration_m_s2,velocity_m_s,relative_displacement_m,"
+                "shear_strain,shear_stress_Pa,ru,last_ru,settlement_m,last_displacement_m"))
+    return false;
   for (int64_t r = sim->rows - 1; r >= 0; r--) {
     const site_row *row = &sim->row[r];
     const site_layer *l = site_layer_at(&sim->ground, row->depth);
-    const double line[] = {row->depth,
-                           (double)(l - sim->ground.layer + 1),
-                           row->acceleration,
-                           row->velocity,
-                           row->displacement,
-                           row->strain,
-                           row->stress,
-                           row->ru,
-                           row->last_ru,
-                           row->settlement,
-                           row->last_displacement};
-    csv_row(&file, 11, line);
+    CSV_LINE(&file, row->depth, (double)(l - sim->ground.layer + 1), row->acceleration,
+             row->velocity, row->displacement, row->strain, row->stress, row->ru, row->last_ru,
+             row->settlement, row->last_displacement);
   }
   return output_close(&file);
 }
@@ -213,12 +205,11 @@ static bool write_profile(app *a, const simulation *sim) {
 static bool write_loop(app *a, const simulation *sim) {
   output file;
   if (sim->loop_row < 0) return true;
-  if (!output_open(&file, a, sim->s.out, "loop.csv")) return false;
-  csv_header(&file, "time_s,shear_strain,shear_stress_Pa,ru");
+  if (!csv_open(&file, a, sim->s.out, "loop.csv", "time_s,shear_strain,shear_stress_Pa,ru"))
+    return false;
   for (int64_t k = 0; k < sim->count; k++) {
     const site_sample *s = &sim->sample[k];
-    const double line[] = {s->t, s->strain, s->stress, s->ru};
-    csv_row(&file, 4, line);
+    CSV_LINE(&file, s->t, s->strain, s->stress, s->ru);
   }
   return output_close(&file);
 }
@@ -241,26 +232,19 @@ static bool write_summary(app *a, const simulation *sim, const findings *f) {
   const site_row *top = &sim->row[sim->rows - 1];
   output file;
   if (!mpm_model_summary(a, &sim->m, sim->s.out, &file)) return false;
-  json_number(&file, "time", sim->sample[sim->count - 1].t);
-  json_number(&file, "height", sim->height);
-  json_number(&file, "cell", sim->cell);
-  json_number(&file, "flip_time_used", sim->flip_time);
-  json_number(&file, "travel_time", site_travel_time(&sim->ground));
-  json_number(&file, "record_duration", sim->record_end);
+  JSON_NUMBERS(&file, {"time", sim->sample[sim->count - 1].t}, {"height", sim->height},
+               {"cell", sim->cell}, {"flip_time_used", sim->flip_time},
+               {"travel_time", site_travel_time(&sim->ground)},
+               {"record_duration", sim->record_end});
   record_json(&file, sim->motion);
-  json_number(&file, "input_peak_acceleration", sim->record_peak);
-  json_number(&file, "peak_acceleration", f->peak);
-  json_number(&file, "peak_time", f->peak_time);
-  json_number(&file, "peak_velocity", top->velocity);
-  json_number(&file, "response_ratio",
-              largest_of(f->surface, SITE_PERIODS) / largest_of(f->input, SITE_PERIODS));
-  json_number(&file, "amplification", f->largest);
-  json_number(&file, "amplification_frequency", f->frequency);
+  JSON_NUMBERS(
+      &file, {"input_peak_acceleration", sim->record_peak}, {"peak_acceleration", f->peak},
+      {"peak_time", f->peak_time}, {"peak_velocity", top->velocity},
+      {"response_ratio", largest_of(f->surface, SITE_PERIODS) / largest_of(f->input, SITE_PERIODS)},
+      {"amplification", f->largest}, {"amplification_frequency", f->frequency});
   json_comparison(&file, "amplification_exact", &f->layers);
-  json_number(&file, "amplification_error", f->error);
-  json_number(&file, "shear_strain", largest_strain(sim));
-  json_number_if(&file, sim->wet, "ru", largest_ru(sim));
-  json_number(&file, "settlement", top->settlement);
+  JSON_NUMBERS(&file, {"amplification_error", f->error}, {"shear_strain", largest_strain(sim)},
+               {"ru", sim->wet ? largest_ru(sim) : NAN}, {"settlement", top->settlement});
   if (has_liquefied(sim)) json_text(&file, "settlement_reason", LIQUEFIED);
   json_number(&file, "last_displacement", top->last_displacement);
   json_end(&file);

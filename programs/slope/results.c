@@ -52,33 +52,27 @@ static comparison compare_circles(const simulation *sim, slope_circle *circle) {
 static bool write_trials(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!output_open(&f, a, s->out, "trials.csv")) return false;
-  csv_header(&f, "trial,factor,phi_deg,cohesion_Pa,moved_over_height,t_s,failed,speed?");
+  if (!csv_open(&f, a, s->out, "trials.csv",
+                "trial,factor,phi_deg,cohesion_Pa,moved_over_height,t_s,failed,speed?"))
+    return false;
   for (int k = 0; k < ended(sim); k++) {
     const trial *t = &sim->trial[k];
     const double degree = 180.0 / 3.14159265358979323846;
-    const double row[] = {k + 1.0,
-                          t->factor,
-                          atan(tan(s->phi / degree) / t->factor) * degree,
-                          s->cohesion / t->factor,
-                          t->moved[t->rows - 1] / s->height,
-                          t->t[t->rows - 1],
-                          t->failed,
-                          s->runout ? NAN : slope_speed(s, t, (int)fmin(6, t->rows - 1))};
-    csv_row(&f, 8, row);
+    CSV_LINE(&f, k + 1.0, t->factor, atan(tan(s->phi / degree) / t->factor) * degree,
+             s->cohesion / t->factor, t->moved[t->rows - 1] / s->height, t->t[t->rows - 1],
+             t->failed, s->runout ? NAN : slope_speed(s, t, (int)fmin(6, t->rows - 1)));
   }
   return output_close(&f);
 }
 
 static bool write_motion(app *a, const simulation *sim) {
   output f;
-  if (!output_open(&f, a, sim->s.out, "motion.csv")) return false;
-  csv_header(&f, "trial,factor,t_s,moved_over_height");
+  if (!csv_open(&f, a, sim->s.out, "motion.csv", "trial,factor,t_s,moved_over_height"))
+    return false;
   for (int k = 0; k <= sim->now; k++) {
     const trial *t = &sim->trial[k];
     for (int i = 0; i < t->rows; i++) {
-      const double row[] = {k + 1.0, t->factor, t->t[i], t->moved[i] / sim->s.height};
-      csv_row(&f, 4, row);
+      CSV_LINE(&f, k + 1.0, t->factor, t->t[i], t->moved[i] / sim->s.height);
     }
   }
   return output_close(&f);
@@ -91,28 +85,26 @@ static bool write_summary(app *a, const simulation *sim) {
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   slope_bracket(sim, ended(sim), &stands, &fails);
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   sand_write(&f, &s->voids, s->psi);
   json_number(&f, "c_over_gamma_H", s->cohesion / (s->density * s->gravity * s->height));
   json_integer(&f, "trials", ended(sim));
-  json_number(&f, "factor_of_safety", factor);
-  json_number_if(&f, stands > 0.0, "stands", stands);
-  json_number(&f, "fails", fails);
-  json_number(&f, "young", slope_young(s));
-  json_number(&f, "flows", s->runout ? NAN : SLOPE_FLOWS);
-  json_number(&f, "stability_number", stability_number(s, factor));
-  json_number_if(&f, slope_pool(s) > 0.0, "pool", slope_pool(s));
+  JSON_NUMBERS(&f, {"factor_of_safety", factor}, {"stands", stands > 0.0 ? stands : NAN},
+               {"fails", fails}, {"young", slope_young(s)},
+               {"flows", s->runout ? NAN : SLOPE_FLOWS},
+               {"stability_number", stability_number(s, factor)},
+               {"pool", slope_pool(s) > 0.0 ? slope_pool(s) : NAN});
   slope_circle circle, pole;
   const comparison spirals = compare_spirals(sim, &pole), circles = compare_circles(sim, &circle);
   const bool fails_so = compare_holds(&circles);
   json_comparison(&f, "log_spirals", &spirals);
   json_number(&f, "log_spirals_davis", davis_factor(s));
   json_comparison(&f, "slip_circles", &circles);
-  json_number_if(&f, fails_so, "circle_x", circle.x + s->crest);
-  json_number_if(&f, fails_so, "circle_y", circle.y + s->base);
-  json_number_if(&f, fails_so, "circle_radius", circle.radius);
-  json_number_if(&f, s->runout && ended(sim) > 0, "runout", sim->front);
-  json_number_if(&f, s->runout && ended(sim) > 0, "lost_behind_crest", sim->lost);
+  JSON_NUMBERS(&f, {"circle_x", fails_so ? circle.x + s->crest : NAN},
+               {"circle_y", fails_so ? circle.y + s->base : NAN},
+               {"circle_radius", fails_so ? circle.radius : NAN},
+               {"runout", s->runout && ended(sim) > 0 ? sim->front : NAN},
+               {"lost_behind_crest", s->runout && ended(sim) > 0 ? sim->lost : NAN});
   json_end(&f);
   return output_close(&f);
 }
@@ -122,44 +114,37 @@ static bool write_summary(app *a, const simulation *sim) {
 static bool draw_motion(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
-  if (!plot_open(&f, a, s->out, "motion", 1000, 640)) return false;
-  output_text(&f,
-              "set title \"%s of a slope, strength divided by F\\n{/*0.85 H = %g m, 1 : %g, "
-              "{/Symbol f} = %g°, c/{/Symbol g}H = %.3g, h = %g m}\"\n"
-              "set xlabel 'time (s)'\nset ylabel 'displacement over the height'\n"
-              "set key outside right\nset yrange [0:*]\nplot ",
-              s->runout ? "Run-out" : "Motion", s->height, s->slope, s->phi,
-              s->cohesion / (s->density * s->gravity * s->height), s->h);
+  if (!plot_begin(&f, a, s->out, "motion")) return false;
+  output_text(
+      &f,
+      "first = '%s of a slope, strength divided by F'\nsecond = 'H = %g m, 1 : %g, {/Symbol "
+      "f} = %g°, c/{/Symbol g}H = %.3g, h = %g m'\n"
+      "trials = %d\narray factor[trials]; array failed[trials]\n",
+      s->runout ? "Run-out" : "Motion", s->height, s->slope, s->phi,
+      s->cohesion / (s->density * s->gravity * s->height), s->h, sim->now + 1);
   for (int k = 0; k <= sim->now; k++)
-    output_text(&f,
-                "%s'motion.csv' every ::1 using ($1 == %d ? $3 : 1/0):4 with lines linewidth 2 "
-                "linecolor rgb '%s' dashtype %d title 'F = %.3f'",
-                k > 0 ? ", \\\n  " : "", k + 1, sim->trial[k].failed ? "#c0392b" : "#1f4e8c",
-                1 + k % 5, sim->trial[k].factor);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "motion");
+    output_text(&f, "factor[%d] = %.9g; failed[%d] = %d\n", k + 1, sim->trial[k].factor, k + 1,
+                sim->trial[k].failed);
+  return plot_end(&f, s->out, "motion", "slope/motion");
 }
 
-static double greatest(const mpm_snapshot *shot, int column) {
-  double most = 0.0;
-  for (int64_t k = 0; k < shot->count; k++) most = fmax(most, shot->row[3 * k + column]);
-  return most;
+static void draw_line(output *f, double x0, double y0, double x1, double y1, const char *look) {
+  output_text(f, "set arrow from %.9g,%.9g to %.9g,%.9g nohead front %s; ", x0, y0, x1, y1, look);
 }
 
 /* The water table, and the level of the pool before a drawdown. */
 static void draw_water(output *f, const settings *s, double wide) {
-  static const char arrow[] = "set arrow from %.9g,%.9g to %.9g,%.9g nohead linewidth 2 linecolor "
-                              "rgb '#2e86c1'%s front\n";
-  if (!isnan(s->drawdown))
-    output_text(f, arrow, 0.0, s->drawdown + s->base, wide, s->drawdown + s->base,
-                " dashtype '..'");
+  static const char look[] = "linewidth 2 linecolor rgb \"#2e86c1\"";
+  const double pool = s->drawdown + s->base;
+  if (!isnan(pool))
+    draw_line(f, 0.0, pool, wide, pool, "linewidth 2 linecolor rgb \"#2e86c1\" dashtype \"..\"");
   if (s->points == 0 && isnan(s->table)) return;
   double from = 0.0;
   for (int64_t k = 0; k <= s->points; k++) {
     const double to = k < s->points ? s->line[2 * k] + s->crest : wide;
     if (!(to > from && to <= wide)) continue;
-    output_text(f, arrow, from, slope_table(s, from - s->crest) + s->base, to,
-                slope_table(s, to - s->crest) + s->base, "");
+    draw_line(f, from, slope_table(s, from - s->crest) + s->base, to,
+              slope_table(s, to - s->crest) + s->base, look);
     from = to;
   }
 }
@@ -167,32 +152,28 @@ static void draw_water(output *f, const settings *s, double wide) {
 static bool draw_slope(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double foot = s->crest + s->slope * s->height, top = s->base + s->height;
-  const double wide = fmax(greatest(&sim->shot, 0) + s->h, foot + fmax(s->toe, 0.1 * s->height));
-  const double high = 1.1 * top;
+  const double wide =
+      fmax(mpm_snapshot_most(&sim->shot, 0) + s->h, foot + fmax(s->toe, 0.1 * s->height));
   const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
                         .slit = AREA_SLIT_SHEARED,
-                        .upper = {wide, high},
+                        .upper = {wide, 1.1 * top},
                         .walled = true,
                         .side = AREA_SIDE};
   area image;
-  if (!mpm_snapshots_image(a, s->out, "slope.bin", 1, &sim->shot, &def, &image)) return false;
   output f;
-  const int height = (int)fmin(900.0, fmax(380.0, 1000.0 * high / wide + 150.0));
-  if (!plot_open(&f, a, s->out, "slope", 1100, height)) return false;
+  if (!mpm_snapshots_image(a, s->out, "slope.bin", 1, &sim->shot, &def, &image) ||
+      !plot_begin(&f, a, s->out, "slope"))
+    return false;
+  area_set(&f, "slope.bin", &def, 1, &image, 1.0);
   output_text(&f,
-              "set title 'Plastic strain (-) at t = %.2f s'\nset xlabel 'x (m)'\n"
-              "set ylabel 'y (m)'\nset size ratio -1\nunset grid\n"
-              "set palette defined (0 '#f3e3bd', 0.3 '#c98f4a', 1 '#5b2c12')\n"
-              "set xrange [0:%.9g]\nset yrange [0:%.9g]\n",
-              sim->shot.time, wide, high);
-  output_text(&f, "set arrow from %.9g,%.9g to %.9g,%.9g nohead dashtype '--' front\n", s->crest,
-              top, foot, s->base);
+              "titles[1] = 'Plastic strain (-) at t = %.2f s'; x_name = 'x (m)'; y_name = 'y (m)'\n"
+              "cb_name = ''; palette = 'sand'; cb_least = 0; cb_most = %.9g\n"
+              "cover(k) = '",
+              sim->shot.time, 0.5 * mpm_snapshot_most(&sim->shot, 2));
+  draw_line(&f, s->crest, top, foot, s->base, "dashtype \"--\"");
   draw_water(&f, s, wide);
-  plot_colours(&f, 0.0, 0.5 * greatest(&sim->shot, 2), image.least, image.most);
-  output_text(&f, "plot ");
-  area_plot(&f, "slope.bin", &image, 1.0);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "slope");
+  output_text(&f, "'\n");
+  return plot_end(&f, s->out, "slope", "maps");
 }
 
 /* ---- the end --------------------------------------------------------------------------------- */

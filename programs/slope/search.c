@@ -93,16 +93,11 @@ static void pass(void *user, resume_bytes *b) {
 static void name_course(simulation *sim) {
   static char what[40];
   snprintf(what, sizeof what, "slope_%d", sim->now + 1);
-  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost, /* warned once for all trials */
-                             .options = &sim->s.course,
-                             .m = &sim->m,
-                             .directory = sim->s.out,
-                             .what = what,
-                             .duration = slope_duration(&sim->s),
-                             .key = "mps-slope 2",
-                             .table = options_read(),
-                             .pass = pass,
-                             .user = sim};
+  const bool lost = sim->course.saves.lost; /* warned once for all trials */
+  sim->course = mpm_course_of(&sim->s.course, &sim->m, sim->s.out, "mps-slope 2", pass, sim);
+  sim->course.what = what;
+  sim->course.duration = slope_duration(&sim->s);
+  sim->course.saves.lost = lost;
 }
 
 mps_status slope_build(mps_context *context, void *user) {

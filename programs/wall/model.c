@@ -141,16 +141,10 @@ mps_status wall_build(mps_context *context, void *user) {
   static const rows_column columns[] = {{"path", "m", 0},      {"across", "N/m", 0},
                                         {"along", "N/m", 0},   {"moment", "N", 0},
                                         {"impulse", "N s", 3}, {0}};
-  sim->course = (mpm_course){.options = &s->course,
-                             .m = &sim->m,
-                             .directory = s->out,
-                             .what = "ground",
-                             .duration = s->path / s->rate,
-                             .key = "mps-wall 2",
-                             .table = options_read(),
-                             .pass = pass,
-                             .user = sim,
-                             .columns = columns};
+  sim->course = mpm_course_of(&s->course, &sim->m, s->out, "mps-wall 2", pass, sim);
+  sim->course.what = "ground";
+  sim->course.duration = s->path / s->rate;
+  sim->course.columns = columns;
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_ground(context, &sim->s, &sim->m);
   if (status == MPS_OK) status = wall_make_law(context, s, 0, &sim->m.material);

@@ -174,7 +174,7 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   const settings *s = &sim->s;
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
-  json_number(&f, "h", s->h);
+  json_number(&f, "cell", s->h);
   sand_write(&f, &s->voids, largest_dilation(s));
   JSON_NUMBERS(&f, {"flip_time", s->flip_time}, {"K", p->across}, {"K_along", p->along},
                {"K_resultant", hypot(p->across, p->along)}, {"force_height", p->height});
@@ -214,12 +214,6 @@ static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
       p->cracked);
 }
 
-static double most_strain(const mpm_snapshot *shot) {
-  double most = 0.0;
-  for (int64_t k = 0; k < shot->count; k++) most = fmax(most, shot->row[3 * k + 2]);
-  return most;
-}
-
 static bool draw_ground(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double left = s->base > 0.0 ? s->front : 0.4 * s->height;
@@ -248,8 +242,8 @@ static bool draw_ground(app *a, const simulation *sim) {
               "palette = 'sand'; cb_least = 0; cb_most = %.9g\n"
               "cover(k) = 'set object 1 polygon from %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to "
               "%.9g,%.9g to %.9g,%.9g fillcolor rgb \"#888888\" fillstyle solid front'\n",
-              0.5 * most_strain(&sim->shot), foot, toe, head, s->base + s->height, head - thick,
-              s->base + s->height, foot - thick, toe, foot, toe);
+              0.5 * mpm_snapshot_most(&sim->shot, 2), foot, toe, head, s->base + s->height,
+              head - thick, s->base + s->height, foot - thick, toe, foot, toe);
   return plot_end(&f, s->out, "ground", "maps");
 }
 

@@ -10,7 +10,7 @@
 /* Identification of a checkpoint of this program. */
 static mps_checkpoint own_checkpoint(void) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  snprintf(info.user_key, sizeof info.user_key, "mps-wave 2");
+  snprintf(info.user_key, sizeof info.user_key, RESTART_KEY);
   return info;
 }
 
@@ -37,15 +37,13 @@ mps_status files_gather(files *f, mps_particles **whole) {
 }
 
 static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
-  mps_checkpoint info = own_checkpoint();
-  if (!app_agree(a, app_check(a, mps_checkpoint_info(a->context, s->restart, &info)))) return false;
-  const int64_t size = info.user_bytes;
-  info.user_data = malloc(size > 0 ? (size_t)size : 1);
-  bool ok = info.user_data ? true : app_no_memory(a);
-  ok = ok && app_check(a, mps_checkpoint_info(a->context, s->restart, &info)) &&
-       restart_unpack(a, f->so_far, info.user_data, size);
-  free(info.user_data);
-  return app_agree(a, ok) && app_check(a, mps_dynamics_restore(dynamics, s->restart, NULL));
+  const resume r = restart_parts(a, f->so_far, dynamics);
+  char why[400];
+  mps_status status = resume_peek(a->context, &r, s->restart, why, sizeof why);
+  if (status == MPS_OK) status = resume_restore(a->context, &r, s->restart);
+  if (status == MPS_OK || (!why[0] && f->so_far->same)) return app_check(a, status);
+  return why[0] ? app_error(a, "%s", why)
+                : app_error(a, "%.150s was made with other layers or receivers", s->restart);
 }
 
 /* For a restarted run, a name that leaves the frames of the first half alone. */
@@ -79,15 +77,9 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
 /* Saves the solver of the files `user`. */
 static mps_status write_checkpoint(void *user) {
   const files *f = user;
-  mps_checkpoint info = own_checkpoint();
-  mps_status status = field_join(f->so_far->peaks, f->domain);
-  if (status != MPS_OK) return status;
-  info.user_data = restart_pack(f->so_far, &info.user_bytes);
-  if (!info.user_data) status = MPS_ERROR_MEMORY;
-  if (f->domain) status = mps_domain_agree(f->domain, status);
-  if (status == MPS_OK) status = mps_dynamics_save(f->dynamics, f->saves.path, &info);
-  free(info.user_data);
-  return status;
+  const resume r = restart_parts(f->a, f->so_far, f->dynamics);
+  const mps_status status = field_join(f->so_far->peaks, f->domain);
+  return status == MPS_OK ? resume_save(&r, f->saves.path) : status;
 }
 
 /* The first frame is that of the start, the last that of the end; one alone is the last. */

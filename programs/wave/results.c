@@ -138,7 +138,7 @@ bool results_write(app *a, const settings *s, const results *x, const mps_signal
   json_text(&file, "sides", sides[s->sides]);
   json_text(&file, "input", s->input);
   if (!s->ricker) record_json(&file, signal);
-  json_number(&file, "radius", 0.5 * s->spacing);
+  json_number(&file, "spacing", s->spacing);
   json_integer(&file, "particles", x->particles);
   json_integer(&file, "steps", x->steps);
   JSON_NUMBERS(&file, {"dt", x->dt}, {"dt_limit_linear", x->dt_limit},

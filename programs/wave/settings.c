@@ -1,4 +1,4 @@
-/* settings.c - the options of mps-wave: table, defaults, checks.
+/* settings.c - the options of mps-wave: table, checks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wave.h"
 
@@ -9,34 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const settings defaults = {
-    .spacing = 0.5,
-    .width = 10.0,
-    .height = 100.0,
-    .vs = 100.0,
-    .vp = 200.0,
-    .unit_weight = 14.7e3,
-    .f1 = 1.0,
-    .f2 = 14.0,
-    .slope = {NAN, NAN, NAN},
-    .input = "ricker",
-    .frequency = 4.0,
-    .peak_time = 0.25,
-    .amplitude = 1.0,
-    .scale = 1.0,
-    .step = NAN,
-    .baseline = MPS_SIGNAL_BASELINE_LINEAR,
-    .half_space = {.vs = NAN, .vp = NAN, .unit_weight = NAN},
-    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
-    .sides = SIDES_PERIODIC,
-    .dt = NAN,
-    .courant = 0.9,
-    .duration = NAN,
-    .every_checkpoint = NAN,
-    .receivers = 11,
-    .out = "out/wave",
-};
 
 static const char purpose[] =
     "Seismic wave through a soil column of particles (explicit MPS): by default a Ricker pulse "
@@ -106,56 +78,58 @@ static int check_rest(const options_program *program, settings *s) {
 /* ---- the table ------------------------------------------------------------------------------- */
 
 int settings_parse(settings *s, int argc, char **argv) {
-  *s = defaults;
+  *s = (settings){.input = "ricker"};
   option table[] = {
       OPTION_HEADING("Ground"),
-      OPTION_NUMBER("spacing", &s->spacing, NULL),
-      OPTION_NUMBER("width", &s->width, "of the model, rounded to whole particles"),
+      OPTION_NUMBER("spacing", &s->spacing, NULL, 0.5),
+      OPTION_NUMBER("width", &s->width, "of the model, rounded to whole particles", 10.0),
       OPTION_NUMBER("height", &s->height,
-                    "of the model, rounded to whole particles; with --layers it may be left out"),
-      OPTION_NUMBER("vs", &s->vs, NULL),
-      OPTION_NUMBER("vp", &s->vp, NULL),
-      OPTION_NUMBER("unit-weight", &s->unit_weight, NULL),
+                    "of the model, rounded to whole particles; with --layers it may be left out",
+                    100.0),
+      OPTION_NUMBER("vs", &s->vs, NULL, 100.0),
+      OPTION_NUMBER("vp", &s->vp, NULL, 200.0),
+      OPTION_NUMBER("unit-weight", &s->unit_weight, NULL, 14.7e3),
       OPTION_NUMBER("damping", &s->damping, NULL),
-      OPTION_NUMBER("f1", &s->f1, NULL),
-      OPTION_NUMBER("f2", &s->f2, NULL),
+      OPTION_NUMBER("f1", &s->f1, NULL, 1.0),
+      OPTION_NUMBER("f2", &s->f2, NULL, 14.0),
       OPTION_TEXT("layers", &s->layers_file,
                   "thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3 or density_kg_m3, damping_ratio; "
                   "a last one of thickness inf is the half space"),
-      OPTION_NUMBERS("incline", 3, s->slope, NULL),
+      OPTION_NUMBERS("incline", 3, s->slope, NULL, NAN),
       OPTION_HEADING("Input motion"),
       OPTION_CHOICE("wave", &s->wave, NULL),
       OPTION_TEXT_OF("record", "ricker|FILE", &s->input, NULL),
-      OPTION_NUMBER("frequency", &s->frequency, NULL),
-      OPTION_NUMBER("peak-time", &s->peak_time, NULL),
-      OPTION_NUMBER("acceleration", &s->amplitude, NULL),
-      OPTION_NUMBER("record-scale", &s->scale, NULL),
+      OPTION_NUMBER("frequency", &s->frequency, NULL, 4.0),
+      OPTION_NUMBER("peak-time", &s->peak_time, NULL, 0.25),
+      OPTION_NUMBER("acceleration", &s->amplitude, NULL, 1.0),
+      OPTION_NUMBER("record-scale", &s->scale, NULL, 1.0),
       OPTION_CHOICE("record-unit", &s->unit, NULL),
-      OPTION_NUMBER("record-step", &s->step, NULL),
+      OPTION_NUMBER("record-step", &s->step, NULL, NAN),
       OPTION_TEXT("record-column", &s->column, NULL),
-      OPTION_CHOICE("baseline", &s->baseline, NULL),
+      OPTION_CHOICE("baseline", &s->baseline, NULL, MPS_SIGNAL_BASELINE_LINEAR),
       OPTION_HEADING("Boundaries"),
       OPTION_CHOICE_OF("base", "rigid|viscous", &s->base,
                        "rigid: the base moves as the record (E+F); viscous: there is a half space "
                        "below, the record is the incoming wave (E)"),
-      OPTION_NUMBER("base-vs", &s->half_space.vs, NULL),
-      OPTION_NUMBER("base-vp", &s->half_space.vp, NULL),
-      OPTION_NUMBER("base-unit-weight", &s->half_space.unit_weight, NULL),
+      OPTION_NUMBER("base-vs", &s->half_space.vs, NULL, NAN),
+      OPTION_NUMBER("base-vp", &s->half_space.vp, NULL, NAN),
+      OPTION_NUMBER("base-unit-weight", &s->half_space.unit_weight, NULL, NAN),
       OPTION_CHOICE_OF("sides", "roller|periodic|freefield", &s->sides,
                        "rollers along the wave's motion, a model repeated sideways, or free-field "
-                       "columns with dashpots; freefield with --incline where this is left out"),
+                       "columns with dashpots; freefield with --incline where this is left out",
+                       SIDES_PERIODIC),
       OPTION_HEADING("Method"),
       OPTION_FLAG("paper", &s->paper, NULL),
-      OPTION_CHOICE("integrator", &s->integrator, NULL),
+      OPTION_CHOICE("integrator", &s->integrator, NULL, MPS_DYNAMICS_INTEGRATOR_VERLET),
       OPTION_CHOICE("rotation", &s->rotation, NULL),
       OPTION_CHOICE("torque", &s->torque, NULL),
       OPTION_CHOICE("damping-form", &s->damping_form, NULL),
-      OPTION_NUMBER("dt", &s->dt, "default by --courant"),
-      OPTION_NUMBER("courant", &s->courant, NULL),
+      OPTION_NUMBER("dt", &s->dt, "default by --courant", NAN),
+      OPTION_NUMBER("courant", &s->courant, NULL, 0.9),
       OPTION_NUMBER("duration", &s->duration,
-                    "default 2.5 s, of a record its length and two travel times"),
+                    "default 2.5 s, of a record its length and two travel times", NAN),
       OPTION_HEADING("Running and results"),
-      OPTION_INTEGER("receivers", &s->receivers, NULL),
+      OPTION_INTEGER("receivers", &s->receivers, NULL, 11),
       OPTION_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
                      "default a tenth of the run; the end of the run writes one too", &s->restart),

@@ -143,12 +143,11 @@ typedef struct results_so_far {
   receivers *record;
   field *peaks;
   int64_t every; /* steps between rows */
+  bool same;     /* the checkpoint is of the same layers, receivers and map */
 } results_so_far;
 
-/* Options and results as one block, to be freed by the caller; NULL: out of memory. */
-void *restart_pack(const results_so_far *r, int64_t *size);
-/* Restores the results. False with an error line that names the first option that differs. */
-bool restart_unpack(app *a, results_so_far *r, const void *block, int64_t size);
+#define RESTART_KEY "mps-wave 3"
+resume restart_parts(app *a, results_so_far *r, mps_dynamics *dynamics);
 
 /* ---- files.c --------------------------------------------------------------------------------- */
 

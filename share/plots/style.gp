@@ -23,7 +23,6 @@ set linetype 3 linecolor rgb green linewidth 1.3 pointtype 5
 set linetype 4 linecolor rgb orange linewidth 1.3 pointtype 9
 set linetype 5 linecolor rgb purple linewidth 1.3 pointtype 13
 set linetype 6 linecolor rgb grey linewidth 1 pointtype 4
-below = 'set key outside bottom center horizontal height 1; set xlabel offset 0,0.5'
 
 # A title of two lines, the second one small.
 named(first, second) = first."\n{/*0.85 ".second.'}'

@@ -31,9 +31,9 @@ same dam mps-dam-break --cell 0.005715 --duration 0.1 --frames 4
 same box mps-sliding-box --cell 0.02
 same free_disc mps-rolling-disc --cell 0.02 --body disc --duration 0.1
 same footing mps-footing --cell 0.25 --soil 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
-same cone mps-penetrometer --cell 0.05 --diameter 0.2 --soil 0.8x0.8x0.4 --depth 0.1 --rate 2 --ppc 1
+same cone mps-penetrometer --symmetry quarter --cell 0.05 --diameter 0.2 --soil 0.8x0.8x0.4 --depth 0.1 --rate 2 --ppc 1
 # A hole, a surcharge and a state of the ground that a rank without particles does not know; implicit pressures.
-same clay mps-penetrometer --law mcc --start 0.35 --depth 0.4 --soil 0.6x0.6x0.6 --cell 0.025 --surcharge 100kPa --rate 8 --ppc 1 \
+same clay mps-penetrometer --symmetry quarter --law mcc --start 0.35 --depth 0.4 --soil 0.6x0.6x0.6 --cell 0.025 --surcharge 100kPa --rate 8 --ppc 1 \
   --permeability 1e-4
 # Water in the pores: explicit pressures, and implicit ones.
 same layer mps-consolidation --cell 0.125 --times 0.01

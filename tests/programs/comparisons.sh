@@ -68,12 +68,12 @@ without "amplification_exact amplification_error" "not linear elastic" $site --l
 with amplification_exact $site --layers "$work/half" --duration 6
 
 # A cone near the surface, a rough one, a blunt one; a sphere that is deep, and in a small box.
-cone="mps-penetrometer --axisymmetric --cell 0.025 --corner 0 --rate 1 --ppc 1"
+cone="mps-penetrometer --cell 0.025 --corner 0 --rate 1 --ppc 1"
 without "n_kt_teh_houlsby n_kt_lu" "deep cone" $cone --law tresca --ir 100 --soil 0.4x0.4x0.4 --depth 0.1
 without "n_kt_teh_houlsby n_kt_lu" "smooth cone" $cone --law tresca --ir 100 --soil 0.4x0.4x0.4 --depth 0.05 --friction 0.3
 without "n_kt_teh_houlsby n_kt_lu" "60 degrees" $cone --law tresca --ir 100 --soil 0.4x0.4x0.4 --depth 0.05 --apex-angle 90
 with n_kt_lu $cone --law tresca --ir 100 --start 0.5 --depth 0.63 --soil 0.8x0.8x0.8 --sides free
-sphere="mps-penetrometer --axisymmetric --tip sphere --law elastic --poisson 0.3 --diameter 1 --ppc 1"
+sphere="mps-penetrometer --tip sphere --law elastic --poisson 0.3 --diameter 1 --ppc 1"
 without "force_hertz hertz_error" "half space" $sphere --cell 0.1 --soil 1.2x1.2x1 --depth 0.02 --rate 0.02
 without "force_hertz hertz_error" "a small one" $sphere --cell 0.1 --soil 2x2x1 --depth 0.1 --rate 0.1
 

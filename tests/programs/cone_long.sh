@@ -5,7 +5,7 @@
 
 for angle in 30 60; do
   for cell in 0.0125 0.00625; do
-    "$1/mps-penetrometer" --axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle $angle --cell $cell \
+    "$1/mps-penetrometer" --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle $angle --cell $cell \
       --out "$work/$angle/$cell" >/dev/null
     in_range "$work/$angle/$cell/summary.json" particles_inside 0 0
   done

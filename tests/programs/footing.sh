@@ -15,6 +15,8 @@ bears() {
 # Prandtl's 5.1416 within 2 %, by stiffness, width and cell.
 bears default q_over_c 5.039 5.245
 has "$work/log" "bearing capacity of the undeformed ground"
+picture "$work/default/pressure.png" 1000x680 1f4e8c c0392b
+picture "$work/default/shear_bands.png" 1085x0 888888 08306b
 bears soft q_over_c 5.039 5.245 --cohesion 5kPa --young 2.5MPa
 in_range "$work/soft/summary.json" q_deformed 26500 31000
 has "$work/log" "as the ground deforms"

@@ -84,7 +84,7 @@ has "$work/out" "before its end"
 for key in runout runout_error runout_98 runout_thick height time_at_rest; do
   has "$work/collapse/summary.json" "\"$key\": null"
 done
-interrupt cone 2 mps-penetrometer --soil 0.3x0.3x0.3
+interrupt cone 2 mps-penetrometer --symmetry quarter --soil 0.3x0.3x0.3
 wrote cone force.csv section.csv summary.json
 interrupt wave 0.5 mps-wave --spacing 2 --duration 3000
 wrote wave receivers.csv summary.json
@@ -120,7 +120,7 @@ has "$work/log" "mps-tank: "
 
 # Above the ground there is nothing to scale the axes of a picture by.
 program=mps-penetrometer
-"$programs/"$program --soil 0.4x0.4x0.2 --cell 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
+"$programs/"$program --symmetry quarter --soil 0.4x0.4x0.2 --cell 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
   --threads 1 --out "$work/air" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/air.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done

@@ -28,16 +28,16 @@ picture "$work/a/force.png" 1000x680 1f4e8c c0392b
 picture "$work/a/section.png" 0x800 555555 e6ebf1 6baed6
 
 # The same for every number of threads.
-"$1/mps-penetrometer" $many --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
+"$1/mps-penetrometer" $many --symmetry quarter --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
 cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another force.csv"
 
 # A sphere presses elastic ground as Hertz says, and more in so small a box: on a layer of that depth
 # 1.135 times on a smooth floor, 1.159 on a rough one (Dimitriadis et al., 2002); the sides are as near
 # again, and on five cells the sphere is half a cell larger, 1.05. The whole model is four quarters
 # within what the sweeps over the contacts leave: rollers are mirrors.
-sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --cell 0.1 --soil 1.6x1.6x1 --depth 0.05"
+sphere="--symmetry quarter --tip sphere --law elastic --poisson 0.3 --diameter 1 --cell 0.1 --soil 1.6x1.6x1 --depth 0.05"
 "$1/mps-penetrometer" $sphere --threads 1 --out "$work/q" >/dev/null
-"$1/mps-penetrometer" $sphere --threads 3 --symmetry whole --out "$work/w" >/dev/null
+"$1/mps-penetrometer" ${sphere#--symmetry quarter} --threads 3 --symmetry whole --out "$work/w" >/dev/null
 has "$work/q/summary.json" '"force_hertz": null' # such a box is no half space
 has "$work/q/summary.json" '"force_hertz_reason": "the '
 # 4/3 E/(1 - nu^2) sqrt(R) d^1.5, E = 2.8 MPa, of d from 0.04 to 0.05 m
@@ -49,7 +49,7 @@ in_range "$work/w/summary.json" force_total \
 
 # A blunt cone on D/8: faces end before their edges, and q is within 2 % of that on D/16, 8.61 c
 # (verification); with sharp edges 10.8.
-blunt="--axisymmetric --soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120"
+blunt="--soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120"
 "$1/mps-penetrometer" $blunt --threads 1 --out "$work/blunt" >/dev/null
 in_range "$work/blunt/summary.json" n_factor 8.44 8.78
 in_range "$work/blunt/summary.json" particles_inside 0 0
@@ -64,7 +64,7 @@ cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give
 # In clay far from the surface, from a hole that the cone fills: more than the cavity of a smooth cone, 4/3 (1 + ln Ir),
 # and less than that of a rough one under a tip that is a cell wider, (1 + 1/4)^2 (4/3 (1 + ln Ir) + sqrt(3)); stiffer clay
 # bears more.
-deep="--axisymmetric --cell 0.025 --corner 0 --rate 1 --threads 1"
+deep="--cell 0.025 --corner 0 --rate 1 --threads 1"
 for ir in 50 200; do
   "$1/mps-penetrometer" $deep --soil 0.8x0.8x0.6 --start 0.25 --depth 0.35 --sides free --law tresca --ir $ir --out "$work/$ir" >"$work/log"
   has "$work/log" "net cone factor N_kt"

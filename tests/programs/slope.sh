@@ -30,8 +30,8 @@ factor clay 1.22 1.295 --cell 1 --below-toe 5 --phi 0 --cohesion 39240
 factor cut 1.057 1.123 --cell 1 --slope 0 --cohesion 40kPa
 in_range "$work/cut/summary.json" log_spirals 1.089 1.091
 [ "$(awk -F, '$7 == 1' "$work/slope/trials.csv" | wc -l)" -ge 1 ] || fail "no trial failed"
-picture "$work/slope/slope.png" 1100x0
-picture "$work/slope/motion.png" 1000x640
+picture "$work/slope/slope.png" 1085x0 5b2c12
+picture "$work/slope/motion.png" 1000x680 1f4e8c c0392b
 # Twice the cohesion and tan(phi) have twice the factor: the strength of the trials is the same.
 "$1/mps-slope" --cell 1 --phi 36.0524 --cohesion 19620 --factor 2.7 --threads 1 --out "$work/twice" >"$work/log"
 has "$work/log" "the slope stands"

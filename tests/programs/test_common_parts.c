@@ -162,18 +162,18 @@ TEST(options_are_compared_one_by_one) {
                               "drained=not given\nlayers=not given\n");
   assert_false(options_record(table, small, sizeof small));
   out = "b";
-  assert_true(options_agree(table, record, why, sizeof why));
+  assert_true(options_agree(table, record, NULL, why, sizeof why));
   radius = nextafter(0.1, 1.0); /* the last bit counts */
-  assert_false(options_agree(table, record, why, sizeof why));
+  assert_false(options_agree(table, record, NULL, why, sizeof why));
   assert_string_equal(why, "--radius is 0.10000000000000002, was 0.1");
   radius = 0.1, wave = 0;
-  assert_false(options_agree(table, record, why, sizeof why));
+  assert_false(options_agree(table, record, NULL, why, sizeof why));
   assert_string_equal(why, "--wave is S, was P");
   wave = 1, file = "x";
-  assert_false(options_agree(table, record, why, sizeof why));
+  assert_false(options_agree(table, record, NULL, why, sizeof why));
   assert_string_equal(why, "--layers is x, was not given");
   file = NULL;
-  assert_false(options_agree(table, "radius=0.1\n", why, sizeof why));
+  assert_false(options_agree(table, "radius=0.1\n", NULL, why, sizeof why));
   assert_string_equal(why, "--incline is 1,-2.5,not given, was unknown");
 }
 

@@ -111,7 +111,7 @@ if "$wave" $whole --duration 0.6 --frames 6 --out "$work/cut" >"$work/log" 2>&1;
     others=$(printf '%s\n' "$whole" | sed "s/${other%% *} [^ ]*//")
     "$wave" $others $other --restart "$work/cut/checkpoint.h5" --out "$work/rest" 2>"$work/log" &&
       fail "a checkpoint of another model was taken: $other"
-    has "$work/log" "of another model: ${other%% *}"
+    has "$work/log" "made with other options: ${other%% *}"
     [ "$(wc -l <"$work/log")" -eq 1 ] || fail "one line for one error: $other"
   done
 else
