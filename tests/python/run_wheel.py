@@ -37,6 +37,11 @@ beam["young"] = 1e7
 beam["poisson"] = 0.0
 elastic = mps.Elastic(beam)
 elastic.add_boundary(box=([0, 0], [0.1, 0.3]), kind="held")
+elastic.add_load(kind="pressure", ids=elastic.select_facets("x_upper"), force=[-1e4])
+elastic.solve()
+along = [beam["displacement"][beam.index(beam.nearest([x, 0.15])), 0] for x in (0.45, 0.95)]
+print(f"strain {(along[1] - along[0]) / 0.5:.3e}, theory {1e4 / 1e7:.3e}")
+assert abs((along[1] - along[0]) / 0.5 / 1e-3 - 1) < 0.01
 solver.save("job.h5")
 from libmps import files, theory
 assert files.read_summary("wave")["outcome"] == "finished" and theory.prandtl() > 5
