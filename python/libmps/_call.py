@@ -228,6 +228,8 @@ class Call:
         dtype = _DTYPES.get(item.cname)
         if dtype is None:
             raise TypeError(f"{item.cname} * is no array of numbers")
+        if numpy.ndim(value) == 0:
+            raise TypeError(f"a list or an array is wanted, of one number [{value}]")
         held = numpy.ascontiguousarray(_numbers(value, dtype), dtype)
         self.alive.append(held)
         return ffi.cast(f"{item.cname} *", held.ctypes.data)

@@ -10,7 +10,8 @@ import numpy
 
 from . import _callbacks, _enums, _history, _quantities, _show, _tables
 from ._arrays import Edit, lend
-from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, same, to_python, unknown)
+from ._call import (SOLVERS, Call, Performance, Result, bind, class_name, components, functions, results, same, to_python,
+                    unknown)
 from ._errors import ArgumentError, StateError, Warning, failed, spoken
 from ._library import ffi, library, opaque, tag
 
@@ -81,7 +82,9 @@ class Object:
         return _show.html(self)
 
     def _near(self, name):
-        near = difflib.get_close_matches(name, [n for n in dir(type(self)) if n[0] != "_"], 1)
+        near = [f"{function.word}.{name}" for function in functions.values() if function.form == "property" and
+                function.word != "definition" and function.owner == self._kind and name in _members(function.type)]
+        near += difflib.get_close_matches(name, [n for n in dir(type(self)) if n[0] != "_"], 1)
         return f"{type(self).__name__} of libmps has no {name!r}{f' (is it {near[0]!r}?)' if near else ''}"
 
     def __getattr__(self, name):
@@ -540,6 +543,11 @@ def _method(function, owner):
 
     method.__name__, method.__qualname__, method.__module__ = function.word, f"{owner}.{function.word}", "libmps"
     return described(method, function, "self")
+
+
+def _members(name):
+    """The members of the class `name` of results; none of what is no such class."""
+    return [member for kind, made in results.items() if made.__name__ == name for member, _ in ffi.typeof(kind).fields]
 
 
 def _property(function, setter):

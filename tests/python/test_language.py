@@ -108,6 +108,18 @@ class Calls(unittest.TestCase):
         sand.remove(all=True)
         self.assertEqual(len(sand), 0)
 
+    def test_a_number_is_no_array(self):
+        beam = mps.Particles(spacing=0.1)
+        beam.fill_box([0, 0], [1, 0.5])
+        beam["young"], beam["poisson"] = 1e7, 0.3
+        solver = mps.Elastic(beam)
+        top = solver.select_facets("y_upper")
+        for call, name in ((lambda: beam.remove(3), "'ids' is 3"), (lambda: mps.Table("displacement", 0, [0, 1]), "'times' is 0"),
+                           (lambda: solver.add_load(kind="pressure", ids=top, values=1e4), "'values' is 10000.0")):
+            with self.assertRaisesRegex(TypeError, f"{name}: a list or an array is wanted"):
+                call()
+        self.assertEqual(len(beam), 50)
+
     def test_what_c_stores_stays(self):
         """A signal of Python that only the solver has."""
         solver, asked = resting(block()), []

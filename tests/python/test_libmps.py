@@ -265,6 +265,8 @@ class Errors(unittest.TestCase):
         refused("status_text() lacks 'status': status_text(status)", mps.status_text)
         with self.assertRaisesRegex(AttributeError, "Mpm of libmps has no 'stepp' .is it 'step'"):
             falling(context, sand).stepp
+        with self.assertRaisesRegex(AttributeError, "Disc of libmps has no 'position' .is it 'state.position'"):
+            mps.Disc(0.1).position
         with self.assertRaisesRegex(AttributeError, "Particles of libmps has no 'spacng' .is it 'spacing'"):
             sand.spacng = 1.0
         with self.assertRaises(AttributeError):
