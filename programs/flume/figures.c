@@ -225,6 +225,17 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
     snprintf(f->why, sizeof f->why, "%s", mps_context_error(a->context)->message);
 }
 
+/* Of a sea from a dike, tanh(a xi^b), a = .167 (1 - exp(-3.2 gamma)), b = 1.49 (gamma - .38)^2 +
+ * .86 with the roughness gamma = 1 of smooth slopes, xi by Hm0 and T(m-1,0) in deep water, for
+ * crests of .5 Hm0 and more (Zanuttigh and van der Meer 2008). */
+static void find_reflection(const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const double H = f->split.incident_height, T = f->split.energy_period;
+  if (s->wall != FLUME_SLOPE || s->waves == FLUME_REGULAR || s->crest < 0.5 * H) return;
+  const double xi = sqrt(WAVES_G * T * T / (2.0 * WAVES_PI * H)) / s->cotangent;
+  f->reflection = tanh(0.167 * (1.0 - exp(-3.2)) * pow(xi, 1.49 * 0.62 * 0.62 + 0.86));
+}
+
 /* ---- all ------------------------------------------------------------------------------------- */
 
 bool flume_find_figures(app *a, flume *m, flume_figures *f) {
@@ -238,6 +249,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
   if (!flume_find_thin(a, m, f)) return false;
+  f->reflection = NAN;
   f->crest_first = f->crest_last = f->speed = f->trailing = NAN;
   if (m->s.waves == FLUME_SOLITARY) {
     f->from = 0.0, f->to = m->samples ? m->sample[m->samples - 1].t : 0.0;
@@ -263,6 +275,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_sainflou(a, m, f);
   if (f->separated) find_discharge(a, m, f);
+  if (f->separated) find_reflection(m, f);
   return flume_find_run_up(a, m, f);
 }
 

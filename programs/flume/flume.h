@@ -109,8 +109,9 @@ typedef struct flume_cells {
   unsigned char *wet;
 } flume_cells;
 
-/* What a piston returns by. m: its mean place, its correction's; the level at its face above the
- * asked one over a period, the mean of that, and what of the level is not absorbed. */
+/* What a piston returns by, m: its mean place over some periods, and that over a shorter time; the
+ * level at its face above the asked one over a period, the mean of that, and what of the level is
+ * not absorbed. */
 typedef struct flume_mean {
   double middle, place, slow, level, offset;
   double speed; /* m/s, of the return */
@@ -278,6 +279,7 @@ typedef struct flume_figures {
                                                  highest reading of each climb */
   mps_eurotop_run_up formula;
   bool has_formula;
+  double reflection;           /* of a sea from a smooth dike, by formula; NAN: none */
   double mean_level;           /* m above that at rest, of the gauges before */
   double mean_maker, mean_end; /* m from their places, into the water; NAN: no piston there */
   double water;                /* mean of the water before the crest, over that at the start */

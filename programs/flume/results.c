@@ -193,6 +193,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, there, "Tp", g->split.peak_period);
   json_number_if(f, there, "Tm_10", g->split.energy_period);
   json_number_if(f, there, "reflection", g->split.reflection);
+  json_number_if(f, there && !isnan(g->reflection), "reflection_formula", g->reflection);
   json_number_if(f, there, "residual", g->split.residual);
   json_number_if(f, g->passed, "Hm0_transmitted", g->behind.incident_height);
   json_number_if(f, g->passed, "transmission",
@@ -211,6 +212,8 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
     printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
            "%.3f\n",
            g->split.incident_height, g->target_height, g->split.peak_period, g->split.reflection);
+  if (there && !isnan(g->reflection))
+    printf("reflection by Zanuttigh and van der Meer %.3f\n", g->reflection);
   if (there && m->maker)
     printf("mean place of the maker %.1f mm, mean level %.1f mm", 1e3 * g->mean_maker,
            1e3 * g->mean_level);

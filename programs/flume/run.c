@@ -70,12 +70,12 @@ static void follow_wall(flume *m, double level, double dt) {
  *
  *   v' = -(X/(12 theta) + v)/(2 theta),
  *
- * X that of its correction over theta, slow against waves and the groups of a sea and through the
+ * X its place over theta, slow against waves and the groups of a sea and through the
  * flume: X' = v decays with some 1/(7 theta). Of the level at its face b, the mean above the asked
  * one over theta, and what moves all of the water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
 static void follow_two(flume *m, const double *above, double dt) {
   const double T = m->s.period, d = m->s.depth, through = m->toe / sqrt(WAVES_G * d);
-  const double theta = fmax((m->s.waves == FLUME_REGULAR ? 0.5 : GROUP) * T, 0.2 * through);
+  const double theta = fmax((m->s.waves == FLUME_REGULAR ? 1.0 : GROUP) * T, 0.4 * through);
   mps_absorber *const piston[2] = {m->maker, m->end};
   double rate[2];
   for (int k = 0; k < 2; k++) {
