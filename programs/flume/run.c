@@ -70,9 +70,9 @@ static void follow_wall(flume *m, double level, double dt) {
  *
  *   v' = -(X/(12 theta) + v)/(2 theta),
  *
- * X its place over theta, slow against waves and the groups of a sea and through the
- * flume: X' = v decays with some 1/(7 theta). Of the level at its face b, the mean above the asked
- * one over theta, and what moves all of the water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
+ * X its place over theta, slow against waves, the groups of a sea and long waves through the flume.
+ * Of the level at its face b, the mean above the asked one over theta, and what moves all of the
+ * water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
 static void follow_two(flume *m, const double *above, double dt) {
   const double T = m->s.period, d = m->s.depth, through = m->toe / sqrt(WAVES_G * d);
   const double theta = fmax((m->s.waves == FLUME_REGULAR ? 1.0 : GROUP) * T, 0.4 * through);
@@ -101,7 +101,8 @@ static void follow_means(flume *m, const double *level, double asked, double dt)
   const double above[2] = {level[0] - asked, level[1]};
   m->mean[0].middle += share * (place_of(m->maker) - m->mean[0].middle);
   m->mean[1].middle += share * (place_of(m->end) - m->mean[1].middle);
-  if (m->end) follow_two(m, above, dt);
+  if (isnan(level[0]) || isnan(level[1])) return; /* no water at a face */
+  if (m->maker && m->end) follow_two(m, above, dt);
   if (m->maker && !m->end) follow_wall(m, level[0], dt);
 }
 
