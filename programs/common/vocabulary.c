@@ -452,7 +452,7 @@ static const struct {
         "in place of --vs and --vp: velocity V of the wave as in the paper, S: Vs = V, P: Vp = V"),
     CHOICE("waves", NULL,
            "one wave; seas by a spectrum of JONSWAP or Pierson and Moskowitz; a group whose crests "
-           "come together at --focus; those of --levels"),
+           "come together at --focus; those of --levels; a single crest of Boussinesq"),
     NUMBER("width", "m", LENGTH, "width"),
     NUMBER("window", "s", FROM_TO(0.0, 1e6), "T1,T2: the times that are analysed"),
     NUMBER("x", "m", FROM_TO(-1e6, 1e6), "place along x"),

@@ -17,7 +17,12 @@ static int complete(const options_program *program, flume *m) {
   const bool own = flume_has_structure(m) && s->wall == FLUME_OPEN_END; /* of the model file */
   if (isnan(s->spacing)) s->spacing = s->depth / 16.0;
   options_whole("depth", &s->depth, "--spacing", s->spacing);
-  m->wave_length = 2.0 * WAVES_PI / waves_number(s->period, s->depth);
+  if (s->waves == FLUME_SOLITARY) {
+    m->wave_length = 2.0 * WAVES_PI * s->depth * sqrt(s->depth / (0.75 * s->height));
+    s->period = m->wave_length / sqrt(WAVES_G * (s->depth + s->height));
+  } else {
+    m->wave_length = 2.0 * WAVES_PI / waves_number(s->period, s->depth);
+  }
   if (s->closed && s->wall != FLUME_OPEN_END)
     return flume_refuse(program, m, "--end closed needs a structure of --model, and --wall none");
   if (s->closed && own && isnan(s->length))
@@ -33,7 +38,7 @@ static int complete(const options_program *program, flume *m) {
   if (isnan(s->ramp)) s->ramp = 2.0 * s->period;
   if (isnan(s->duration)) s->duration = 20.0 * s->period;
   if (isnan(s->sample)) s->sample = s->period / 60.0;
-  if (isnan(s->repeat) && s->waves != FLUME_REGULAR)
+  if (isnan(s->repeat) && s->waves != FLUME_REGULAR && s->waves != FLUME_SOLITARY)
     s->repeat = fmax(s->duration, 20.0 * s->period);
   if (s->depth < 5.0 * s->spacing)
     return flume_refuse(program, m, "--depth must be at least 5 times --spacing");

@@ -171,15 +171,29 @@ static double passed_at(const flume *m, double t) {
   return volume;
 }
 
+static void warn_of_places(app *a, const flume *m, const flume_figures *f) {
+  const double most = MEAN_OF_MAKER * m->s.height;
+  if (m->maker && fabs(f->mean_maker) > most)
+    app_warn(a,
+             "the maker stood %.3g m from its place in the mean, more than %g of the waves' height",
+             f->mean_maker, MEAN_OF_MAKER);
+  if (m->end && fabs(f->mean_end) > most)
+    app_warn(a,
+             "the far piston stood %.3g m from its place in the mean, more than %g of the waves' "
+             "height",
+             f->mean_end, MEAN_OF_MAKER);
+}
+
 /* Means over the window of the level at the gauges before structure, rock or zone, of the water
- * before the crest, and of the maker, whose way from its place is water that the level lacks. */
+ * before the crest, and of the pistons, whose way from their places is water that the level lacks.
+ */
 static void find_means(app *a, const flume *m, flume_figures *f) {
-  double maker = 0.0, level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
+  double maker = 0.0, end = 0.0, level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
   const double filled = (double)m->filled * m->s.spacing * m->s.spacing;
   for (int64_t k = 0; k < m->samples; k++) {
     if (!in_window(f, m->sample[k].t)) continue;
     water += m->sample[k].water / filled, samples += 1.0;
-    maker += m->sample[k].maker;
+    maker += m->sample[k].maker, end += m->sample[k].end;
     for (int j = 0; j < m->fronts; j++) {
       const double here = m->sample[k].level[m->front[j]];
       if (!isnan(here)) level += here, levels += 1.0;
@@ -187,10 +201,8 @@ static void find_means(app *a, const flume *m, flume_figures *f) {
   }
   f->mean_level = level / levels;
   f->mean_maker = maker / samples;
-  if (m->maker && fabs(f->mean_maker) > MEAN_OF_MAKER * m->s.height)
-    app_warn(a,
-             "the maker stood %.3g m from its place in the mean, more than %g of the waves' height",
-             f->mean_maker, MEAN_OF_MAKER);
+  if (m->end) f->mean_end = end / samples;
+  warn_of_places(a, m, f);
   if (m->filled > 0) f->water = water / samples;
   flume_warn_of_collisions(a, m);
 }
@@ -213,12 +225,23 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
     snprintf(f->why, sizeof f->why, "%s", mps_context_error(a->context)->message);
 }
 
+/* Of a sea from a dike, tanh(a xi^b), a = .167 (1 - exp(-3.2 gamma)), b = 1.49 (gamma - .38)^2 +
+ * .86 with the roughness gamma = 1 of smooth slopes, xi by Hm0 and T(m-1,0) in deep water, for
+ * crests of .5 Hm0 and more (Zanuttigh and van der Meer 2008). */
+static void find_reflection(const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const double H = f->split.incident_height, T = f->split.energy_period;
+  if (s->wall != FLUME_SLOPE || s->waves == FLUME_REGULAR || s->crest < 0.5 * H) return;
+  const double xi = sqrt(WAVES_G * T * T / (2.0 * WAVES_PI * H)) / s->cotangent;
+  f->reflection = tanh(0.167 * (1.0 - exp(-3.2)) * pow(xi, 1.49 * 0.62 * 0.62 + 0.86));
+}
+
 /* ---- all ------------------------------------------------------------------------------------- */
 
 bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
-  f->mean_level = f->mean_maker = f->water = NAN;
+  f->mean_level = f->mean_maker = f->mean_end = f->water = NAN;
   f->run_up = f->run_up_layer = f->run_up_mean = f->run_up_highest = NAN;
   f->force_mean = f->force_harmonic = f->force_linear = f->force_sainflou = NAN;
   f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
@@ -226,6 +249,14 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
   if (!flume_find_thin(a, m, f)) return false;
+  f->reflection = NAN;
+  f->crest_first = f->crest_last = f->speed = f->trailing = NAN;
+  if (m->s.waves == FLUME_SOLITARY) {
+    f->from = 0.0, f->to = m->samples ? m->sample[m->samples - 1].t : 0.0;
+    flume_find_solitary(m, f);
+    if (flume_is_loaded(m)) find_forces(m, f);
+    return true;
+  }
   if (!find_window(m, f)) {
     if (!progress_interrupted()) /* else its own line says enough */
       app_warn(
@@ -244,6 +275,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_sainflou(a, m, f);
   if (f->separated) find_discharge(a, m, f);
+  if (f->separated) find_reflection(m, f);
   return flume_find_run_up(a, m, f);
 }
 

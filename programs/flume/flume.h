@@ -15,7 +15,7 @@
 #include <mps/experimental/waves.h>
 #include <mps/fluid.h>
 
-enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
+enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE, FLUME_SOLITARY };
 enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
 enum { FLUME_RETURNS = 0, FLUME_LEAVES };
 enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
@@ -28,6 +28,10 @@ enum { FLUME_BED = 0, FLUME_MAKER, FLUME_END, FLUME_BODY }; /* boundaries of the
 /* Periods in which water that has passed the crest returns: with q = 1e-3 m2/s of a flume of 1.9 m2
  * .15 % of the water is on its way. */
 #define FLUME_REFILL_PERIODS 2.0
+
+/* Periods 2 pi/(k c) of a solitary wave after which its crest is asked for at the maker's place:
+ * mps_waves has it at 4/(k c). */
+#define FLUME_SOLITARY_START (2.0 / WAVES_PI)
 
 /* A region of rock, in any convex or concave polygon. */
 typedef struct flume_rock {
@@ -105,6 +109,14 @@ typedef struct flume_cells {
   unsigned char *wet;
 } flume_cells;
 
+/* What a piston returns by, m: its mean place over some periods, and that over a shorter time; the
+ * level at its face above the asked one over a period, the mean of that, and what of the level is
+ * not absorbed. */
+typedef struct flume_mean {
+  double middle, place, slow, level, offset;
+  double speed; /* m/s, of the return */
+} flume_mean;
+
 typedef struct flume {
   flume_settings s;
   const option *table;
@@ -131,8 +143,7 @@ typedef struct flume {
   const flume_sample *sample; /* of `rows` */
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
-  double offset;            /* m: mean level at the face of the maker in its middle place */
-  double middle[2];         /* m: mean places of the maker and the far piston */
+  flume_mean mean[2];       /* of the maker and the far piston */
   double due;               /* part of the next particle that returns, 0 to 1 */
   flume_look look;          /* of the largest force */
   flume_look *frame;        /* of the animation */
@@ -268,11 +279,14 @@ typedef struct flume_figures {
                                                  highest reading of each climb */
   mps_eurotop_run_up formula;
   bool has_formula;
-  double mean_level; /* m above that at rest, of the gauges before */
-  double mean_maker; /* m from its place */
-  double water;      /* mean of the water before the crest, over that at the start */
-  double loss;       /* of the height, a wave length */
+  double reflection;           /* of a sea from a smooth dike, by formula; NAN: none */
+  double mean_level;           /* m above that at rest, of the gauges before */
+  double mean_maker, mean_end; /* m from their places, into the water; NAN: no piston there */
+  double water;                /* mean of the water before the crest, over that at the start */
+  double loss;                 /* of the height, a wave length */
   double bound, bound_stokes, unbound, back, length; /* of regular waves, m the last: harmonics.c */
+  double crest_first, crest_last, speed, trailing;   /* of a solitary wave: solitary.c; m, m, m/s;
+                                                        over   the height */
   mps_goda goda;
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
@@ -294,6 +308,8 @@ bool flume_separate(app *a, const flume *m, flume_figures *f);
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
 /* regular.c: force_mean and those after it, of an upright wall. */
 void flume_find_regular_forces(const flume *m, flume_figures *f);
+/* solitary.c: crest_first and those after it, NAN where there is none. */
+void flume_find_solitary(const flume *m, flume_figures *f);
 /* climb.c. False after an error line. Mean discharge (m2/s) of `thin` between two times, NAN where
  * there is none. */
 bool flume_find_thin(app *a, const flume *m, flume_figures *f);

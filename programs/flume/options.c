@@ -45,9 +45,10 @@ static flume model = {.s = {.depth = 0.4,
 
 static option table[] = {
     OPTION_HEADING("Waves"),
-    OPTION_CHOICE_OF("waves", "regular|jonswap|pm|focused|file", &model.s.waves, NULL),
-    OPTION_NUMBER("height", &model.s.height,
-                  "of regular waves, Hm0 of a sea, of a focused group twice its linear crest"),
+    OPTION_CHOICE_OF("waves", "regular|jonswap|pm|focused|file|solitary", &model.s.waves, NULL),
+    OPTION_NUMBER(
+        "height", &model.s.height,
+        "of regular and solitary waves, Hm0 of a sea, of a focused group twice its linear crest"),
     OPTION_NUMBER("period", &model.s.period, "peak of a spectrum"),
     OPTION_NUMBER("gamma", &model.s.gamma, NULL),
     OPTION_NUMBER("repeat", &model.s.repeat, NULL),

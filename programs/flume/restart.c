@@ -10,7 +10,8 @@
 
 typedef struct notes {
   int64_t frames, returned;
-  double due, offset, middle[2];
+  double due;
+  flume_mean mean[2];
   double maker[MPS_ABSORBER_MEMORY], end[MPS_ABSORBER_MEMORY];
   mps_fluid_report report;
 } notes;
@@ -62,28 +63,29 @@ static void pass(void *user, resume_bytes *b) {
   bool good = true;
   memset(&n, 0, sizeof n);
   n.frames = m->frames, n.report = m->report;
-  n.returned = m->returned, n.due = m->due, n.offset = m->offset;
-  memcpy(n.middle, m->middle, sizeof n.middle);
+  n.returned = m->returned, n.due = m->due;
+  memcpy(n.mean, m->mean, sizeof n.mean);
   if (m->maker) good = good && mps_absorber_get_memory(m->maker, n.maker) == MPS_OK;
   if (m->end) good = good && mps_absorber_get_memory(m->end, n.end) == MPS_OK;
   pass_probes(m, b);
   resume_pass(b, &n, sizeof n);
   good = good && n.frames >= 0 && n.frames <= m->frame_room && n.returned >= 0 && n.due >= 0.0 &&
-         n.due <= 1.0 && fabs(n.offset) <= 1e6 && fabs(n.middle[0]) <= 1e6 &&
-         fabs(n.middle[1]) <= 1e6;
+         n.due <= 1.0;
+  for (size_t k = 0; k < sizeof n.mean / (sizeof(double)); k++)
+    good = good && fabs(((const double *)n.mean)[k]) <= 1e6;
   if (resume_wrong(b, !good)) return;
   if (b->reads &&
       resume_wrong(b, !restore_piston(m->maker, n.maker) || !restore_piston(m->end, n.end)))
     return;
   m->frames = n.frames, m->report = n.report;
-  m->returned = n.returned, m->due = n.due, m->offset = n.offset;
-  memcpy(m->middle, n.middle, sizeof n.middle);
+  m->returned = n.returned, m->due = n.due;
+  memcpy(m->mean, n.mean, sizeof n.mean);
   pass_look(b, &m->look);
   for (int64_t k = 0; k < m->frames; k++) pass_look(b, &m->frame[k]);
 }
 
 static resume parts(flume *m) {
-  return resume_of_fluid("mps-flume 6", m->table, pass, m, m->fluid, m->a);
+  return resume_of_fluid("mps-flume 7", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status flume_save(void *user) {

@@ -193,6 +193,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, there, "Tp", g->split.peak_period);
   json_number_if(f, there, "Tm_10", g->split.energy_period);
   json_number_if(f, there, "reflection", g->split.reflection);
+  json_number_if(f, there && !isnan(g->reflection), "reflection_formula", g->reflection);
   json_number_if(f, there, "residual", g->split.residual);
   json_number_if(f, g->passed, "Hm0_transmitted", g->behind.incident_height);
   json_number_if(f, g->passed, "transmission",
@@ -200,6 +201,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, g->passed, "reflection_behind", g->behind.reflection);
   json_number_if(f, there, "mean_level", g->mean_level);
   json_number_if(f, there, "mean_maker", g->mean_maker);
+  json_number_if(f, there && m->end, "mean_end", g->mean_end);
   json_number(f, "loss_per_wavelength", g->loss);
   json_number_if(f, !isnan(g->bound), "harmonic_bound", g->bound);
   json_number_if(f, !isnan(g->bound), "harmonic_stokes", g->bound_stokes);
@@ -210,6 +212,13 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
     printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
            "%.3f\n",
            g->split.incident_height, g->target_height, g->split.peak_period, g->split.reflection);
+  if (there && !isnan(g->reflection))
+    printf("reflection by Zanuttigh and van der Meer %.3f\n", g->reflection);
+  if (there && m->maker)
+    printf("mean place of the maker %.1f mm, mean level %.1f mm", 1e3 * g->mean_maker,
+           1e3 * g->mean_level);
+  if (there && m->end) printf(", mean place of the far piston %.1f mm", 1e3 * g->mean_end);
+  if (there && m->maker) printf("\n");
   if (g->passed)
     printf("behind structure or rock Hm0 %.4f m, transmission %.3f, reflection there %.3f\n",
            g->behind.incident_height, g->behind.incident_height / g->split.incident_height,
@@ -218,6 +227,20 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
     printf("second harmonic over the first: bound %.4f (Stokes %.4f), free %.4f, sent back %.4f; "
            "wave length %.4f m\n",
            g->bound, g->bound_stokes, g->unbound, g->back, g->length);
+}
+
+static void summarise_solitary(output *f, const flume *m, const flume_figures *g) {
+  const bool there = m->s.waves == FLUME_SOLITARY && !isnan(g->crest_last);
+  const double speed = sqrt(WAVES_G * (m->s.depth + m->s.height));
+  json_number_if(f, there, "crest_first", g->crest_first);
+  json_number_if(f, there, "crest_last", g->crest_last);
+  json_number_if(f, there && isfinite(g->speed), "wave_speed", g->speed);
+  json_number_if(f, there, "wave_speed_theory", speed);
+  json_number_if(f, there && !isnan(g->trailing), "trailing", g->trailing);
+  if (!there) return;
+  printf("crest %.4f m at the first gauge, %.4f m at the last, %.4f m asked for; speed %.3f m/s, "
+         "(g (d + H))^1/2 %.3f m/s; trailing waves %.3f of the height\n",
+         g->crest_first, g->crest_last, m->s.height, g->speed, speed, g->trailing);
 }
 
 static void summarise_absorption(output *f, const flume *m) {
@@ -373,6 +396,7 @@ static bool write_summary(app *a, const flume *m, const flume_figures *g, int64_
   json_integer(&f, "steps", mps_fluid_steps(m->fluid));
   json_number(&f, "time", mps_fluid_time(m->fluid));
   summarise_waves(&f, m, g);
+  summarise_solitary(&f, m, g);
   summarise_absorption(&f, m);
   summarise_force(&f, m, g);
   summarise_discharge(a, &f, m, g, events);

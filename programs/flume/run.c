@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define MEAN 1.0        /* periods over which the mean level at the maker is taken */
 #define SLOPE_FROM 2.5  /* spacings from a piston's face, of the other end of the slope there */
 #define MIDDLE 3.0      /* periods over which the mean place of a piston is taken */
+#define GROUP 2.0       /* periods of a sea, of the return of two pistons */
 #define LAST_STEPS 32.0 /* that are equal, and shorter, to end the run at its duration */
 
 /* ---- pistons --------------------------------------------------------------------------------- */
@@ -27,7 +27,8 @@ static mps_status level_behind(const flume *m, double face, double place, double
   double eta[2];
   const mps_status status = mps_fluid_get_levels(m->fluid, 2, at, eta);
   const double slope = isnan(eta[1]) ? 0.0 : (eta[1] - eta[0]) / (far - near);
-  *level = eta[0] - m->s.depth - place * slope;
+  const bool solitary = m->s.waves == FLUME_SOLITARY; /* its theory has the level at the face */
+  *level = eta[0] - m->s.depth - (solitary ? 0.0 : place * slope);
   return status;
 }
 
@@ -39,33 +40,70 @@ static double place_of(const mps_absorber *piston) {
 static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double dt,
                               double *moved, double *level) {
   const bool maker = piston == m->maker;
-  const double t = mps_fluid_time(m->fluid), mean = maker ? m->offset : 0.0, s = place_of(piston);
+  const double t = mps_fluid_time(m->fluid), mean = m->mean[!maker].offset, s = place_of(piston);
   double u;
-  mps_status status =
-      level_behind(m, maker ? s : m->outlet - s, s - m->middle[!maker], maker ? 1.0 : -1.0, level);
+  mps_status status = level_behind(m, maker ? s : m->outlet - s, s - m->mean[!maker].middle,
+                                   maker ? 1.0 : -1.0, level);
   if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, *level - mean, moved, &u);
   return status == MPS_OK ? mps_fluid_set_boundary_motion(m->fluid, wall, moved, &u) : status;
 }
 
-/* Before a wall the maker would not stay: the mean level of standing waves at its face is some mm
- * above that of the flume, and the slow part of the second order that it is asked for is that of an
- * infinitely long flume. Both change the mean level of a closed one. So it is given the level
- * without its mean b at the face in a flume whose maker stands at X = 0,
+/* A piston is given the level at its face without `offset`, so that its mean place stays. Before a
+ * wall the mean level of standing waves at the face is some mm above that of the flume, and the
+ * slow part of the second order that the maker is asked for is that of an infinitely long flume;
+ * both change the mean level of a closed one. So the offset is the mean b at the face in a flume
+ * whose piston stands at X = 0,
  *
  *   b' = (eta - X d/L - b)/T_b,
  *
- * by which slow motions are X' = -(g d)^1/2 X/L. T_b is a period, or the time that long waves
- * take through the flume, which are still absorbed. Between two pistons the mean level is theirs.
- * Both absorb about their mean places. */
-static void follow_mean(flume *m, double level, double dt) {
-  mps_absorber_report r;
-  const double share = -expm1(-dt / (MIDDLE * m->s.period));
-  m->middle[0] += share * (place_of(m->maker) - m->middle[0]);
-  m->middle[1] += share * (place_of(m->end) - m->middle[1]);
-  if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
+ * by which slow motions are X' = -(g d)^1/2 X/L. T_b is a period, or the time that long waves take
+ * through the flume, which are still absorbed. All absorb about their mean places. */
+static void follow_wall(flume *m, double level, double dt) {
+  flume_mean *mean = &m->mean[0];
   const double through = m->toe / sqrt(WAVES_G * m->s.depth);
-  const double part = -expm1(-dt / fmax(MEAN * m->s.period, through));
-  m->offset += part * (level - r.displacement * m->s.depth / m->toe - m->offset);
+  const double part = -expm1(-dt / fmax(m->s.period, through));
+  mean->offset += part * (level - place_of(m->maker) * m->s.depth / m->toe - mean->offset);
+}
+
+/* No level takes two pistons back that move together, and waves that arrive, or .1 mm of mean level
+ * at one face, move them by centimetres. So each returns with the velocity v,
+ *
+ *   v' = -(X/(12 theta) + v)/(2 theta),
+ *
+ * X its place over theta, slow against waves, the groups of a sea and long waves through the flume.
+ * Of the level at its face b, the mean above the asked one over theta, and what moves all of the
+ * water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
+static void follow_two(flume *m, const double *above, double dt) {
+  const double T = m->s.period, d = m->s.depth, through = m->toe / sqrt(WAVES_G * d);
+  const double theta = fmax((m->s.waves == FLUME_REGULAR ? 1.0 : GROUP) * T, 0.4 * through);
+  mps_absorber *const piston[2] = {m->maker, m->end};
+  double rate[2];
+  for (int k = 0; k < 2; k++) {
+    flume_mean *mean = &m->mean[k];
+    mps_absorber_report r = {.displacement = 0.0};
+    if (mps_absorber_get_report(piston[k], &r) != MPS_OK) return;
+    mean->place += -expm1(-dt / theta) * (r.displacement - mean->place);
+    rate[k] = -(mean->place / (12.0 * theta) + mean->speed) / (2.0 * theta);
+    mean->speed += rate[k] * dt;
+  }
+  for (int k = 0; k < 2; k++) {
+    flume_mean *mean = &m->mean[k];
+    const double push = 0.25 * m->toe / WAVES_G * (rate[k] - rate[1 - k]);
+    mean->slow += -expm1(-dt / T) * (above[k] - push - mean->slow);
+    mean->level += -expm1(-dt / theta) * (mean->slow - mean->level);
+    mean->offset = mean->level + push + mean->speed * sqrt(d / WAVES_G);
+  }
+}
+
+/* `level`: at both faces; `asked`: at the maker's. */
+static void follow_means(flume *m, const double *level, double asked, double dt) {
+  const double share = -expm1(-dt / (MIDDLE * m->s.period));
+  const double above[2] = {level[0] - asked, level[1]};
+  m->mean[0].middle += share * (place_of(m->maker) - m->mean[0].middle);
+  m->mean[1].middle += share * (place_of(m->end) - m->mean[1].middle);
+  if (isnan(level[0]) || isnan(level[1])) return; /* no water at a face */
+  if (m->maker && m->end) follow_two(m, above, dt);
+  if (m->maker && !m->end) follow_wall(m, level[0], dt);
 }
 
 double flume_maker_place(const flume *m) {
@@ -112,14 +150,16 @@ static double step_size(const flume *m) {
 }
 
 static mps_status make_step(flume *m) {
-  const double dt = step_size(m);
-  double s, level = 0.0, far;
-  mps_status status = move_maker(m, dt, &level);
-  if (status == MPS_OK && m->end) status = move_piston(m, m->end, FLUME_END, dt, &s, &far);
+  const double dt = step_size(m), t = mps_fluid_time(m->fluid);
+  double s, level[2] = {0.0, 0.0}, asked = 0.0;
+  mps_status status = move_maker(m, dt, &level[0]);
+  if (status == MPS_OK && m->end) status = move_piston(m, m->end, FLUME_END, dt, &s, &level[1]);
+  if (status == MPS_OK && m->end)
+    status = mps_waves_get_piston(m->waves, 1, &t, NULL, NULL, NULL, &asked);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
   if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);
-  if (status == MPS_OK) follow_mean(m, level, dt);
+  if (status == MPS_OK) follow_means(m, level, asked, dt);
   return status == MPS_OK ? flume_refill(m, dt) : status;
 }
 

@@ -27,6 +27,9 @@ int flume_check_unused(const options_program *program, const flume *m) {
   const bool rock = m->shape.rocks > 0, caisson = flume_is_caisson(m);
   const need list[] = {
       {"height", "--waves other than file", s->waves != FLUME_FILE},
+      {"period", "--waves other than solitary", s->waves != FLUME_SOLITARY},
+      {"ramp", "--waves other than solitary", s->waves != FLUME_SOLITARY},
+      {"order", "--waves other than solitary", s->waves != FLUME_SOLITARY},
       {"gamma", "--waves jonswap or focused", peaked},
       {"repeat", "--waves jonswap, pm or focused", sea || s->waves == FLUME_FOCUSED},
       {"seed", "--waves jonswap or pm", sea},

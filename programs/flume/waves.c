@@ -14,11 +14,12 @@ enum { POINTS = 40 }; /* a period, of a record read from a file */
 static mps_waves_def definition(const flume_settings *s) {
   mps_waves_def def = mps_waves_defaults();
   static const int32_t kinds[] = {MPS_WAVES_REGULAR, MPS_WAVES_JONSWAP, MPS_WAVES_PIERSON_MOSKOWITZ,
-                                  MPS_WAVES_JONSWAP, MPS_WAVES_RECORD};
+                                  MPS_WAVES_JONSWAP, MPS_WAVES_RECORD,  MPS_WAVES_SOLITARY};
   def.kind = kinds[s->waves];
   def.theory = s->order;
   def.depth = s->depth, def.gravity = WAVES_G;
-  def.height = s->height, def.period = s->period;
+  def.height = s->height;
+  if (s->waves != FLUME_SOLITARY) def.period = s->period;
   def.gamma = s->gamma, def.repeat = s->repeat, def.ramp = s->ramp;
   def.seed = s->seed;
   def.stroke = s->stroke, def.speed = s->speed;
@@ -97,7 +98,7 @@ mps_status flume_make_waves(app *a, flume *m) {
   return app_settle(a, status);
 }
 
-/* Either end; the far one is asked for still water. */
+/* Either end, of a solitary wave the far one; that is asked for still water. */
 mps_status flume_make_pistons(app *a, flume *m) {
   mps_absorber_def def = mps_absorber_defaults();
   def.form = m->s.form ? MPS_ABSORBER_FORM_SHALLOW : MPS_ABSORBER_FORM_TUNED;
@@ -106,7 +107,11 @@ mps_status flume_make_pistons(app *a, flume *m) {
   if (!isnan(m->s.stroke)) def.stroke = m->s.stroke;
   def.waves = m->waves;
   if (m->s.absorb != FLUME_ACTIVE) return MPS_OK;
-  mps_status status = mps_absorber_create(a->context, &def, &m->maker);
+  mps_status status = MPS_OK;
+  if (m->s.waves == FLUME_SOLITARY)
+    def.form = MPS_ABSORBER_FORM_SHALLOW; /* the maker stays where the wave leaves it */
+  else
+    status = mps_absorber_create(a->context, &def, &m->maker);
   def.waves = NULL;
   if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m))
     status = mps_absorber_create(a->context, &def, &m->end);

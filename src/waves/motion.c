@@ -41,6 +41,10 @@ void mpsi_waves_move(const mps_waves *w, double t, const double complex *eta, do
   double first[3] = {0.0}, second[3] = {0.0}, bound[3] = {0.0}, r[3], level = 0.0;
   for (int c = 0; c < 4; c++) motion[c] = 0.0;
   if (t < 0.0) return;
+  if (w->solitary > 0.0) {
+    mpsi_waves_move_solitary(w, t, motion);
+    return;
+  }
   for (int64_t n = 0; n < w->count; n++) {
     const mpsi_wave *wave = &w->wave[n];
     const double C = cos(wave->omega * t), S = sin(wave->omega * t);
@@ -74,7 +78,12 @@ static void add_evenly(double complex a, double omega, double t, double step, in
 
 void mpsi_waves_move_evenly(const mps_waves *w, double t, double step, int64_t count,
                             double (*motion)[3]) {
-  double first[MPSI_WAVES_BLOCK][3], second[MPSI_WAVES_BLOCK][3], r[3];
+  double first[MPSI_WAVES_BLOCK][3], second[MPSI_WAVES_BLOCK][3], r[3], all[4];
+  for (int64_t k = 0; w->solitary > 0.0 && k < count; k++) {
+    mpsi_waves_move(w, t + step * (double)k, NULL, all);
+    memcpy(motion[k], all, sizeof motion[k]);
+  }
+  if (w->solitary > 0.0) return;
   memset(first, 0, sizeof first);
   memset(second, 0, sizeof second);
   for (int64_t n = 0; n < w->count; n++)
@@ -128,7 +137,8 @@ mps_status mps_waves_get_levels(const mps_waves *w, double station, int64_t coun
   if (status == MPS_OK && level) status = find_bound(w, __func__, station, &eta);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
-    double sum = 0.0, bound[3] = {0.0};
+    double sum = w->solitary > 0.0 ? mpsi_waves_solitary_level(w, station, t[k]) : 0.0;
+    double bound[3] = {0.0};
     for (int64_t n = 0; n < w->count; n++) {
       const double angle = w->wave[n].omega * t[k] - w->wave[n].k * station;
       sum += creal(w->wave[n].a) * cos(angle) - cimag(w->wave[n].a) * sin(angle);

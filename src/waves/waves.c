@@ -107,7 +107,7 @@ static mps_status check_motion(const mps_waves *w, double t, const double m[3]) 
 
 static mps_status examine(mps_waves *w) {
   mps_waves_report *r = &w->report;
-  const double shortest = w->repeat / (double)w->wave[w->count - 1].bin;
+  const double shortest = w->count > 0 ? w->repeat / (double)w->wave[w->count - 1].bin : w->period;
   const double span = w->ramp + w->repeat, step = fmax(shortest / SCAN, span / MOST_SCAN);
   double motion[MPSI_WAVES_BLOCK][3];
   for (double t = 0.0; t <= span; t += step * MPSI_WAVES_BLOCK) {
@@ -161,6 +161,15 @@ static mps_status make_second_order(mps_waves *w) {
   return MPS_OK;
 }
 
+static mps_status make_sea(mps_waves *w, const mps_waves_def *def) {
+  MPSI_TRY(mpsi_waves_make_components(w, def));
+  MPSI_TRY(check_height(w));
+  w->ramp = isnan(def->ramp) ? 2.0 * w->period : def->ramp;
+  summarise(w);
+  MPSI_TRY(check_sea(w, def->levels));
+  return make_second_order(w);
+}
+
 mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def, mps_waves **out) {
   if (!context) return mpsi_null(__func__, "context");
   if (!user_def || !out)
@@ -175,12 +184,8 @@ mps_status mps_waves_create(mps_context *context, const mps_waves_def *user_def,
   w->def = def;
   w->def.frequency = w->def.density = w->def.times = w->def.levels = NULL;
   atomic_init(&w->references, 1);
-  mps_status status = mpsi_waves_make_components(w, &def);
-  if (status == MPS_OK) status = check_height(w);
-  if (status == MPS_OK) w->ramp = isnan(def.ramp) ? 2.0 * w->period : def.ramp;
-  if (status == MPS_OK) summarise(w);
-  if (status == MPS_OK) status = check_sea(w, def.levels);
-  if (status == MPS_OK) status = make_second_order(w);
+  mps_status status =
+      def.kind == MPS_WAVES_SOLITARY ? mpsi_waves_make_solitary(w) : make_sea(w, &def);
   if (status == MPS_OK) status = examine(w);
   if (status != MPS_OK) {
     release(w);

@@ -36,6 +36,7 @@ struct mps_waves {
   /* bins + 1 amplitudes (m): of the second-order displacement of the piston, of bound waves at x =
    * 0 */
   double complex *push, *bound;
+  double solitary; /* m/s: speed of a solitary wave, which has no components; 0: other waves */
   double complex *shape; /* THEORY_STREAM: harmonics of the level, m; NULL: another theory */
   mps_waves_report report;
 };
@@ -54,6 +55,11 @@ void mpsi_waves_add_bound(const mps_waves *w, double x, double complex *eta);
 /* stream.c: the harmonics of a regular wave and of its piston, in place of those of second order.
  */
 mps_status mpsi_waves_make_stream(mps_waves *w);
+
+/* solitary.c: fills period, repeat and report; the motion of the piston, and the level at x. */
+mps_status mpsi_waves_make_solitary(mps_waves *w);
+void mpsi_waves_move_solitary(const mps_waves *w, double t, double motion[4]);
+double mpsi_waves_solitary_level(const mps_waves *w, double x, double t);
 
 /* motion.c: displacement, velocity, acceleration and level at the piston; `eta`: bound waves of x =
  * 0 or NULL. */

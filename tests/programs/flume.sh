@@ -13,6 +13,8 @@ in_range "$s" Hm0_target 0.140 0.143
 in_range "$s" reflection 0 0.06
 in_range "$s" reflection_theory 0.001 0.003
 in_range "$s" mean_level -0.002 0.0005 # -.0033 by the levels at the faces of the pistons
+in_range "$s" mean_maker -0.01 0.01
+in_range "$s" mean_end -0.02 0.02 # the waves have just arrived there
 in_range "$s" collisions 0 0
 in_range "$s" time 11.999999 12.000001 # the last steps are shorter
 has "$work/a/gauges.csv" "level_at_2.6_m"
@@ -65,6 +67,16 @@ is "$work/still/force.csv" force_N -1 784.8 16
 is "$work/still/runup.csv" run_up_m -1 0 0.0125 # half a spacing
 ! grep -q thin_m2 "$work/still/discharge.csv" || fail "a flow of low heads over a dike"
 has "$work/log" "lower than 4 spacings of 0.025 m: of the water that passes the crest small events will be lost"
+
+# A solitary wave keeps height and speed; its piston leaves little behind.
+"$1/mps-flume" $coarse --waves solitary --height 0.12 --length 13 --gauge 0.8,2,4 --duration 8.5 --frames 0 \
+  --out "$work/solitary" >"$work/log"
+s=$work/solitary/summary.json
+in_range "$s" crest_last 0.114 0.126
+in_range "$s" wave_speed 2.2 2.32
+in_range "$s" wave_speed_theory 2.258 2.259
+in_range "$s" trailing 0 0.05
+has "$work/log" "asked for; speed"
 
 # A zone before the far end; a focused group; a record.
 "$1/mps-flume" $coarse --length 5 --height 0.1 --duration 13 --absorb zone --frames 0 --gauge 0.8,1.2,1.5,2,2.4 \

@@ -452,6 +452,38 @@ TEST(bound_waves_fulfil_the_surface_conditions) {
   }
 }
 
+/* ---- a solitary wave --------------------------------------------------------------------------
+ */
+
+/* The piston follows the mean velocity of the water at its face, and displaces the water of the
+ * wave, 2 H/k. */
+TEST(a_solitary_wave_is_the_water_that_its_piston_displaces) {
+  static const double depth[] = {0.2, 0.4, 5.0}, ratio[] = {0.1, 0.3, 0.7};
+  for (int n = 0; n < 9; n++) {
+    const double d = depth[n / 3], H = ratio[n % 3] * d, c = sqrt(G * (d + H));
+    DEF(waves, def, .kind = MPS_WAVES_SOLITARY, .depth = d, .height = H);
+    scoped_waves *w = make(&def);
+    mps_waves_report r;
+    OK(mps_waves_get_report(w, &r));
+    NEAR(r.wave_number, sqrt(0.75 * H / d) / d, 1e-12 / d);
+    double volume = 0.0, highest = 0.0;
+    for (int k = 0; k <= 4000; k++) {
+      const double step = r.repeat / 4000.0, t[] = {k * step, (k + 0.01) * step, (k + 0.02) * step};
+      double x[3], u[3], a[3], face[3], there;
+      OK(mps_waves_get_piston(w, 3, t, x, u, a, face));
+      OK(mps_waves_get_levels(w, x[1], 1, &t[1], NULL, &there));
+      NEAR(there, face[1], 1e-9 * H);
+      NEAR(u[1], c * there / (d + there), 1e-9 * c);
+      NEAR((x[2] - x[0]) / (0.02 * step), u[1], 1e-6 * c);
+      NEAR((u[2] - u[0]) / (0.02 * step), a[1], 1e-5 * G);
+      volume += u[0] * d * step, highest = fmax(highest, face[0]);
+    }
+    NEAR(highest, H, 1e-5 * H);
+    NEAR(volume, 2.0 * H / r.wave_number, 2e-3 * H / r.wave_number);
+    NEAR(r.stroke[1], 2.0 * H / (r.wave_number * d), 2e-3 * r.stroke[1]);
+  }
+}
+
 /* ---- refusals -------------------------------------------------------------------------------- */
 
 TEST(wrong_definitions_are_named) {
@@ -469,6 +501,11 @@ TEST(wrong_definitions_are_named) {
   REFUSED(def.stroke = 0.001, "stroke is 0.001 m");
   REFUSED(def.speed = 0.01, "speed is 0.01 m/s");
   REFUSED((def.kind = 1, def.repeat = 1e5), "components");
+  REFUSED((def.kind = MPS_WAVES_SOLITARY, def.period = NAN, def.height = 0.3),
+          "height 0.3 m of the solitary wave must be at most 0.28 m");
+  REFUSED(def.kind = MPS_WAVES_SOLITARY, "period");
+  REFUSED((def.kind = MPS_WAVES_SOLITARY, def.period = NAN, def.theory = MPS_WAVES_THEORY_STREAM),
+          "theory");
   /* seas that cannot be: Hm0 above a wave that breaks, crests above any, a level in mm or below the
    * bed, a piston that the water does not follow */
   double t[64], level[64];

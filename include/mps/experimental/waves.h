@@ -39,7 +39,11 @@ typedef enum mps_waves_kind {
   MPS_WAVES_JONSWAP = 1,           /* Hasselmann et al. (1973) */
   MPS_WAVES_PIERSON_MOSKOWITZ = 2, /* Pierson and Moskowitz (1964): JONSWAP of gamma 1 */
   MPS_WAVES_SPECTRUM = 3,          /* a table of the caller */
-  MPS_WAVES_RECORD = 4             /* a level in time */
+  MPS_WAVES_RECORD = 4,            /* a level in time */
+  MPS_WAVES_SOLITARY = 5           /* one wave of Boussinesq, height sech^2(k (c t - x) - 4), c^2 =
+                                                gravity (depth + height), k^2 = 3 height/(4 depth^3), up to .7
+                                                depth; the piston (Goring 1979) starts at t = 0 and comes to
+                                                rest 2 height/(k depth) ahead */
 } mps_waves_kind;
 
 /** How the components of a spectrum are combined. */
@@ -73,16 +77,18 @@ typedef struct mps_waves_def {
   double height; /* m: height of a regular wave (of first order), Hm0 of a spectrum, scaled to it; >
                     0; no default. Not read with a record; NaN with SPECTRUM: that of the table */
   double period; /* s, > 0: of a regular wave, of the peak (1/fp); no default. SPECTRUM, RECORD: NaN
-                    (default) takes that of the largest component */
+                    (default) takes that of the largest component. Not of SOLITARY */
   double gamma;  /* peak enhancement of JONSWAP, 1 to 20; default 3.3 */
   double repeat; /* s: the sea repeats itself, its frequencies are multiples of 1/repeat; at least 2
-                    periods. NaN (default): 100 periods; of a record its length. Not of REGULAR */
+                    periods. NaN (default): 100 periods; of a record its length. Not of REGULAR
+                    and SOLITARY */
   double lower,
       upper;       /* frequencies over that of the peak, 0 < lower < upper <= 10; default .6, 2.5 */
   double crest;    /* m, FOCUSED: linear crest at the focus, > 0; no default */
   double position; /* m from the piston, >= 0: of the focus, of a record; default 0 */
   double time;     /* s: of the focus, finite; no default */
-  double ramp;     /* s, >= 0: the piston's motion rises from rest; NaN (default): 2 periods */
+  double ramp;     /* s, >= 0: the piston's motion rises from rest; NaN (default): 2 periods. Not of
+                    SOLITARY */
   double
       stroke; /* m, > 0: farthest position of the piston on either side; NaN (default): no limit */
   double speed;            /* m/s, > 0: its highest speed; NaN (default): no limit */
@@ -116,8 +122,9 @@ MPS_API MPS_NODISCARD mps_status mps_waves_create(mps_context *context, const mp
 MPS_API void mps_waves_destroy(mps_waves **waves);
 
 typedef struct mps_waves_report {
-  int64_t components; /* of first order */
-  double period;      /* s: of a regular wave, of the largest component of others */
+  int64_t components; /* of first order; SOLITARY: 0 */
+  double period; /* s: of a regular wave, of the largest component of others; SOLITARY: 2 pi/(k c)
+                  */
   double wave_number; /* rad/m, of that period */
   double height;      /* m: H, or Hm0 of the components */
   double repeat;      /* s */

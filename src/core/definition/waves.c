@@ -7,7 +7,7 @@
 /* clang-format off */
 
 #define WAVES(X, S) \
-  X(S, INT,     kind,      1, "",     ONE_OF(MPS_WAVES_, "REGULAR|JONSWAP|PIERSON_MOSKOWITZ|SPECTRUM|RECORD"), 0,     OWN) \
+  X(S, INT,     kind,      1, "",     ONE_OF(MPS_WAVES_, "REGULAR|JONSWAP|PIERSON_MOSKOWITZ|SPECTRUM|RECORD|SOLITARY"), 0,     OWN) \
   X(S, INT,     phases,    1, "",     ONE_OF(MPS_WAVES_PHASES_, "RANDOM|AMPLITUDES|FOCUSED"),                       0,     OWN) \
   X(S, INT,     theory,    1, "",     ONE_OF(MPS_WAVES_THEORY_, "SECOND|LINEAR|NARROW|STREAM"),                     0,     OWN) \
   X(S, REAL,    depth,     1, "m",    IN(1e-12, 1e12),                                                              UNSET, OWN) \
@@ -33,14 +33,16 @@
   X(S, ADDRESS, levels,    1, "m",    ANY,                                                                          NULL,  OWN)
 
 #define WAVES_RULES(X, S) \
-  X(S, phases,    NOT_GIVEN,                          IS(S, kind, MPS_WAVES_REGULAR, MPS_WAVES_RECORD)) \
+  X(S, phases,    NOT_GIVEN,                          IS(S, kind, MPS_WAVES_REGULAR, MPS_WAVES_RECORD, MPS_WAVES_SOLITARY)) \
+  X(S, theory,    NOT_GIVEN,                          IS(S, kind, MPS_WAVES_SOLITARY)) \
   X(S, height,    GIVEN,                              ISNT(S, kind, MPS_WAVES_SPECTRUM, MPS_WAVES_RECORD), \
                                                       ISNT(S, phases, MPS_WAVES_PHASES_FOCUSED)) \
-  X(S, period,    GIVEN,                              ISNT(S, kind, MPS_WAVES_SPECTRUM, MPS_WAVES_RECORD)) \
+  X(S, period,    GIVEN,                              ISNT(S, kind, MPS_WAVES_SPECTRUM, MPS_WAVES_RECORD, MPS_WAVES_SOLITARY)) \
+  X(S, period,    NOT_GIVEN,                          IS(S, kind, MPS_WAVES_SOLITARY)) \
   X(S, crest,     GIVEN,                              IS(S, phases, MPS_WAVES_PHASES_FOCUSED)) \
   X(S, time,      GIVEN,                              IS(S, phases, MPS_WAVES_PHASES_FOCUSED)) \
   X(S, lower,     LESS(S, upper),                     ALWAYS) \
-  X(S, repeat,    AT_LEAST(S, period, 2),             ISNT(S, kind, MPS_WAVES_REGULAR, MPS_WAVES_RECORD)) \
+  X(S, repeat,    AT_LEAST(S, period, 2),             ISNT(S, kind, MPS_WAVES_REGULAR, MPS_WAVES_RECORD, MPS_WAVES_SOLITARY)) \
   X(S, count,     IN(2, INFINITY),                    IS(S, kind, MPS_WAVES_SPECTRUM)) \
   X(S, frequency, GIVEN,                              IS(S, kind, MPS_WAVES_SPECTRUM)) \
   X(S, density,   GIVEN,                              IS(S, kind, MPS_WAVES_SPECTRUM)) \
