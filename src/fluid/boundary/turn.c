@@ -4,9 +4,10 @@
  *   phi = A Re z^p,  u - i v = A p z^(p - 1),  p = pi/beta < 1.
  *
  * Its gradient grows without bound towards the corner, so what a linear fit to the neighbours
- * leaves of it is no roughness: smoothing that took it for one made .7 (five spacings of draught)
- * to .5 (ten) of all damping of a box in heave, where waves should take it all. Within four
- * spacings of a corner the strength A is fitted to what the linear fit leaves of the velocities,
+ * leaves of it is no roughness: smoothing that took it for one made .46 (five spacings of
+ * draught) to .30 (ten) of the damping of a box in heave, where waves should take it all. Within
+ * four spacings of a corner the strength A is fitted to what the linear fit leaves of the
+ * velocities,
  *
  *   A = sum w r^-2 (du - G dx) . (ds - G_s dx)/sum w r^-2 |ds - G_s dx|^2,  s of A = 1,
  *
