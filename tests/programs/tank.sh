@@ -47,7 +47,7 @@ in_range "$work/resonance/summary.json" phase 65 72 # 69.4 by theory
 "$1/mps-tank" --case float --threads 1 --frames 0 --out "$work/float" >"$work/log"
 in_range "$work/float/summary.json" period_exact 0.9121 0.9127
 in_range "$work/float/summary.json" period 0.8942 0.9306
-in_range "$work/float/summary.json" deflection -0.0053 -0.00465 # the level rises as the lattice comes to rest
+in_range "$work/float/summary.json" deflection -0.0051 -0.0049 # load over stiffness
 picture "$work/float/structure.png" 1000x460 1f4e8c
 picture "$work/float/water.png" 1078x0 2c3e8f
 tank "$1" drop

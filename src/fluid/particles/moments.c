@@ -21,6 +21,7 @@
 #include "moments.h"
 #include "fluid/base/access.h"
 #include "fluid/boundary/sight.h"
+#include "fluid/boundary/turn.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/pores.h"
@@ -40,6 +41,7 @@
 #define ZONE 1.6        /* l0 */
 #define FADE 0.5        /* l0, along a segment from a corner around which the water turns */
 #define FADE_FACE 1.0   /* l0, the same along a face of a body, of all images */
+#define GENTLE 0.01     /* g/l0: |G|^2 below which no smoothing is between pairs (smooth.c) */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -188,6 +190,15 @@ static bool sees_corner(const mps_fluid *f, int64_t i) {
          mpsi_fluid_within(f, i, f->reach + FADE_FACE * f->l0);
 }
 
+/* Takes the flow around a body's corner out of what a linear field leaves of the velocities. */
+static void take_turn(mps_fluid *f, int64_t i, mpsi_fluid_local *local) {
+  mpsi_fluid_turn turn;
+  if (!mpsi_fluid_fit_turn(f, i, &turn)) return;
+  for (int c = 0; c < 2; c++) local->rest[c] -= (float)turn.rest[c];
+  const double rate = mpsi_fluid_rate(f);
+  if (turn.left < GENTLE * rate * rate) f->company[i] |= MPSI_FLUID_TURNS;
+}
+
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const bool near_rock = mpsi_fluid_near_rock(f, chunk);
   for (int64_t i = begin; i < end; i++) {
@@ -215,6 +226,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.rest[c] = (float)((s.du[c] - by_x * plain[0] - by_y * plain[1]) / s.n);
         local.shift[c] = (float)(s.shift[c] / n0);
       }
+      if (f->faces) take_turn(f, i, &local);
       if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
         fade_divergence(f, i, I, &local.divergence);
       if (sees_corner(f, i)) fade_faces(f, i, &s, &local.divergence);

@@ -14,6 +14,7 @@
 #include "pressure.h"
 #include "fluid/base/access.h"
 #include "fluid/boundary/closed.h"
+#include "fluid/boundary/sight.h"
 #include "fluid/boundary/walls.h"
 #include "fluid/pressure/pcg.h"
 #include "fluid/particles/pores.h"
@@ -24,15 +25,37 @@
 #define STEEP 0.05          /* g/l0: |G|^2 as in breakers */
 #define FULL_STEP 0.05      /* (l0/g)^1/2: with shorter steps k is less */
 #define LEAST_DENSITY -3e-4 /* k */
+#define CORNER 1.5          /* l0 */
+#define PAST_CORNER 6.0     /* l0: where water that passes a corner expands */
+#define EXPANDED 5.0        /* times k, besides k, there .. */
+#define PASSES 5e-5         /* g/l0: .. where |G|^2 is that large */
 
 /* Fraction of k in a step of this length. */
 static double step_share(const mps_fluid *f) {
   return fmin(f->dt * mpsi_fluid_rate(f) / FULL_STEP, 1.0);
 }
 
+/* |G|^2, 1/s2. */
+static double squared_gradient(const mps_fluid *f, int64_t i) {
+  double G[4];
+  mpsi_fluid_gradient(&f->local[i], G);
+  return G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
+}
+
+/* Around a corner of a body n is that of a bent neighbourhood, .5 to 1.3 % above the lattice's in
+ * water at rest: that is no excess, and a source for it lifted a floating box with its water by .1
+ * mm. What passes the corner to and fro expands instead, the more the longer the step. */
+static double share_at_corner(const mps_fluid *f, int64_t i, double excess) {
+  if (excess > 0.0) return mpsi_fluid_within(f, i, CORNER * f->l0) ? 0.0 : 1.0;
+  if (!mpsi_fluid_within(f, i, PAST_CORNER * f->l0)) return 1.0;
+  const double rate = mpsi_fluid_rate(f);
+  return 1.0 + EXPANDED * fmin(squared_gradient(f, i) / (PASSES * rate * rate + 1e-300), 1.0);
+}
+
 static double density_source(const mps_fluid *f, int64_t i, double share) {
   const double excess = mpsi_fluid_fill(f, i) / mpsi_fluid_full(f, i) - 1.0;
-  const double k = DENSITY * excess * fmin(fabs(excess) / SMALL_EXCESS, 1.0);
+  double k = DENSITY * excess * fmin(fabs(excess) / SMALL_EXCESS, 1.0);
+  if (f->faces) k *= share_at_corner(f, i, excess);
   return share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
 }
 
@@ -44,8 +67,7 @@ static double step_divergence(const mps_fluid *f, int64_t i) {
   double G[4];
   mpsi_fluid_gradient(&f->local[i], G);
   const double rate = mpsi_fluid_rate(f);
-  const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
-  const double steep = square / (STEEP * rate * rate + 1e-300);
+  const double steep = squared_gradient(f, i) / (STEEP * rate * rate + 1e-300);
   return -f->dt * (G[0] * G[3] - G[1] * G[2]) * fmax(1.0 - steep, 0.0);
 }
 

@@ -23,6 +23,7 @@
 
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
+#include "fluid/boundary/turn.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 
@@ -39,6 +40,7 @@
 double mpsi_fluid_steepness(const mps_fluid *f, int64_t i) {
   const double s0 = mpsi_fluid_rate(f);
   double G[4];
+  if (f->company[i] & MPSI_FLUID_TURNS) return 0.0;
   mpsi_fluid_gradient(&f->local[i], G);
   const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
   return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
@@ -210,6 +212,8 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   double G[4];
+  mpsi_fluid_turn turn;
+  const bool turns = f->faces && mpsi_fluid_fit_turn(f, i, &turn);
   mpsi_fluid_gradient(local, G);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;
@@ -219,8 +223,10 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
     const double pair = f->paired ? 0.5 * w[k] * (f->flux[0][i] + f->flux[0][j]) : 0.0;
     double dv[2], stuck[2] = {f->u[0][j], f->u[1][j]};
     if (viscous > 0.0 && (f->sticky || f->segments > 0)) mpsi_fluid_stick(f, ghost, stuck);
+    double bent[2] = {0.0, 0.0};
+    if (turns) mpsi_fluid_add_turn(f, &turn, i, j, bent);
     for (int c = 0; c < 2; c++) {
-      const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy;
+      const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy + bent[c];
       dv[c] = part * (smooth * (f->u[c][j] - linear) + viscous * (stuck[c] - linear));
       stuck[c] = part * viscous * (stuck[c] - linear);
       if (!(pair > 0.0)) continue;
