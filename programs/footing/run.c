@@ -5,6 +5,7 @@
  * computed twice: with 1.6e4 q, which fails after 1/700 of the half width a, and as it is. Path and
  * speed follow from the stiffness: all the ground below yields after some 10 a q/E, and inertia
  * adds about v (rho E)^1/2 to q. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/compare.h"
 #include "common/ranks.h"
 #include "footing.h"
 
@@ -266,6 +267,17 @@ static mps_status go_on(simulation *sim) {
   return status == MPS_OK ? mpm_course_begin(&sim->course, sim->context, false) : status;
 }
 
+/* Of the mean over the last fifth of the path in ground of the first shape. */
+static void warn_of_bound(const simulation *sim) {
+  const bool kept = sim->now == FOOTING_DEFORMED;
+  const footing_row *row = kept ? sim->undeformed : sim->course.rows.row;
+  if ((kept ? sim->undeformed_rows : footing_rows(sim)) < FOOTING_SAMPLES) return;
+  const footing_row *last = row + FOOTING_SAMPLES - 1, *from = last - FOOTING_SAMPLES / 5;
+  const double q = (last->impulse - from->impulse) / (last->t - from->t) / footing_area(&sim->s);
+  compare_bound(sim->m.a, "the bearing capacity", q, footing_find_limits(&sim->s).source,
+                footing_find_bound(&sim->s));
+}
+
 mps_status footing_march(void *user) {
   simulation *sim = user;
   mps_particles *whole;
@@ -274,6 +286,7 @@ mps_status footing_march(void *user) {
     status = go_on(sim);
     if (status == MPS_OK) status = march_one(sim);
   }
+  warn_of_bound(sim);
   mps_status brought = mpm_model_whole(&sim->m, &whole); /* for footing_finish */
   if (brought == MPS_OK && status == MPS_OK) brought = footing_take_section(sim);
   return status == MPS_OK ? brought : status;

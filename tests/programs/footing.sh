@@ -42,6 +42,11 @@ cmp "$work/off/pressure.csv" "$work/off2/pressure.csv" || fail "the eccentric ru
 "$1/mps-footing" --soil 2x1.2 --restart "$work/off.h5" --out "$work/off2" 2>"$work/log" &&
   fail "a restart with other options"
 grep -q "was made with other options" "$work/log" || fail "which option differs"
+# Sharp edges and each particle's own change of volume bear more than any such ground, which is warned of; see `default`.
+"$programs/mps-footing" --threads 1 --out "$work/above" --corner 0 --volumetric point --soil 2x1 >"$work/log" 2>&1
+has "$work/log" "% above that of Prandtl, which such ground cannot exceed"
+has "$work/above/summary.json" "which such ground cannot exceed"
+! grep -q "cannot exceed" "$work/default/summary.json" || fail "a warning of a bound that holds"
 # A path too short for the capacity is warned of.
 bears short q 10e3 40e3 --settlement 0.05mm
 has "$work/log" "has not reached its bearing capacity"
