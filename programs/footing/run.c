@@ -15,7 +15,7 @@
 #define SOFT 1e4    /* E over q: below, the ground changes its shape before it fails */
 #define STIFF 1.6e4 /* of the run that does not */
 #define PATH 23.3   /* settlement, a q/E */
-/* The same where weight alone bears a smooth base: it fails after 4.5, and goes on to grow by a
+/* The same where weight alone bears a smooth base: it fails after 4.5; from there on q grows by a
  * twentieth, as particles that dilate share the pressure ever less evenly. */
 #define WEIGHT_PATH 6.8
 #define PAPER_SAND 4e-3 /* m */

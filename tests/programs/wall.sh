@@ -22,7 +22,7 @@ in_range "$work/passive/summary.json" K 2.91 3.09
 wall toe --pressure passive --length 3 --below-toe 0.5 # which a sharp toe presses too
 in_range "$work/toe/summary.json" K 2.85 3.15
 in_range "$work/toe/summary.json" K_along -0.003 0.003
-! grep -q "cannot exceed" "$work/toe/summary.json" || fail "a warning of a bound that holds"
+! grep -q "cannot exceed" "$work/passive/summary.json" || fail "a warning of a bound that holds"
 wall sharp --pressure passive --length 3 --below-toe 0.5 --inset 0 --corner 0
 has "$work/sharp/summary.json" "above that of a sliding wedge, which such ground cannot exceed"
 wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
