@@ -6,6 +6,8 @@
 #include <stdarg.h>
 #include <string.h>
 
+#define SCATTER 0.03 /* of results by the place of edges on the grid, and by speed */
+
 comparison compare_with(const char *source, double value, double reference) {
   return (comparison){.source = source, .value = value, .reference = reference};
 }
@@ -33,6 +35,14 @@ static const char *reason_of(const comparison *c) {
 
 void compare_tell(const comparison *c) {
   if (!compare_holds(c)) printf("No comparison with %s: %s.\n", c->source, reason_of(c));
+}
+
+void compare_bound(app *a, const char *what, double value, const char *source, double bound) {
+  if (value > bound * (1.0 + SCATTER))
+    app_warn(a,
+             "%s is %.1f %% above that of %s, which such ground cannot exceed: take smaller cells "
+             "(--cell), or a slower pace",
+             what, 100.0 * (value / bound - 1.0), source);
 }
 
 void json_reason(output *file, const char *key, const comparison *c) {

@@ -24,6 +24,10 @@ double compare_reference(const comparison *c);
 
 /* On stdout "No comparison with SOURCE: REASON." where the reference does not hold. */
 void compare_tell(const comparison *c);
+/* Warns of a value that is above a rigorous upper bound by more than results scatter: an error of
+ * the grid or of the pace. `what`: "the factor of safety"; a bound that is no number bounds
+ * nothing. */
+void compare_bound(app *a, const char *what, double value, const char *source, double bound);
 /* KEY and KEY_reason: the reference and null, or null and the reason. */
 void json_comparison(output *file, const char *key, const comparison *c);
 /* KEY alone: null, or the reason, of a comparison that has more numbers than one. */

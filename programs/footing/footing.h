@@ -74,6 +74,10 @@ typedef struct footing_limits {
 } footing_limits;
 footing_limits footing_find_limits(const settings *s);
 
+/* What no such ground bears, Pa: that of associated flow, of a rough base where this one is neither
+ * smooth nor rough; NaN where no bound is known or the ground's shape changes. */
+double footing_find_bound(const settings *s);
+
 /* A layer on rigid rough ground that is thinner than a mechanism is deep. */
 bool footing_is_thin(const settings *s);
 /* The load is eccentric: both halves are computed. */

@@ -15,6 +15,8 @@
 #define PI 3.14159265358979323846
 /* Of the weight of half a width: cohesion of ground that has no other strength. */
 #define LITTLE 1e-4
+#define DEEPEST 0.05 /* of the half width: a footing that sinks is borne by the ground beside it   \
+                      */
 
 enum { LINES = 40 };
 
@@ -35,6 +37,13 @@ static double by_characteristics(const settings *s, bool rough, double psi) {
   }
   const double coarse = characteristics_capacity(&f, LINES / 2);
   return (4.0 * characteristics_capacity(&f, LINES) - coarse) / 3.0;
+}
+
+double footing_find_bound(const settings *s) {
+  const footing_limits l = footing_find_limits(s);
+  const bool deep = s->pace[FOOTING_UNDEFORMED].settlement > DEEPEST * s->half_width;
+  if (deep || footing_is_whole(s) || footing_is_thin(s)) return NAN;
+  return isnan(l.exact) ? fmax(l.smooth, l.rough) : l.exact;
 }
 
 footing_limits footing_find_limits(const settings *s) {

@@ -217,8 +217,20 @@ static void print(const simulation *sim) {
   sand_print(&s->voids, s->psi);
 }
 
+/* Spirals bound what stands, whatever the ground dilates. */
+static void warn_of_bound(app *a, const simulation *sim) {
+  slope_circle pole;
+  const comparison spirals = compare_spirals(sim, &pole);
+  const trial *last = &sim->trial[sim->now];
+  const bool stands = !isnan(sim->s.factor) && ended(sim) > 0 && !last->failed;
+  if (compare_holds(&spirals))
+    compare_bound(a, "the factor of safety", stands ? last->factor : spirals.value, spirals.source,
+                  spirals.reference);
+}
+
 bool slope_finish(app *a, void *user) {
   simulation *sim = user;
+  warn_of_bound(a, sim); /* before the summary, which lists it */
   if (sim->s.runout && sim->lost > sim->s.crest - sim->s.h)
     app_warn(a, "the slope has moved up to the end of its ground: take a longer --crest");
   if (!write_trials(a, sim) || !write_motion(a, sim)) return false;

@@ -42,6 +42,20 @@ static double coulomb(const settings *s, const wall_layer *l) {
   return pow(cos(phi), 2.0) / pow(1.0 + root, 2.0);
 }
 
+/* Of the ground on a plane up to its surface, within its length, that a wall lifts along it: the
+ * least, with all of the wall's friction (at most that of the ground). */
+static double wedge(const settings *s, const wall_layer *l) {
+  enum { PLANES = 1000 };
+  const double phi = l->phi * DEGREE, friction = fmin(s->friction, tan(phi));
+  const double flat = atan(s->height / s->length), steep = 90.0 * DEGREE - phi;
+  double least = INFINITY;
+  for (int k = 0; k < PLANES; k++) {
+    const double plane = flat + (steep - flat) * k / PLANES, lifts = tan(plane + phi);
+    if (friction * lifts < 1.0) least = fmin(least, lifts / (1.0 - friction * lifts) / tan(plane));
+  }
+  return least;
+}
+
 /* Rankine's of the strength that Davis takes. */
 static double davis(const settings *s, const wall_layer *l) {
   const double phi = l->phi * DEGREE, psi = l->psi * DEGREE;
@@ -130,6 +144,17 @@ static double find_reduced(const settings *s) {
       s->motion == TURNS_ABOUT_TOP || is_associated(s))
     return NAN;
   return wall_theory(s, davis, false) / wall_unit(s);
+}
+
+/* What no ground that a wall is pushed into bears: a wedge that slides on a plane is a mechanism,
+ * and its force an upper bound, also where psi < phi. With cohesion, on a smooth wall, Rankine's.
+ */
+static double find_bound(const settings *s) {
+  const bool cohesive = most_cohesion(s) > 0.0;
+  if (s->pressure == ACTIVE || s->motion != TRANSLATES || s->layers > 1 ||
+      (cohesive && (s->friction > 0.0 || s->length < reach(s))))
+    return NAN;
+  return wall_theory(s, cohesive ? rankine : wedge, false) / wall_unit(s);
 }
 
 /* Mean over the last fifth of the path; NaN where it has not ended. */
@@ -280,6 +305,7 @@ static void print(const settings *s, const pressure *p) {
 bool wall_finish(app *a, void *user) {
   const simulation *sim = user;
   const pressure p = measure(sim);
+  compare_bound(a, "the passive pressure", p.across, "a sliding wedge", find_bound(&sim->s));
   if (!write_pressure(a, sim) ||
       !mpm_snapshots_write(a, sim->s.out, "particles.csv", "plastic_strain", 1, &sim->shot) ||
       !write_summary(a, sim, &p) || !draw_pressure(a, sim, &p) || !draw_ground(a, sim))

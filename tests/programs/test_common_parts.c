@@ -615,3 +615,16 @@ TEST(a_comparison_holds_or_has_a_reason) {
   compare_require(&none, false, "the depth is %g m", NAN);
   assert_null(strstr(none.reason, "nan"));
 }
+
+/* A value above a rigorous bound by more than results scatter is warned of. */
+TEST(a_bound_that_is_passed_is_warned_of) {
+  app a = {.program = "test"};
+  compare_bound(&a, "the factor", 1.029, "spirals", 1.0);
+  compare_bound(&a, "the factor", 2.0, "spirals", NAN);
+  compare_bound(&a, "the factor", NAN, "spirals", 1.0);
+  assert_int_equal(a.warnings, 0);
+  compare_bound(&a, "the factor", 1.1, "spirals", 1.0);
+  assert_int_equal(a.warnings, 1);
+  assert_non_null(strstr(a.warning[0], "the factor is 10.0 % above that of spirals"));
+  free(a.warning[0]);
+}

@@ -22,6 +22,9 @@ in_range "$work/passive/summary.json" K 2.91 3.09
 wall toe --pressure passive --length 3 --below-toe 0.5 # which a sharp toe presses too
 in_range "$work/toe/summary.json" K 2.85 3.15
 in_range "$work/toe/summary.json" K_along -0.003 0.003
+! grep -q "cannot exceed" "$work/passive/summary.json" || fail "a warning of a bound that holds"
+wall sharp --pressure passive --length 3 --below-toe 0.5 --inset 0 --corner 0
+has "$work/sharp/summary.json" "above that of a sliding wedge, which such ground cannot exceed"
 wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
 in_range "$work/clay/summary.json" K 2.09 2.18 # 1 + 4 c/(gamma H) = 2.133
 wall cohesive --phi 25 --cohesion 1413Pa # 0.08002 gamma H
