@@ -66,7 +66,7 @@ in_range "$work/footing/summary.json" q_over_c 5.039 5.245
 is "$work/footing/section.csv" vertical_kPa 4 51.4 5
 is "$work/footing/section.csv" shear_kPa 4 0 1
 is "$work/footing/section.csv" depth_m -1 1.975 1e-6
-picture "$work/footing/section.png" 800x720 1f4e8c 2e8b57 c0392b
+picture "$work/footing/section.png" 800x740 1f4e8c 2e8b57 c0392b
 page "$work/footing"
 "$1/mps-footing" --rate 5mm/s --soil 3x2 --volumetric point --corner 0 --flip-time 0 --courant 0.5 --threads 1 \
   --out "$work/footing" >/dev/null
