@@ -110,14 +110,10 @@ bool mpsi_fluid_fit_turn(const mps_fluid *f, int64_t i, mpsi_fluid_turn *turn) {
     above -= G[0] * u[0] + G[1] * u[1], below -= G[0] * s[0] + G[1] * s[1];
   }
   if (!(below > ALIKE * all.ss)) return false;
-  turn->strength = above / below, turn->left = 0.0;
+  turn->strength = above / below;
   for (int c = 0; c < 2; c++) {
-    const double *G = turn->G + 2 * c, *u = all.u + 2 * c;
+    const double *G = turn->G + 2 * c;
     turn->rest[c] = turn->strength * (all.ds[c] - G[0] * all.x[0] - G[1] * all.x[1]) / all.n;
-    for (int q = 0; q < 2; q++) {
-      const double left = u[0] * I[q] + u[1] * I[q + 1] - turn->strength * G[q];
-      turn->left += left * left;
-    }
   }
   return true;
 }

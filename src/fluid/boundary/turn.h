@@ -11,7 +11,6 @@ typedef struct mpsi_fluid_turn {
   double strength;             /* m/s: A, of the field with lengths over l0 */
   double G[4];                 /* of the linear fit to the field, 1/m */
   double rest[2];              /* m/s: what that leaves of it, times A */
-  double left;                 /* 1/s2: |G|^2 of the flow without it */
 } mpsi_fluid_turn;
 
 /* False: no corner is near particle i, or too few particles to know. */

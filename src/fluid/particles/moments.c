@@ -41,7 +41,6 @@
 #define ZONE 1.6        /* l0 */
 #define FADE 0.5        /* l0, along a segment from a corner around which the water turns */
 #define FADE_FACE 1.0   /* l0, the same along a face of a body, of all images */
-#define GENTLE 0.01     /* g/l0: |G|^2 below which no smoothing is between pairs (smooth.c) */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -195,8 +194,6 @@ static void take_turn(mps_fluid *f, int64_t i, mpsi_fluid_local *local) {
   mpsi_fluid_turn turn;
   if (!mpsi_fluid_fit_turn(f, i, &turn)) return;
   for (int c = 0; c < 2; c++) local->rest[c] -= (float)turn.rest[c];
-  const double rate = mpsi_fluid_rate(f);
-  if (turn.left < GENTLE * rate * rate) f->company[i] |= MPSI_FLUID_TURNS;
 }
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {

@@ -40,7 +40,6 @@
 double mpsi_fluid_steepness(const mps_fluid *f, int64_t i) {
   const double s0 = mpsi_fluid_rate(f);
   double G[4];
-  if (f->company[i] & MPSI_FLUID_TURNS) return 0.0;
   mpsi_fluid_gradient(&f->local[i], G);
   const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
   return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
