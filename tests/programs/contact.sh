@@ -92,7 +92,8 @@ in_range "$work/layer/summary.json" q_over_c 6.02 7.4
 "$1/mps-footing" --cohesion 30kPa --top 0.75 --top-cohesion 10kPa --soil 3x2 --rate 5mm/s --flip-time 10ms \
   --threads 1 --out "$work/layers" >/dev/null
 in_range "$work/layers/summary.json" q_over_c 5.04 5.245
-for name in box/forces disc/motion footing/pressure; do
+for name in box/forces disc/motion; do
   picture "$work/$name.png" 1000x640 1f4e8c c0392b
 done
-picture "$work/footing/shear_bands.png" 1100x660 888888 f7fbff 6baed6
+picture "$work/footing/pressure.png" 1000x680 1f4e8c c0392b
+picture "$work/footing/shear_bands.png" 1085x0 888888 f7fbff 6baed6

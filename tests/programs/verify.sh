@@ -24,7 +24,7 @@ cells = 2.5 5
 group = discs
 title = Angle
 command = mps-rolling-disc --fill rings --duration 0.05 --cell 0.02
-read = h
+read = cell
 reference = 0.01
 bar = 50
 END
