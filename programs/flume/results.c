@@ -232,15 +232,18 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
 static void summarise_solitary(output *f, const flume *m, const flume_figures *g) {
   const bool there = m->s.waves == FLUME_SOLITARY && !isnan(g->crest_last);
   const double speed = sqrt(WAVES_G * (m->s.depth + m->s.height));
-  json_number_if(f, there, "crest_first", g->crest_first);
+  json_number_if(f, there && !isnan(g->crest_first), "crest_first", g->crest_first);
   json_number_if(f, there, "crest_last", g->crest_last);
   json_number_if(f, there && isfinite(g->speed), "wave_speed", g->speed);
   json_number_if(f, there, "wave_speed_theory", speed);
   json_number_if(f, there && !isnan(g->trailing), "trailing", g->trailing);
   if (!there) return;
-  printf("crest %.4f m at the first gauge, %.4f m at the last, %.4f m asked for; speed %.3f m/s, "
-         "(g (d + H))^1/2 %.3f m/s; trailing waves %.3f of the height\n",
-         g->crest_first, g->crest_last, m->s.height, g->speed, speed, g->trailing);
+  printf("crest ");
+  if (!isnan(g->crest_first)) printf("%.4f m at the first gauge, ", g->crest_first);
+  printf("%.4f m at the last, %.4f m asked for", g->crest_last, m->s.height);
+  if (isfinite(g->speed)) printf("; speed %.3f m/s, (g (d + H))^1/2 %.3f m/s", g->speed, speed);
+  if (!isnan(g->trailing)) printf("; trailing waves %.3f of the height", g->trailing);
+  printf("\n");
 }
 
 static void summarise_absorption(output *f, const flume *m) {

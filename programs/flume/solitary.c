@@ -1,7 +1,8 @@
 /* solitary.c - a solitary wave on its way: crests of the gauges before structure, rock and zone,
  * beside the height that is asked for; the speed by the times at which they pass the first of 4
  * depths from the maker on and the last; the largest level that is left behind it, before what the
- * end sends back arrives. SPDX-License-Identifier: BSD-3-Clause */
+ * end sends back arrives.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>
