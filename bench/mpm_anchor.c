@@ -132,7 +132,7 @@ INLINE void locate(const anchor *a, int dim, int degree, int64_t first, int n, i
 /* What a particle brings to the rows of its support. */
 typedef struct share {
   vec P[ROW], Y[ROW], Z[ROW];
-  double wy[8], wz[8];
+  double w[16]; /* over y and z */
 } share;
 
 INLINE int stress_index(int i, int j) { return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5; }
@@ -160,43 +160,47 @@ INLINE void gather(const anchor *a, int dim, int degree, int64_t first, int n,
       for (int c = 0; c < 3; c++) give[q][c][3] = 0.0;
 }
 
+/* Shares of the first row of the first slab; a row one farther along y or z adds Y or Z. */
 INLINE void prepare(int dim, int degree, double give[4][4], double tx, double ty, double tz,
                     share *s) {
   vec w[ROW], wd[ROW];
   row_weights(degree, tx, w, wd);
+  const v4 first = load4(give[0]) - (1.0 + ty) * load4(give[2]) -
+                   (dim == 3 ? (1.0 + tz) * load4(give[3]) : (v4){0.0});
+  double at[4 * NODES] = {0.0}; /* each_node reads a vector */
+  store4(at, first);
   for (int k = 0; k < row_vectors(degree); k++) {
-    s->P[k] = w[k] * each_node(give[0]) + wd[k] * each_node(give[1]);
+    s->P[k] = w[k] * each_node(at) + wd[k] * each_node(give[1]);
     s->Y[k] = w[k] * each_node(give[2]);
     if (dim == 3) s->Z[k] = w[k] * each_node(give[3]);
   }
-  weights(degree, ty, s->wy);
-  if (dim == 3) weights(degree, tz, s->wz);
+  double wy[8], wz[8];
+  weights(degree, ty, wy);
+  if (dim == 3) weights(degree, tz, wz);
+  for (int slab = 0; slab < (dim == 3 ? degree + 1 : 1); slab++)
+    store4(s->w + 4 * slab, dim == 3 ? wz[slab] * load4(wy) : load4(wy));
 }
 
 /* Adds the n particles of a cell to the rows of one slab of nodes. */
-INLINE void add_slab(const anchor *a, int dim, int degree, const share *s, int n, int slab,
+INLINE void add_slab(const anchor *a, int dim, int degree, share *s, int n, int slab,
                      double *node) {
-  vec sum[4][ROW];
-  for (int j = 0; j <= degree; j++)
-    for (int k = 0; k < ROW; k++) sum[j][k] = (vec){0.0};
-  for (int q = 0; q < n; q++)
-    for (int k = 0; k < row_vectors(degree); k++) {
-      vec P = s[q].P[k], Y = s[q].Y[k];
-      if (dim == 3) {
-        P = s[q].wz[slab] * P + s[q].wz[4 + slab] * s[q].Z[k];
-        Y = s[q].wz[slab] * Y;
+  for (int k = 0; k < row_vectors(degree); k++) {
+    vec sum[4] = {{0.0}};
+    for (int q = 0; q < n; q++) {
+      vec T = s[q].P[k];
+      for (int j = 0; j <= degree; j++) {
+        sum[j] += s[q].w[4 * slab + j] * T;
+        T += s[q].Y[k];
       }
-      for (int j = 0; j <= degree; j++) sum[j][k] += s[q].wy[j] * P + s[q].wy[4 + j] * Y;
+      if (dim == 3) s[q].P[k] += s[q].Z[k]; /* of the next slab */
     }
-  for (int j = 0; j <= degree; j++) {
-    double *row = node + 4 * j * a->nodes[0];
-    for (int k = 0; k < 4 / NODES; k++) {
-      double *at = row + 4 * NODES * k;
+    for (int j = 0; j <= degree; j++) {
+      double *at = node + 4 * (j * a->nodes[0] + NODES * k);
       if (degree == 3 || NODES * (k + 1) <= 3)
-        store(at, load(at) + sum[j][k]);
-      else if (NODES * k < 3) { /* the fourth node has no weight */
+        store(at, load(at) + sum[j]);
+      else { /* the fourth node has no weight */
         double last[4 * NODES];
-        store(last, sum[j][k]);
+        store(last, sum[j]);
         store4(at, load4(at) + load4(last));
       }
     }
@@ -245,12 +249,11 @@ INLINE void interpolate(const anchor *a, int dim, int degree, const double *node
   for (int slab = 0; slab < (dim == 3 ? degree + 1 : 1); slab++) {
     const double *at = node + 4 * slab * a->nodes[0] * a->nodes[1];
     for (int k = 0; k < row_vectors(degree); k++) {
-      vec T = {0.0}, U = {0.0};
-      for (int j = 0; j <= degree; j++) {
+      vec T = {0.0}, U = {0.0}; /* sums of w and, in whole cells from the first node, of w d */
+      for (int j = degree; j >= 0; j--) {
         /* two nodes a vector: reads a fourth quadratic one */
-        const vec row = load(at + 4 * j * a->nodes[0] + 4 * NODES * k);
-        T += wy[j] * row;
-        U += wy[4 + j] * row;
+        T += wy[j] * load(at + 4 * j * a->nodes[0] + 4 * NODES * k);
+        if (j > 0) U += T;
       }
       S[k] += dim == 3 ? wz[slab] * T : T;
       Sy[k] += dim == 3 ? wz[slab] * U : U;
@@ -260,7 +263,7 @@ INLINE void interpolate(const anchor *a, int dim, int degree, const double *node
   for (int k = 0; k < row_vectors(degree); k++) {
     sum[0] += w[k] * S[k];
     sum[1] += wd[k] * S[k];
-    sum[2] += w[k] * Sy[k];
+    sum[2] += w[k] * (Sy[k] - (1.0 + ty) * S[k]);
     if (dim == 3) sum[3] += w[k] * Sz[k];
   }
   for (int r = 0; r <= dim; r++) store4(take[r], over_nodes(sum[r]));
