@@ -460,7 +460,13 @@ static mps_status apply_laws(const mpsi_boundary_setup *setup, const char *funct
     for (n = 1; n < MPSI_CHUNK && k + n < f->count && f->law[k + n] == f->law[k];) n++;
     status = apply_law(setup, function, f, k, n);
   }
-  if (status == MPS_OK) respond(setup, f);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < f->count; k++) { /* mpsi_mpm_follow_motion */
+    const double growth = setup->run->dt * f->derivative[Y][k];
+    if (setup->p->laws.law[f->law[k]].opening >= 0)
+      f->former[k] = f->V[k] / (1.0 + growth * (1.0 + 0.5 * growth));
+  }
+  respond(setup, f);
   return status;
 }
 
