@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
                     "--frequency if that is higher",
                     NAN),
       OPTION_NUMBER("cell", &s->h, "at most; default by --max-frequency", NAN),
-      OPTION_CHOICE("volumetric", &s->volumetric, "law: with water point"),
+      OPTION_CHOICE("volumetric", &s->volumetric, "law: with water cell"),
       OPTION_NUMBER("courant", &s->courant, NULL, 0.5),
       OPTION_CHOICE("spline", &s->spline, NULL, 1),
       OPTION_NUMBER("flip-time", &s->flip_time,

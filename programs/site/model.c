@@ -225,6 +225,8 @@ static void find_water(simulation *sim) {
   sim->wet = sim->flows || sim->s.undrained;
   for (int64_t i = 0; i < g->count; i++)
     sim->liquefies = sim->liquefies || (sim->wet && g->layer[i].law == SITE_CYCLIC_SAND);
+  for (int64_t i = 0; i < g->count; i++)
+    sim->opens = sim->opens || g->layer[i].law >= SITE_MOHR_COULOMB;
 }
 
 /* The default of --max-frequency. Layers that yield stick and slip, and their accelerations have
@@ -256,9 +258,8 @@ static mps_status read_input(mps_context *context, simulation *sim) {
 static bool complete(simulation *sim) {
   const settings *s = &sim->s;
   sim->flip_time = !isnan(s->flip_time) ? s->flip_time : sim->liquefies ? 0.0 : 1.0 / sim->highest;
-  sim->volumetric = s->volumetric == MPS_MPM_VOLUMETRIC_BY_LAW && sim->wet
-                        ? MPS_MPM_VOLUMETRIC_POINT
-                        : s->volumetric;
+  sim->volumetric = s->volumetric == MPS_MPM_VOLUMETRIC_BY_LAW && sim->wet ? MPS_MPM_VOLUMETRIC_CELL
+                                                                           : s->volumetric;
   sim->start = sim->flows ? rest_time(sim) : 0.0;
   sim->duration =
       isnan(s->duration) ? sim->record_end + 20.0 * site_travel_time(&sim->ground) : s->duration;

@@ -10,25 +10,40 @@
 /* Means over the particles of a row, in the frame of the input. */
 typedef struct means {
   double x, y, v;            /* m, m, m/s */
+  double volume;             /* m3 in all, with the gaps between grains, which water fills */
   double shear, vertical, u; /* Pa: tau, effective compression, water */
 } means;
+
+/* Position of particle `id` along x, as if it had not passed the sides: ground that leaves at one
+ * comes in at the other. */
+static double place_of(const simulation *sim, int64_t id, double x) {
+  const double first = ((double)(id % sim->across) + 0.5) * sim->spacing;
+  const double moved = sim->row[id / sim->across].last_displacement;
+  return x + sim->width * round((first + moved - x) / sim->width);
+}
 
 /* Particles have their ids by rows from below. */
 static mps_status find_means(const simulation *sim, means *out) {
   mps_particles *set = sim->m.particles;
-  mps_view id, x, v, stress, u = {0};
+  mps_view id, x, v, stress, volume, gap = {0}, u = {0};
   mps_status status = mps_particles_view(set, "id", &id);
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(set, "velocity", &v);
   if (status == MPS_OK) status = mps_particles_view(set, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_view(set, "volume", &volume);
+  if (status == MPS_OK && sim->opens) status = mps_particles_view(set, "opening", &gap);
   if (status == MPS_OK && sim->wet) status = mps_particles_view(set, "pore_pressure", &u);
   if (status != MPS_OK) return status;
   const double share = 1.0 / (double)sim->across;
   memset(out, 0, (size_t)sim->rows * sizeof *out);
   for (int64_t k = 0; k < id.shape[0]; k++) {
-    means *row = &out[*mps_view_i64(&id, k, 0) / sim->across];
-    row->x += share * *mps_view_f64(&x, k, 0), row->y += share * *mps_view_f64(&x, k, 1);
+    const int64_t own = *mps_view_i64(&id, k, 0);
+    means *row = &out[own / sim->across];
+    row->x += share * place_of(sim, own, *mps_view_f64(&x, k, 0));
+    row->y += share * *mps_view_f64(&x, k, 1);
     row->v += share * *mps_view_f64(&v, k, 0);
+    row->volume +=
+        *mps_view_f64(&volume, k, 0) * (1.0 + (sim->opens ? *mps_view_f64(&gap, k, 0) : 0.0));
     row->shear += share * *mps_view_f64(&stress, k, 3);
     row->vertical -= share * *mps_view_f64(&stress, k, 1);
     if (sim->wet) row->u += share * *mps_view_f64(&u, k, 0);
@@ -58,6 +73,7 @@ static void note_rest(simulation *sim, const means *now) {
   for (int64_t r = 0; r < sim->rows; r++) {
     sim->row[r].x = now[r].x, sim->row[r].y = now[r].y;
     sim->row[r].vertical = now[r].vertical, sim->row[r].pressure = now[r].u;
+    sim->row[r].volume = now[r].volume;
   }
 }
 
@@ -89,8 +105,21 @@ static void update_row(const simulation *sim, const means *now, int64_t r, doubl
   row->u[4] = row->last_ru;
   if (sim->count >= 4) /* pressure waves are shorter */
     row->ru = fmax(row->ru, 0.2 * (row->u[0] + row->u[1] + row->u[2] + row->u[3] + row->u[4]));
-  row->settlement = row->y - now[r].y;
+  row->sunk = row->y - now[r].y;
   row->last_displacement = moved;
+}
+
+/* Of level ground: by what the ground between a row and the lowest has lost of its volume. Places
+ * of particles in sand that flows, which has no stiffness to hold them, drift by some millimetres
+ * against their volumes. */
+static void find_settlements(simulation *sim, const means *now) {
+  double sum = sim->row[0].sunk, below = 0.0;
+  for (int64_t r = 0; r < sim->rows; r++) {
+    const double lost = 0.5 * (sim->row[r].volume - now[r].volume) / sim->width;
+    if (r > 0) sum += below + lost;
+    sim->row[r].settlement = sum;
+    below = lost;
+  }
 }
 
 mps_status site_take_sample(simulation *sim) {
@@ -100,6 +129,7 @@ mps_status site_take_sample(simulation *sim) {
     const double t = sim->s.sample * (double)sim->count;
     if (sim->count == 0) note_rest(sim, now);
     for (int64_t r = 0; r < sim->rows; r++) update_row(sim, now, r, t);
+    find_settlements(sim, now);
     const site_row *top = &sim->row[sim->rows - 1];
     site_sample *sample = &sim->sample[sim->count];
     *sample = (site_sample){

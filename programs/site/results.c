@@ -223,10 +223,10 @@ static double largest_ru(const simulation *sim) {
   return most;
 }
 
-/* Saturated sand that has lost its stress rises by some millimetres by itself, more than water
- * leaves through it: its settlement is no measure of that. */
-static bool has_liquefied(const simulation *sim) { return sim->wet && largest_ru(sim) >= 0.95; }
-#define LIQUEFIED "liquefied sand, whose place is uncertain by some millimetres"
+/* How far the places of the highest particles are off their settlement by volumes, where that
+ * counts: in sand that has liquefied. */
+static double drift_of(const site_row *top) { return top->sunk - top->settlement; }
+static bool has_drifted(const site_row *top) { return fabs(drift_of(top)) > 1e-3; }
 
 static bool write_summary(app *a, const simulation *sim, const findings *f) {
   const site_row *top = &sim->row[sim->rows - 1];
@@ -245,7 +245,7 @@ static bool write_summary(app *a, const simulation *sim, const findings *f) {
   json_comparison(&file, "amplification_exact", &f->layers);
   JSON_NUMBERS(&file, {"amplification_error", f->error}, {"shear_strain", largest_strain(sim)},
                {"ru", sim->wet ? largest_ru(sim) : NAN}, {"settlement", top->settlement});
-  if (has_liquefied(sim)) json_text(&file, "settlement_reason", LIQUEFIED);
+  json_number(&file, "settlement_drift", drift_of(top));
   json_number(&file, "last_displacement", top->last_displacement);
   json_end(&file);
   return output_close(&file);
@@ -264,8 +264,11 @@ static void report(const simulation *sim, const findings *f) {
   compare_tell(&f->layers);
   printf("largest shear strain %.3g", largest_strain(sim));
   if (sim->wet) printf(", r_u %.3f", largest_ru(sim));
-  printf(", settlement %.3g mm%s\n", 1e3 * sim->row[sim->rows - 1].settlement,
-         has_liquefied(sim) ? " (" LIQUEFIED ")" : "");
+  const site_row *top = &sim->row[sim->rows - 1];
+  printf(", settlement %.3g mm\n", 1e3 * top->settlement);
+  if (has_drifted(top))
+    printf("The particles of the surface are %.3g mm below that: in liquefied sand places drift.\n",
+           1e3 * drift_of(top));
 }
 
 bool site_finish(app *a, void *user) {

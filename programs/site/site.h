@@ -72,10 +72,12 @@ typedef struct site_row {
   double depth;              /* m, before the run */
   double x, y;               /* m, means before the run */
   double vertical, pressure; /* Pa: effective stress, compression positive, and water, at rest */
+  double volume;             /* m3, at rest */
   double u[5];               /* r_u of the last samples; the largest is of their mean */
   double v[5];               /* m/s, of the last samples, relative */
   double acceleration, velocity, displacement; /* largest so far, absolute or relative to input */
   double strain, stress, ru, last_ru, settlement, last_displacement;
+  double sunk; /* m, by the places of its particles */
 } site_row;
 
 typedef struct simulation {
@@ -93,6 +95,7 @@ typedef struct simulation {
   double record_end, record_peak; /* s, m/s2 */
   double highest;                 /* Hz: --max-frequency or its default */
   bool wet, flows, liquefies;     /* liquefies: some saturated cyclic sand */
+  bool opens;                     /* some sand, with gaps between its grains */
   int64_t rows, across, loop_row; /* of particles; in a row; -1: none */
   int64_t samples, count;         /* in all, recorded so far */
   site_row *row;

@@ -115,6 +115,11 @@ void mpsi_material_sand_columns(const mps_material *material, int32_t *strain, i
   *gap = column_named(material, mpsi_sand_columns[1]);
 }
 
+int32_t mpsi_material_gap_column(const mps_material *material) {
+  const int32_t c = column_named(material, mpsi_sand_columns[1]);
+  return c < material->history_count ? c : -1;
+}
+
 bool mpsi_material_dilates(const mps_material *material) {
   return mpsi_material_opens(material) &&
          (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0 ||

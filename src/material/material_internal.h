@@ -64,6 +64,9 @@ const char *mpsi_material_history_field(const mps_material *material, int32_t in
 bool mpsi_material_opens(const mps_material *material);
 /* Where these two are among its columns. */
 void mpsi_material_sand_columns(const mps_material *material, int32_t *strain, int32_t *gap);
+/* Where the gap between grains is among the columns of any law, whose V/V0 is without it; -1: none.
+ */
+int32_t mpsi_material_gap_column(const mps_material *material);
 /* True: such a law with plastic dilation, an angle above 0; of a user's law it is unknown. */
 bool mpsi_material_dilates(const mps_material *material);
 /* True: its plastic dilation never ends. */

@@ -58,8 +58,8 @@ printf 'thickness_m, density_kg_m3, vs_m_s, law, phi_degrees, relative_density, 
 sand="--layers $work/sand --base rigid --record sine --frequency 2 --cycles 6 --max-frequency 4 --threads 1"
 "$program" $sand --permeability 0.1mm/s --acceleration 1 --loop 2.5 --duration 5 --out "$work/wet" >"$work/log" || exit 1
 in_range "$work/wet/summary.json" ru 0.95 1.3
-in_range "$work/wet/summary.json" settlement -1e-2 1e-2 # less than k t = 0.5 mm of water can leave: uncertain, and said
-grep -q '"settlement_reason": "liquefied sand' "$work/wet/summary.json" || fail "no word of the settlement of liquefied sand"
+in_range "$work/wet/summary.json" settlement 1e-5 5e-4 # as water leaves, of which k t = 0.5 mm can
+in_range "$work/wet/summary.json" settlement_drift -5e-3 5e-3
 "$program" $sand --undrained --acceleration 0.02 --out "$work/weak" >"$work/log" || exit 1
 in_range "$work/weak/summary.json" ru -0.02 0.02
 

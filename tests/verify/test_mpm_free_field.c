@@ -241,3 +241,68 @@ TEST(yielding_ground_moves_alike) {
   assert_true(most[0] < 0.02 * peak);
   assert_true(most[1] < 0.02 * yielded);
 }
+
+/* ---- ground that moves past its sides -------------------------------------------------------- */
+
+/* Level ground of two layers that slides by more than its width over a smooth base is the same
+ * ground: particles that leave at one side come in at the other, no stress arises, and the rows
+ * stay even. Stopped at the side, they piled up there from half a spacing on. */
+TEST(ground_passes_its_sides) {
+  for (int q = 0; q < 6; q++) { /* three grids, both splines, both ways */
+    const double spacing[] = {0.5, 0.25, 0.125}, v = q % 2 ? -1.7 : 1.3;
+    const field_ground of = {.width = 8.0 * spacing[q / 2],
+                             .height = 4.0,
+                             .spacing = spacing[q / 2],
+                             .vs = 100.0,
+                             .rock = 300.0,
+                             .below = 2.0,
+                             .sides = MPS_BOUNDARY_FREE_FIELD,
+                             .base = MPS_BOUNDARY_ROLLER,
+                             .shift = 0.07 * q * spacing[q / 2],
+                             .spline = 2 + q % 2};
+    mpm_scene s = field_scene(context, &of);
+    EDIT(u, s.particles, "velocity")
+      for (int64_t k = 0; k < u.view.shape[0]; k++) *mps_edit_f64(&u, k, 0) = v;
+    field_set_sides(&s, &of); /* columns that move as the ground does */
+    const double end = 1.3 * of.width / fabs(v);
+    OK(mps_mpm_run(s.mpm, end, 10000000, NULL, NULL));
+    const mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+    const mps_view stress = mpm_scene_view(&s, "stress");
+    double apart = 0.0, most = 0.0;
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double first = of.shift + ((double)(*mps_view_i64(&id, k, 0) % 8) + 0.5) * of.spacing;
+      const double off = *mps_view_f64(&x, k, 0) - first - v * mps_mpm_time(s.mpm);
+      apart = fmax(apart, fabs(off - of.width * round(off / of.width)));
+      for (int c = 0; c < 4; c++) most = fmax(most, fabs(*mps_view_f64(&stress, k, c)));
+    }
+    print_message("spacing %g m, %g m past its sides: places off by %.2g spacings, stress %.2g of "
+                  "rho V_s^2\n",
+                  of.spacing, end * fabs(v), apart / of.spacing,
+                  most / (FIELD_RHO * of.vs * of.vs));
+    NEAR(apart, 0.0, 0.05 * of.spacing);
+    NEAR(most, 0.0, 1e-9 * FIELD_RHO * of.vs * of.vs);
+    mpm_scene_end(&s);
+  }
+}
+
+/* Of ground that is lower at one side they do not: it would come in above or below the surface. */
+TEST(uneven_ground_is_stopped) {
+  const field_ground of = {.width = 4.0,
+                           .height = 2.0,
+                           .spacing = 0.25,
+                           .vs = 100.0,
+                           .sides = MPS_BOUNDARY_FREE_FIELD,
+                           .base = MPS_BOUNDARY_ROLLER};
+  scoped_mpm_scene s = field_scene(context, &of);
+  int64_t ids[64], count;
+  const double lo[2] = {2.0, 1.0}, hi[2] = {4.0, 2.0};
+  OK(mps_particles_select_box(s.particles, lo, hi, 64, &count, ids));
+  OK(mps_particles_remove(s.particles, ids, count));
+  EDIT(u, s.particles, "velocity")
+    for (int64_t k = 0; k < u.view.shape[0]; k++) *mps_edit_f64(&u, k, 0) = 1.0;
+  field_set_sides(&s, &of);
+  OK(mps_mpm_run(s.mpm, 0.2, 10000000, NULL, NULL));
+  const mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_i64(&id, k, 0) % 16 > 7) assert_true(*mps_view_f64(&x, k, 0) > 1.0);
+}

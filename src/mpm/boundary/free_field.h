@@ -88,6 +88,9 @@ bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, cons
 /* free_field_step.c: the tractions of the columns on the nodes of their sides, and a step of the
  * columns. On an error they have not moved. */
 mps_status mpsi_mpm_move_free_fields(const mpsi_boundary_setup *setup, const char *function);
+/* free_field_step.c: after a step: of level ground between two such sides the particles that have
+ * been stopped at one, on their way out, come in at the other. Whether there were any. */
+bool mpsi_mpm_pass_free_fields(const mpsi_boundary_setup *setup);
 /* free_field_step.c: takes back the step of the columns: the solver has not made it. */
 void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries);
 /* free_field_step.c: node of the column beside node k of the block at `at`, and the plane that this

@@ -15,6 +15,7 @@
 #include <string.h>
 
 enum { Y = 1 };
+#define AT_SIDE 1e-9 /* cells: a particle so near to a side has been stopped there (g2p.c) */
 
 /* ---- shape functions along y ----------------------------------------------------------------- */
 
@@ -460,7 +461,13 @@ static mps_status apply_laws(const mpsi_boundary_setup *setup, const char *funct
     for (n = 1; n < MPSI_CHUNK && k + n < f->count && f->law[k + n] == f->law[k];) n++;
     status = apply_law(setup, function, f, k, n);
   }
-  if (status == MPS_OK) respond(setup, f);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < f->count; k++) { /* mpsi_mpm_follow_motion */
+    const double growth = setup->run->dt * f->derivative[Y][k];
+    if (setup->p->laws.law[f->law[k]].opening >= 0)
+      f->former[k] = f->V[k] / (1.0 + growth * (1.0 + 0.5 * growth));
+  }
+  respond(setup, f);
   return status;
 }
 
@@ -508,6 +515,51 @@ void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries) {
     mpsi_free_field *f = boundaries->boundary[k].field;
     if (f) memcpy(f->state, f->kept, (size_t)f->doubles * sizeof *f->state);
   }
+}
+
+/* ---- ground that passes a side --------------------------------------------------------------- */
+
+#define LEVEL 0.25 /* cells: how far apart level ground at the two sides may be in height */
+
+/* Whether the ground at both sides is the same: columns of the same particles by height and law. */
+static bool is_level(const mpsi_grid *grid, const mpsi_boundaries *boundaries) {
+  const mpsi_free_field *a = boundaries->boundary[0].field, *b = boundaries->boundary[1].field;
+  if (!a || !b || a->count != b->count || a->rows != b->rows) return false;
+  bool same = true;
+  for (int64_t k = 0; k < a->count && same; k++)
+    same = a->law[k] == b->law[k] && fabs(a->y[k] - b->y[k]) < LEVEL * grid->cell;
+  return same;
+}
+
+/* The place at a side that is in the domain. */
+static double place_at(const mpsi_grid *grid, int32_t number) {
+  const double wall = (double)(number == MPS_SIDE_X_LOWER ? grid->low[0] : grid->high[0]);
+  const double inwards = number == MPS_SIDE_X_LOWER ? INFINITY : -INFINITY;
+  double x = grid->origin[0] + grid->cell * wall;
+  while ((mpsi_grid_at(grid, 0, x) - wall) * inwards < 0.0) x = nextafter(x, inwards);
+  return x;
+}
+
+bool mpsi_mpm_pass_free_fields(const mpsi_boundary_setup *setup) {
+  const mpsi_grid *grid = setup->grid;
+  const mpsi_columns *p = setup->p;
+  const double low = (double)grid->low[0], high = (double)grid->high[0];
+  bool any = false;
+  if (!setup->boundaries->boundary[0].field || !setup->boundaries->boundary[1].field) return false;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
+    const int64_t first = (int64_t)cells->at[0] * MPSI_SIDE + cells->low[0];
+    const int64_t last = (int64_t)cells->at[0] * MPSI_SIDE + cells->high[0];
+    if (first > grid->low[0] && last < grid->high[0]) continue;
+    for (int64_t k = cells->begin; k < cells->end; k++) {
+      const double X = mpsi_grid_at(grid, 0, p->x[0][k]), v = p->v[0][k];
+      if (!(X - low < AT_SIDE && v < 0.0) && !(high - X < AT_SIDE && v > 0.0)) continue;
+      if (!any && !is_level(grid, setup->boundaries)) return false;
+      p->x[0][k] = place_at(grid, v < 0.0 ? MPS_SIDE_X_UPPER : MPS_SIDE_X_LOWER);
+      any = true;
+    }
+  }
+  return any;
 }
 
 const mpsi_field_node *mpsi_mpm_beside(const mpsi_grid *grid, const mpsi_boundary *boundary,

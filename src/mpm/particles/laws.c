@@ -114,6 +114,17 @@ void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, 
   }
 }
 
+void mpsi_mpm_follow_motion(const mpsi_columns *p, double dt, const double *const *rate,
+                            int64_t begin, int n, double *former) {
+  if (!p->laws.some_open) return;
+  for (int k = 0; k < n; k++) {
+    const int64_t own = begin + k;
+    if (mpsi_law_of(p, own)->opening < 0) continue;
+    const double growth = dt * (rate[0][k] + rate[1][k] + (rate[2] ? rate[2][k] : 0.0));
+    former[k] = p->V[own] / (1.0 + growth * (1.0 + 0.5 * growth));
+  }
+}
+
 void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
                             const mpsi_cell_block *cells, int64_t begin, int64_t end) {
   static const double rest[MPSI_CHUNK] = {0.0};

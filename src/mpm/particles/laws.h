@@ -17,6 +17,7 @@ typedef struct mpsi_law_use {
   bool own_volume; /* it takes each particle's own change of volume, not a mean (volumetric.c) */
   bool filtered;   /* its mean stress is filtered (filter.c) */
   int32_t strain, gap; /* then the columns of its plastic strain and of the opening */
+  int32_t opening;     /* column of the opening, filtered or not; -1: none */
   int32_t columns;
   double **history;        /* columns over all particles; NULL for none */
   const double *stiffness; /* factor of the moduli of each particle, 0 for 1; NULL: 1 */
@@ -40,6 +41,7 @@ typedef struct mpsi_laws {
   bool at_once;       /* all laws act within G2P, by each particle's own change of volume */
   bool some_own;      /* some law takes each particle's own change of volume, */
   bool some_filtered; /* its mean stress is filtered */
+  bool some_open;     /* some law has a gap between its grains */
   bool some_flow;     /* some law is one of a body that may flow slowly */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
@@ -63,6 +65,12 @@ typedef struct mpsi_law_block {
 void mpsi_mpm_begin_block(mps_material_block *seen);
 void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, double *const *D,
                         double (*mean)[MPSI_CHUNK]);
+/* laws.c: after the laws of particles [begin, begin + n), at most a chunk, with the diagonal `rate`
+ * (1/s) of their velocity gradients (the third NULL: 0), whose volumes were `former` (m3) before.
+ * Where grains are drawn apart V stays, and the water that fills the gap has the strain of the
+ * motion: of laws with a gap `former` becomes the volume that this strain makes V of. */
+void mpsi_mpm_follow_motion(const mpsi_columns *p, double dt, const double *const *rate,
+                            int64_t begin, int n, double *former);
 /* laws.c: the returns to the yield surface of those among particles [begin, end), at most a chunk,
  * whose stress is filtered, without strain. */
 void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,

@@ -66,6 +66,7 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
                       .columns = mps_material_history_count(material)};
   choose_volume(def, &law);
   law.strain = law.gap = -1;
+  law.opening = mpsi_material_gap_column(material);
   if (law.filtered && mpsi_material_opens(material))
     mpsi_material_sand_columns(material, &law.strain, &law.gap);
   const bool at_once = law.own_volume && p->laws.at_once;
@@ -91,6 +92,7 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
   p->laws.at_once = at_once;
   p->laws.some_own = p->laws.some_own || law.own_volume;
   p->laws.some_filtered = some_filtered;
+  p->laws.some_open = p->laws.some_open || law.opening >= 0;
   p->laws.some_flow = p->laws.some_flow || mpsi_material_flows(material);
   p->laws.law[p->laws.count++] = law;
   return MPS_OK;

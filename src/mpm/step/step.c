@@ -216,6 +216,11 @@ static mps_status move_columns(step *s) {
   return status;
 }
 
+static void pass_sides(mps_mpm *mpm) {
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
+  if (mpsi_mpm_pass_free_fields(&setup)) mpm->run.stale = true;
+}
+
 /* ---- particles to nodes ---------------------------------------------------------------------- */
 
 static mps_status send_tiles(step *s) {
@@ -461,6 +466,7 @@ static const step_stage stages[] = {
     {"bodies, energy, time", .run = complete},
     {"strips at edges", .when = has_strips, .act = mpsi_mpm_clear_strips},
     {"water", .when = is_complete, .act = mpsi_pore_update},
+    {"particles that pass free-field sides", .when = has_columns, .act = pass_sides},
     {"speeds, particles that leave", .run = collect, .exchange = within},
 };
 

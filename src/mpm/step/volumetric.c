@@ -318,7 +318,10 @@ static void apply_laws(void *data, int64_t b, int32_t worker) {
     mean_diagonals(&work, k, end, mean);
     if (responds) memcpy(former, mpm->p.V + k, (size_t)(end - k) * sizeof *former);
     mpsi_mpm_apply_law(&laws, k, end, D, mean);
-    if (responds) mpm->kernels->pore_strain(&work, former, k, (int)(end - k));
+    if (!responds) continue;
+    const double *const rate[3] = {mean[0], mean[1], mean[2]};
+    mpsi_mpm_follow_motion(&mpm->p, mpm->run.dt, rate, k, (int)(end - k), former);
+    mpm->kernels->pore_strain(&work, former, k, (int)(end - k));
   }
   if (responds) mpm->kernels->pore_respond(&work);
   if (!by_nodes(&mpm->def)) mpm->kernels->speed(&work);

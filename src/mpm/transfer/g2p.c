@@ -553,7 +553,15 @@ MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, 
   const bool responds = mpsi_pore_responds(work->water);
   if (responds) memcpy(former, work->p->V + begin, (size_t)n * sizeof *former);
   mpsi_mpm_apply_law(laws, begin, begin + n, D, NULL);
-  if (responds) MPSI_LEVELLED(mpsi_pore_strain)(work, former, begin, n);
+  if (responds) {
+    const bool hoop = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+    const double *const rate[3] = {D[0], D[dim + 1],
+                                   dim == 3 ? D[8]
+                                   : hoop   ? work->p->L[4] + begin
+                                            : NULL};
+    mpsi_mpm_follow_motion(work->p, work->run->dt, rate, begin, n, former);
+    MPSI_LEVELLED(mpsi_pore_strain)(work, former, begin, n);
+  }
   speed_chunk(work, dim, begin, n);
 }
 

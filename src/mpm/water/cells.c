@@ -194,7 +194,7 @@ void mpsi_pore_begin_means(const mpsi_columns *p) {
 /* The gap of particle k, m3 at the volume V. */
 static double gap_of(const mpsi_columns *p, int64_t k, double V) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
-  return law->gap < 0 ? 0.0 : V * law->history[law->gap][k];
+  return law->opening < 0 ? 0.0 : V * law->history[law->opening][k];
 }
 
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {

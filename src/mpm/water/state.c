@@ -35,8 +35,13 @@ mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_wat
 
 void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum) {
   const mps_pore_water_def *def = &water->def;
-  for (int64_t k = 0; k < p->count; k++)
-    mpsi_exact_add(sum, def->density * p->n[k] * p->V[k] * (1.0 + p->u[k] / def->bulk));
+  const bool fills = mpsi_pore_responds(water); /* porosities are those of the motion's volume */
+  for (int64_t k = 0; k < p->count; k++) {
+    const mpsi_law_use *law = mpsi_law_of(p, k);
+    const double gap = fills && law->opening >= 0 ? law->history[law->opening][k] : 0.0;
+    mpsi_exact_add(sum,
+                   def->density * p->n[k] * p->V[k] * (1.0 + gap) * (1.0 + p->u[k] / def->bulk));
+  }
 }
 
 void mpsi_pore_free(mps_mpm *mpm) {
