@@ -1,38 +1,31 @@
 # Draws the pictures of docs/verification/textbook.md from what scripts/verify --page textbook has left in out/verify:
 # gnuplot docs/images/textbook.gp, in the root of the sources.
-set encoding utf8
-set datafile separator ','
-set grid
-blue = '#1f4e8c'; red = '#c0392b'; grey = '#888888'; green = '#2e7d32'
 block = 'out/verify/test-verify-textbook_block/'
 wave = 'out/verify/test-verify-textbook_rayleigh/'
 bar = 'out/verify/test-verify-textbook_taylor/'
 folder(name) = system("ls -td out/verify/".name."* 2>/dev/null | head -1").'/'
 
 # ---- motion ---------------------------------------------------------------------------------
-set terminal pngcairo size 1200,900 enhanced font 'DejaVu Sans,11'
-set output 'docs/images/textbook-motion.png'
+width = 1200; height = 900; picture = 'docs/images/textbook-motion.png'
+load 'share/plots/style.gp'
 set multiplot layout 2,2
-set key bottom right
 set title "Newmark's block, one pulse of 0.4 g"
 set xlabel 't (s)'; set ylabel 'slip (m)'
-plot block.'block_pulse.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 0.122625 dt '--' lc rgb red title 'closed form, at the end'
+plot block.'block_pulse.csv' using 1:3 with lines lc rgb blue title 'WLS-MPM', 0.122625 dashtype '--' lc rgb red title 'closed form, at the end'
 set title "Newmark's block, five cycles of 0.35 g down 15°"
-plot block.'block_cycles.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 0.231714 dt '--' lc rgb red title 'rigid block, at the end'
+plot block.'block_cycles.csv' using 1:3 with lines lc rgb blue title 'WLS-MPM', 0.231714 dashtype '--' lc rgb red title 'rigid block, at the end'
 set title 'Surface wave, explicit MPS, 40 particles a wavelength'
-set ylabel 'velocity of the surface (mm/s)'; set key top right
-plot [0:3.3] wave.'rayleigh_particles.csv' every ::1 using 1:($3*1e3) with lines lc rgb blue title 'vertical', '' every ::1 using 1:($2*1e3) with lines lc rgb red title 'horizontal'
+set ylabel 'velocity of the surface (mm/s)'; plot [0:3.3] wave.'rayleigh_particles.csv' using 1:($3*1e3) with lines lc rgb blue title 'vertical', '' using 1:($2*1e3) with lines lc rgb red title 'horizontal'
 set title "Taylor's bar after 80 µs: plastic strain"
 set xlabel 'r (mm)'; set ylabel 'z (mm)'; set size ratio -1
-set palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')
-plot [-9:9] [0:24] bar.'taylor.csv' every ::1 using ($1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, '' every ::1 using (-$1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, 21.4 dt '--' lc rgb red title '21.4 mm'
+eval blues
+plot [-9:9] [0:24] bar.'taylor.csv' using ($1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, '' using (-$1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, 21.4 dashtype '--' lc rgb red title '21.4 mm'
 unset multiplot
 
 # ---- bearing capacity ------------------------------------------------------------------------
-set size noratio
-set key bottom right
-set terminal pngcairo size 1200,820 enhanced font 'DejaVu Sans,11'
-set output 'docs/images/textbook-bearing.png'
+reset
+width = 1200; height = 820; picture = 'docs/images/textbook-bearing.png'
+load 'share/plots/style.gp'
 nq = folder('mps-footing_--law_druckerprager_--gravity_0')
 smooth = folder('mps-footing_--law_druckerprager_--cohesion_1Pa_--soil_2x0.8')
 rough = folder('mps-footing_--law_druckerprager_--cohesion_1Pa_--soil_3x1.2')
@@ -40,48 +33,44 @@ thin = folder('mps-footing_--half-width_1_--soil_3x0.5')
 set multiplot layout 2,2
 set xlabel 'settlement (mm)'
 set title 'Surcharge, {/Symbol f} = 30°, h = 0.05 m'; set ylabel 'pressure over the surcharge'
-plot [0:*] [0:*] nq.'pressure.csv' every ::1 using 1:($2/10) with lines lw 2 lc rgb blue title 'WLS-MPM', 18.401 dt '--' lc rgb red title 'N_q, Prandtl and Reissner'
+plot [0:*] [0:*] nq.'pressure.csv' using 1:($2/10) with lines lc rgb blue title 'WLS-MPM', 18.401 dashtype '--' lc rgb red title 'N_q, Prandtl and Reissner'
 set title 'Weight, {/Symbol f} = 30°, smooth'; set ylabel 'pressure over {/Symbol r} g B/2'
-plot [0:*] [0:*] smooth.'pressure.csv' every ::1 using 1:($2/4.905) with lines lw 2 lc rgb blue title 'WLS-MPM, pressed slowly', 7.653 dt '--' lc rgb red title 'N_{/Symbol g}, Martin'
+plot [0:*] [0:*] smooth.'pressure.csv' using 1:($2/4.905) with lines lc rgb blue title 'WLS-MPM, pressed slowly', 7.653 dashtype '--' lc rgb red title 'N_{/Symbol g}, Martin'
 set title 'Weight, {/Symbol f} = 30°, rough'
-plot [0:*] [0:*] rough.'pressure.csv' every ::1 using 1:($2/4.905) with lines lw 2 lc rgb blue title 'WLS-MPM, pressed slowly', 14.75 dt '--' lc rgb red title 'N_{/Symbol g}, Martin'
+plot [0:*] [0:*] rough.'pressure.csv' using 1:($2/4.905) with lines lc rgb blue title 'WLS-MPM, pressed slowly', 14.75 dashtype '--' lc rgb red title 'N_{/Symbol g}, Martin'
 set title 'Thin layer of clay, B = 4 H, rough'; set ylabel 'pressure over c'
-plot [0:*] [0:*] thin.'pressure.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 6.1416 dt '--' lc rgb red title '{/Symbol p} + 1 + B/(2 H)'
+plot [0:*] [0:*] thin.'pressure.csv' using 1:3 with lines lc rgb blue title 'WLS-MPM', 6.1416 dashtype '--' lc rgb red title '{/Symbol p} + 1 + B/(2 H)'
 unset multiplot
 
 # ---- cones -----------------------------------------------------------------------------------
-set terminal pngcairo size 900,520 enhanced font 'DejaVu Sans,11'
-set output 'docs/images/textbook-cones.png'
+width = 900; height = 520; picture = 'docs/images/textbook-cones.png'
+load 'share/plots/style.gp'
 set title 'Smooth cone of 60° in deep clay (Tresca), D/8, from a hole 4 D deep'
-set xlabel 'penetration over D'; set ylabel 'N_{kt}'; set key bottom right
-cone(ir) = folder('mps-penetrometer_--law_tresca_--ir_'.ir.'_').'force.csv'
+set xlabel 'penetration over D'; set ylabel 'N_{kt}'; cone(ir) = folder('mps-penetrometer_--law_tresca_--ir_'.ir.'_').'force.csv'
 lu(ir) = 3.4 + 1.6*log(ir)
-plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) every ::1 using (($1 - 0.4)/0.1):10 with lines lw 2 lc rgb word(green.' '.blue.' '.grey, k + 1) title 'Ir = '.word('50 100 200', k + 1), \
-  lu(50) dt '--' lc rgb green notitle, lu(100) dt '--' lc rgb blue notitle, lu(200) dt '--' lc rgb grey title 'Lu et al. (2004)'
+plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) using (($1 - 0.4)/0.1):10 with lines lc rgb word(green.' '.blue.' '.grey, k + 1) title 'Ir = '.word('50 100 200', k + 1), \
+  lu(50) dashtype '--' lc rgb green notitle, lu(100) dashtype '--' lc rgb blue notitle, lu(200) dashtype '--' lc rgb grey title 'Lu et al. (2004)'
 
 # ---- walls and sand --------------------------------------------------------------------------
-set terminal pngcairo size 1200,420 enhanced font 'DejaVu Sans,11'
-set output 'docs/images/textbook-sand.png'
+width = 1200; height = 420; picture = 'docs/images/textbook-sand.png'
+load 'share/plots/style.gp'
 set multiplot layout 1,2
 set title 'Wall that leaves sand, {/Symbol y} = {/Symbol f}, ground below the toe'
-set xlabel 'path over height'; set ylabel 'K'; set key top right
-walls = 'out/verify/mps-wall_--below-toe_0.5_--psi_30_--cell_'
-plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::2 using 1:3 with lines lc rgb grey title 'h = H/8', walls.'0.0625/pressure.csv' every ::2 using 1:3 with lines lc rgb green title 'h = H/16', walls.'0.03125/pressure.csv' every ::2 using 1:3 with lines lw 2 lc rgb blue title 'h = H/32', 1.0/3 dt '--' lc rgb red title 'Rankine'
+set xlabel 'path over height'; set ylabel 'K'; walls = 'out/verify/mps-wall_--below-toe_0.5_--psi_30_--cell_'
+plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::1 using 1:3 with lines lc rgb grey title 'h = H/8', walls.'0.0625/pressure.csv' every ::1 using 1:3 with lines lc rgb green title 'h = H/16', walls.'0.03125/pressure.csv' every ::1 using 1:3 with lines lc rgb blue title 'h = H/32', 1.0/3 dashtype '--' lc rgb red title 'Rankine'
 set title 'Cylinders of sand, run-out over time'
-set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; set key bottom right
-columns = 'out/verify/mps-column-collapse_--axisymmetric_--aspect_'
-plot [0:*] [0:3.2] columns.'1_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb blue title 'a = 1', columns.'3_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb green title 'a = 3', 1.24 dt '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dt '--' lc rgb green title 'a = 3'
+set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; columns = 'out/verify/mps-column-collapse_--axisymmetric_--aspect_'
+plot [0:*] [0:3.2] columns.'1_--frames_0_--h_0.005/front_column.csv' using 1:2 with lines lc rgb blue title 'a = 1', columns.'3_--frames_0_--h_0.005/front_column.csv' using 1:2 with lines lc rgb green title 'a = 3', 1.24 dashtype '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dashtype '--' lc rgb green title 'a = 3'
 unset multiplot
 
 # ---- spheres on grains -----------------------------------------------------------------------
-set terminal pngcairo size 900,480 enhanced font 'DejaVu Sans,11'
-set output 'docs/images/textbook-crater.png'
+width = 900; height = 480; picture = 'docs/images/textbook-crater.png'
+load 'share/plots/style.gp'
 set title 'Spheres of 25 mm dropped on glass beads, D/20'
-set xlabel 't after impact (s)'; set ylabel 'depth of the lowest point (mm)'; set key outside right top
-balls = 'out/verify/test-verify-textbook_crater_20/'
+set xlabel 't after impact (s)'; set ylabel 'depth of the lowest point (mm)'; balls = 'out/verify/test-verify-textbook_crater_20/'
 ball = 'crater_steel crater_glass_high crater_glass crater_wood'
 said = '"steel, 0.1 m" "glass, 0.4 m" "glass, 0.1 m" "wood, 0.1 m"'
 depth = '30.57 24.04 15.59 8.61'
 shade = grey.' '.green.' '.blue.' '.'#d95f02'
-plot [0:0.2] [0:36] for [k=1:4] balls.word(ball, k).'.csv' every ::1 using 1:($2*1e3) with lines lw 2 lc rgb word(shade, k) title word(said, k), \
-  for [k=1:4] word(depth, k) + 0 dt '--' lc rgb word(shade, k) title (k == 4 ? 'Uehara et al. (2003)' : '')
+plot [0:0.2] [0:36] for [k=1:4] balls.word(ball, k).'.csv' using 1:($2*1e3) with lines lc rgb word(shade, k) title word(said, k), \
+  for [k=1:4] word(depth, k) + 0 dashtype '--' lc rgb word(shade, k) title (k == 4 ? 'Uehara et al. (2003)' : '')

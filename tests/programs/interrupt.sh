@@ -74,7 +74,7 @@ interrupt wall 1 mps-wall --pressure passive
 wrote wall pressure.csv particles.csv summary.json
 interrupt layer 1 mps-consolidation --cell 0.025 --times 0.0001,0.0002,0.0003,10
 wrote layer profile.csv times.csv summary.json
-interrupt pile 1 mps-pile --soil 0.4x2
+interrupt pile 1 mps-pile --depth 1 --soil 0.4x2
 wrote pile load.csv summary.json
 interrupt dam 1 mps-dam-break
 wrote dam front.csv particles.csv summary.json
@@ -142,7 +142,7 @@ early() {
   shift 2
   for key; do has "$work/early/summary.json" "\"$key\": null"; done
 }
-early 0.3 "mps-pile --cell 0.0005" # being built
+early 0.3 "mps-pile --cell 0.0005 --soil 0.4x3" # being built
 early 0.3 "mps-tank --spacing 0.0005"
 early 0.3 "mps-wave --spacing 0.04"
 early 0.5 "mps-stability --spacing 0.2" dt_linear dt_stepping steps

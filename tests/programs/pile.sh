@@ -15,8 +15,8 @@ in_range "$s" rest_speed 0 1e-3 # m/s: the soil rests before the pile comes
 in_range "$s" depth 0.19999 0.20001
 in_range "$s" nq_prandtl 48.9 48.95
 in_range "$s" roughness 0 0.1
-# 0.74 s in steps of h/(2 c), c = 30.6 m/s, and a little more where particles are fast or pressed.
-in_range "$s" steps 2264 2320
+# 0.74 s in steps of 0.9 h/c, c = 30.6 m/s, and a little more where particles are fast or pressed.
+in_range "$s" steps 1258 1289
 
 # A part of the summary in a directory; $1 between $2 and $3 times $4.
 value() { sed -n "s/^ *\"$2\": \([^,]*\),*\$/\1/p" "$work/$1/summary.json"; }
