@@ -115,6 +115,7 @@ def _named(name, value):
 def _at_particle(particles, field, at):
     """A function that gives the field of the particle that is nearest to `at` now."""
     name, component = field if isinstance(field, tuple) else (field, None)
+    particles[name]  # FieldError: which the set has
     mark = particles.nearest(at)
     if mark < 0:
         raise ArgumentError("record(): there is no particle")
