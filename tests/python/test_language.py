@@ -291,6 +291,8 @@ class Errors(unittest.TestCase):
             print(solver.totals.kinetik)
         self.assertEqual(copy.copy(solver.totals).mass, solver.totals.mass)
         self.assertEqual(pickle.loads(pickle.dumps(solver.totals)).mass, solver.totals.mass)
+        with self.assertRaisesRegex(mps.ArgumentError, "^goda_evaluate.*: width is not given .or NaN., must be in"):
+            mps.goda_evaluate(height=1, period=5, depth=5, crest=2)
         with self.assertRaisesRegex(mps.FieldError, "no field 'temperature'.*the set has: id, position"):
             solver.record("heat", "temperature", at=[0, 0])
 
