@@ -242,6 +242,8 @@ class Interface:
                 default = [n.lower() for n in self.tables[struct][member.name][3]][default]
             elif enum == "Dof" or rows:
                 default = None if not default else default
+        elif member.name == "sides":  # bits of mps_side
+            kind = "Side | str | Sequence[Side | str] | int"
         elif isinstance(default, bool):
             kind = "bool"
         if default is None:

@@ -19,10 +19,12 @@ typedef struct view {
 
 static void choose_section(const seawall *w, view *v) {
   const seawall_settings *s = &w->s;
-  double top = fmax(s->wall_height, 1.5 * s->depth);
+  const double least = fmax(s->wall_height, 1.5 * s->depth);
+  float water = 0.0f; /* not a double: gcc 12 for ARM fails on that loop */
   for (int64_t k = 0; k < w->frames; k++)
     for (int64_t i = 0; i < w->frame[k].count; i++)
-      top = fmax(top, (double)w->frame[k].value[3 * i + 1]);
+      water = fmaxf(water, w->frame[k].value[3 * i + 1]);
+  const double top = fmax(least, (double)water);
   v->def = (area_def){
       .spacing = s->spacing,
       .slit = AREA_SLIT,

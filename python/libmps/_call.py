@@ -21,6 +21,12 @@ SOLVERS = ("mpm", "dynamics", "elastic", "fluid", "solver")
 class Result(SimpleNamespace):
     """A struct that C has filled: its members are attributes."""
 
+    def __getattr__(self, name):
+        if name.startswith("_"):  # what IPython, copy and pickle ask for
+            raise AttributeError(name)
+        near = difflib.get_close_matches(name, vars(self), 1)
+        raise AttributeError(f"{type(self).__name__} has no {name!r}{f' (is it {near[0]!r}?)' if near else ''}: it has {', '.join(vars(self))}")
+
     def _repr_html_(self):
         from . import _show
 
@@ -337,8 +343,12 @@ class Call:
         _, _, unit, enum, allowed = row
         if enum:
             value = _enums.number(enum, name, value, allowed)
-        elif name == "sides" and not isinstance(value, int):
-            value = _shapes.bits(_enums.number("Side", name, side) for side in ([value] if isinstance(value, str) else value))
+        elif name == "sides" and type(value) is not int:  # bits by the names or members of Side; a plain number has the bits
+            try:
+                sides = [value] if isinstance(value, (str, _enums.enumeration("Side"))) else list(value)
+            except TypeError:
+                raise TypeError(f"{name!r} is {value!r}: names of sides are wanted, such as 'y_upper' or ['x_lower', 'x_upper']") from None
+            value = _shapes.bits(_enums.number("Side", name, side) for side in sides)
         if kind.kind == "array" and kind.item.kind == "pointer":
             self.fits(name, kind, value)
             for k, item in enumerate(value):

@@ -77,7 +77,8 @@ KINDS = {made.__name__: made for made in (ArgumentError, StateError, OutOfMemory
 
 
 def spoken(text):
-    """A message of the library with the names that Python has of constants and functions."""
+    """A message of the library with the names that Python has of constants and functions. NaN is what a keyword is that was left out."""
+    text = re.sub(r"^(\w+(?:\[\d+\])? is )nan(?: [^,]*)?, must be", r"\1not given (or NaN), must be", text)
     return re.sub(r"\b(?:mps|MPS)_\w+", lambda m: _tables.SPOKEN.get(m[0], m[0]), text)
 
 

@@ -115,6 +115,7 @@ def _named(name, value):
 def _at_particle(particles, field, at):
     """A function that gives the field of the particle that is nearest to `at` now."""
     name, component = field if isinstance(field, tuple) else (field, None)
+    particles[name]  # FieldError: which the set has
     mark = particles.nearest(at)
     if mark < 0:
         raise ArgumentError("record(): there is no particle")
@@ -169,7 +170,7 @@ class Recording:
                ("totals.kinetic"; None: `name`); with at= the name of a field ("velocity", or ("stress", 1)); the number of
                a boundary, or a body or contact, for its reaction (N)
         every  s between rows, or a text with a unit; None: each step. A row is of the first step at or after its time;
-               the first is of now. step(n) looks once, after its steps
+               the first is of now, where a force is 0 before the first step. step(n) looks once, after its steps
         at     place (m): of the particle that is nearest to it now, wherever it moves
         unit   of the numbers, for files and axes
         path   a CSV file that follows the history

@@ -215,5 +215,5 @@ def shape(formula, words):
 
 
 def bits(numbers):
-    """Places of bits as the number that has them."""
-    return sum({1 << number for number in numbers})
+    """Places of bits as the number that has them; that of any (-1) is no bit."""
+    return sum({1 << number for number in numbers if number >= 0})

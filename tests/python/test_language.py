@@ -2,12 +2,14 @@
 kind, selections, tables of other packages."""
 
 import contextlib
+import copy
 import gc
 import importlib.util
 import inspect
 import io
 import os
 import pathlib
+import pickle
 import re
 import subprocess
 import sys
@@ -145,6 +147,29 @@ class Names(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "'kind' is 'frictional', must be one of held, roller"):  # not of a fluid's contact
             mps.Fluid(block(), level=1.0).add_contact(mps.Disc(0.1, position=[5, 5]), kind="frictional")
 
+    def test_sides_by_name_are_bits(self):
+        def pressures(sides):
+            ground = mps.Particles(spacing=0.1)
+            ground.fill_box([0, 0], [0.4, 1])
+            ground["density"] = 2000.0
+            solver = mps.Mpm(ground, mps.LinearElastic("1 MPa", 0.3), cell=0.2, lower=[0, 0, 0], upper=[0.4, 2, 0], gravity=[0, -9.81, 0])
+            solver.add_pore_water(porosity=0.4, permeability=1e-3)
+            solver.add_pore_face(kind="drained", sides=sides)
+            solver.step(40)
+            return np.array(ground["pore_pressure"])[np.argsort(np.array(ground["id"]))]
+
+        top, across = pressures(1 << 3), pressures(3)
+        self.assertGreater(abs(top - across).max(), 10.0)
+        for sides in ("y_upper", mps.Side.Y_UPPER, ["y_upper"], (mps.Side.Y_UPPER,)):
+            np.testing.assert_array_equal(pressures(sides), top)
+        for sides in (["x_lower", "x_upper"], "X_LOWER X_UPPER".split()):
+            np.testing.assert_array_equal(pressures(sides), across)
+        np.testing.assert_array_equal(pressures("any"), pressures(0))
+        with self.assertRaisesRegex(mps.ArgumentError, "'sides' is 'top', must be one of any, x_lower"):
+            pressures("top")
+        with self.assertRaisesRegex(TypeError, "names of sides are wanted"):
+            pressures(8.0)
+
     def test_every_choice_has_its_number(self):
         for name, (_, prefix, constants, _) in _tables.ENUMS.items():
             members = getattr(mps, name).__members__
@@ -256,6 +281,20 @@ class Errors(unittest.TestCase):
             sand["velocity"] = [1e3, 0]
             solver.step(10000)
         self.assertIn("position", sand)
+
+    def test_a_name_that_a_result_or_set_lacks(self):
+        sand = mps.Particles(spacing=0.1)
+        sand.fill_box([0, 0], [0.4, 0.4])
+        sand["density"] = 1800.0
+        solver = mps.Mpm(sand, mps.LinearElastic("1 MPa", 0.3), cell=0.2)
+        with self.assertRaisesRegex(AttributeError, r"^Totals has no 'kinetik' \(is it 'kinetic'\?\): it has mass"):
+            print(solver.totals.kinetik)
+        self.assertEqual(copy.copy(solver.totals).mass, solver.totals.mass)
+        self.assertEqual(pickle.loads(pickle.dumps(solver.totals)).mass, solver.totals.mass)
+        with self.assertRaisesRegex(mps.ArgumentError, "^goda_evaluate.*: width is not given .or NaN., must be in"):
+            mps.goda_evaluate(height=1, period=5, depth=5, crest=2)
+        with self.assertRaisesRegex(mps.FieldError, "no field 'temperature'.*the set has: id, position"):
+            solver.record("heat", "temperature", at=[0, 0])
 
     def test_warnings_may_be_errors(self):
         with warnings.catch_warnings():

@@ -209,6 +209,8 @@ TEST(an_unknown_field_is_an_error_that_lists_the_known) {
   FAILS(mps_particles_view(set, "preasure", &view), MPS_ERROR_FIELD,
         "no field 'preasure' (is 'pressure' meant?); the set has: id, position");
   assert_null(view.data);
+  FAILS(mps_particles_view(set, "pressure", &view), MPS_ERROR_FIELD,
+        "no field 'pressure' here, as no solver of the set has made it; the set has: id, position");
   REFUSES(mps_particles_view(set, NULL, &view), "name");
   REFUSES(mps_particles_view(set, "id", NULL), "out");
   char name[16];

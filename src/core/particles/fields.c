@@ -215,6 +215,8 @@ mps_status mpsi_field_fail_unknown(const mps_particles *p, const char *function,
     (void)snprintf(advice, sizeof advice, " (write %s)", own);
   else if (mpsi_field_owner_of(name) == MPSI_FIELD_OF_CALLER)
     (void)snprintf(advice, sizeof advice, " (mps_particles_add_field adds it)");
+  else if (near && strcmp(near, name) == 0)
+    (void)snprintf(advice, sizeof advice, " here, as no solver of the set has made it");
   else if (near)
     (void)snprintf(advice, sizeof advice, " (is '%s' meant?)", near);
   return mpsi_fail(p->context, function, MPS_ERROR_FIELD, "no field '%.60s'%s; the set has: %s",
