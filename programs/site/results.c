@@ -267,8 +267,8 @@ static void report(const simulation *sim, const findings *f) {
   const site_row *top = &sim->row[sim->rows - 1];
   printf(", settlement %.3g mm\n", 1e3 * top->settlement);
   if (has_drifted(top))
-    printf("The particles of the surface are %.3g mm below that: in liquefied sand places drift.\n",
-           1e3 * drift_of(top));
+    printf("The particles of the surface are %.3g mm %s that: in liquefied sand places drift.\n",
+           1e3 * fabs(drift_of(top)), drift_of(top) > 0.0 ? "below" : "above");
 }
 
 bool site_finish(app *a, void *user) {

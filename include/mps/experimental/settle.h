@@ -7,7 +7,8 @@
  * contact are at rest, also driven ones; implicit pressures of undrained pore water are found as
  * explicit ones, with the shorter steps of these. Reactions are those of the last step; impulses,
  * works, the budget and mps_mpm_steps continue. Laws whose stress depends on the rate of strain see
- * the rates of this motion, which are not those of the real one.
+ * the rates of this motion, which are not those of the real one. Ground that fails comes to rest
+ * too, where it has flowed to: displacements show whether it stood.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */
