@@ -481,7 +481,7 @@ class Guide(unittest.TestCase):
             pathlib.Path(folder, "quake.AT2").write_text("time_s,acceleration_m_s2\n" + "".join(f"{x:.4f},{y:.6f}\n" for x, y in zip(t, a)))
             grid = 0.005 * np.arange(1599)
             names.update(surface=np.interp(grid, t, 2 * a), outcrop=np.interp(grid, t, a))
-            found = self.run_in(folder, "Motions", names)
+            found = self.run_in(folder, "Motions and response spectra", names)
             self.assertLess(abs(found["ratio"][100:1000] / 2 - 1).max(), 1e-6)
             pathlib.Path(folder, "out/wall").mkdir(parents=True)
             pathlib.Path(folder, "out/footing").mkdir()
