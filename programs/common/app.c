@@ -178,6 +178,15 @@ bool app_error(app *a, const char *format, ...) {
   return false;
 }
 
+bool app_lacks_hdf5(app *a, mps_status status) {
+  if (status != MPS_ERROR_UNSUPPORTED) return false;
+  if (mps_library_has(MPS_FEATURE_HDF5) && !a->no_hdf5)
+    app_warn(a, "no series and no checkpoint is written: %s",
+             mps_context_error(a->context)->message);
+  a->no_hdf5 = true;
+  return true;
+}
+
 void app_warn(app *a, const char *format, ...) {
   char line[500];
   va_list args;

@@ -27,6 +27,7 @@ typedef struct app {
   mps_context *context;
   progress bar;
   bool no_gnuplot;             /* the note about it has been printed */
+  bool no_hdf5;                /* app_lacks_hdf5 has warned */
   bool no_warnings;            /* the library's are not printed: the program expects them */
   const char *outcome;         /* of the run: "finished", "interrupted", "failed" or "diverged" */
   char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
@@ -87,6 +88,10 @@ int app_end_run(app *a, mps_status status, double time, bool any);
  * may be open. The file of output_reserve gets its final name then; once this is off, it is
  * removed. */
 void app_leave_at_once(app *a, bool on);
+
+/* After a call that writes HDF5: true where the run continues without, by `status`. A library that
+ * was built with HDF5 and cannot write (it does not load) is warned of, once. */
+bool app_lacks_hdf5(app *a, mps_status status);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);

@@ -16,7 +16,7 @@ bool frame_write(app *a, mps_particles *particles, const char *directory, const 
   def.path = path;
   def.xdmf = 1;
   mps_status status = mps_recorder_create(a->context, particles, &def, &recorder);
-  if (status == MPS_ERROR_UNSUPPORTED) return true;
+  if (app_lacks_hdf5(a, status)) return true;
   if (status == MPS_OK) status = mps_recorder_write(recorder, 0.0);
   const mps_status closed = mps_recorder_close(&recorder);
   if (!app_check(a, status == MPS_OK ? closed : status)) return false;
@@ -42,5 +42,5 @@ mps_status frame_series(app *a, mps_particles *particles, const char *directory,
   def.xdmf = 1;
   const mps_status status = mps_recorder_create(a->context, particles, &def, out);
   if (status == MPS_OK) app_wrote(a, path);
-  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;
+  return app_lacks_hdf5(a, status) ? MPS_OK : status;
 }

@@ -215,6 +215,8 @@ bool resume_places(app *a, const char *restart, const char **checkpoint, const c
   static char path[1200];
   struct stat info;
   if (!name_results(a, restart, out)) return false;
+  if (*checkpoint && !mps_library_has(MPS_FEATURE_HDF5))
+    return app_error(a, "--checkpoint needs a libmps with HDF5 (CMake option MPS_HDF5)");
   if (*checkpoint) return check_place(a, *checkpoint);
   if (snprintf(path, sizeof path, "%s/checkpoint.h5", *out) >= (int)sizeof path)
     return app_error(a, "--out is too long");
@@ -228,11 +230,10 @@ static int64_t due(const resume_schedule *s, double now) {
 
 void resume_schedule_at(resume_schedule *s, double now) { s->count = due(s, now); }
 
-/* A libmps without HDF5 writes none. */
 void resume_save_now(app *a, resume_schedule *s) {
   if (!s->path) return;
   const mps_status status = s->save(s->user);
-  const bool lost = status != MPS_OK && status != MPS_ERROR_UNSUPPORTED;
+  const bool lost = status != MPS_OK && !app_lacks_hdf5(a, status);
   if (lost && !s->lost) {
     const mps_error *error = mps_context_error(a->context);
     app_error(a, "no checkpoint is written, the run goes on: %s",
