@@ -64,7 +64,7 @@ plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::1 using 1:3 with lines 
 set title 'Cylinders of sand, run-out over time'
 set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'
 columns = 'out/verify/mps-column-collapse_--axisymmetric_--aspect_'
-plot [0:*] [0:3.2] columns.'1_--flip-time_10ms_--frames_0_--cell_0.005/front_column.csv' using 1:2 with lines lc rgb blue title 'a = 1', columns.'3_--frames_0_--cell_0.005/front_column.csv' using 1:2 with lines lc rgb green title 'a = 3', 1.24 dashtype '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dashtype '--' lc rgb green title 'a = 3'
+plot [0:*] [0:3.6] columns.'1_--flip-time_10ms_--frames_0_--cell_0.005/front_column.csv' using 1:2 with lines lc rgb blue title 'a = 1', columns.'3_--frames_0_--cell_0.005/front_column.csv' using 1:2 with lines lc rgb green title 'a = 3', 1.24 dashtype '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dashtype '--' lc rgb green title 'a = 3'
 unset multiplot
 
 # ---- spheres on grains -----------------------------------------------------------------------
