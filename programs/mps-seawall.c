@@ -90,7 +90,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("seed", &s->seed,
                      "another disturbance each: behind a breaking wave the force differs", 1),
       OPTION_HEADING("Wave maker: amplitude sin(2 pi t/period)"),
-      OPTION_NUMBER("amplitude", &s->amplitude, "of the piston", 0.05),
+      OPTION_NUMBER("amplitude", &s->amplitude, "of the piston", 0.01),
       OPTION_NUMBER("period", &s->period, NULL, 1.0),
       OPTION_NUMBER("ramp", &s->ramp, NULL),
       OPTION_HEADING("Wall: plane strain, held in the layer of particles at the bed"),
@@ -102,7 +102,7 @@ int main(int argc, char **argv) {
       OPTION_FLAG("coupled", &s->coupled, NULL),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", &s->duration, NULL, 5.5),
-      OPTION_NUMBER("dt", &s->dt, NULL, 5e-4),
+      OPTION_NUMBER("dt", &s->dt, NULL, 1e-3),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_NUMBER("sample", &s->sample, "then the wall is solved too", 0.01),
       OPTION_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 10000.0), &s->frames, "and of the animation",
@@ -121,12 +121,18 @@ int main(int argc, char **argv) {
       "reading that gives its number: 160 x 30 of water, 3 layers under it, and, 43 above the bed "
       "and 3\n"
       "below, 3 columns of the piston and 10 of the wall. Here the piston and the bed need no "
-      "particles.",
+      "particles.\n"
+      "The paper's piston moves by 50 mm. Its waves break in water that keeps its energy "
+      "(--amplitude 50mm\n"
+      "--dt 0.5ms); those of the default stand, and the force is that of linear potential flow.",
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  static const option_preset paper[] = {
-      {"method", "classical"}, {"wall-method", "published"}, {"disturb", "0"}, {"dt", "1ms"}, {0}};
+  static const option_preset paper[] = {{"method", "classical"},
+                                        {"wall-method", "published"},
+                                        {"disturb", "0"},
+                                        {"amplitude", "50mm"},
+                                        {0}};
   const int settled = s->paper ? options_prefer(&program, paper) : -1;
   if (settled >= 0) return settled;
   if (options_given(table, "share") && s->method == 0)

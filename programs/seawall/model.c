@@ -112,6 +112,7 @@ void seawall_free(seawall *w) {
   free(w->frame);
   rows_end(&w->rows);
   free(w->force);
+  free(w->linear);
   free(w->pressure);
   free(w->look.y);
   free(w->look.pressure);

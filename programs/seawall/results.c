@@ -6,18 +6,18 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Heights (m) of the Sainflou wave of the look. */
 typedef struct sainflou {
   double harmonic; /* twice the incident amplitude: the level's first harmonic at the wall, in the
                       period before */
   double level;    /* of a wave whose crest is where the level is: a breaking wave's jet counts */
-  double paddle;   /* of an infinite flume behind this piston (Havelock) */
 } sainflou;
 
 static sainflou find_heights(const seawall *w) {
   const double k = waves_number(w->s.period, w->s.depth), to = w->look.at.t;
-  sainflou h = {NAN, NAN, 2.0 * fabs(w->s.amplitude) * waves_havelock(k, w->s.depth)};
+  sainflou h = {NAN, NAN};
   if (w->samples == 0) return h;
   const series level = {w->samples, sizeof *w->sample, &w->sample->t, &w->sample->level};
   const double least = 0.02 * w->s.spacing;
@@ -31,13 +31,14 @@ static sainflou find_heights(const seawall *w) {
 
 static bool write_force(app *a, const seawall *w) {
   output f;
-  if (!csv_open(&f, a, w->s.out, "force.csv",
-                "t_s,force_N,force_10_Hz_N,moment_N_m,level_m?,deflection_m,piston_m"))
+  if (!csv_open(
+          &f, a, w->s.out, "force.csv",
+          "t_s,force_N,force_10_Hz_N,moment_N_m,level_m?,deflection_m,piston_m,linear_force_N"))
     return false;
   for (int64_t k = 0; k < w->samples; k++) {
     const seawall_sample *p = &w->sample[k];
     const double slow = seawall_smooth(w, llround(p->t / w->s.dt) - 1);
-    CSV_LINE(&f, p->t, p->force, slow, p->moment, p->level, p->deflection, p->piston);
+    CSV_LINE(&f, p->t, p->force, slow, p->moment, p->level, p->deflection, p->piston, w->linear[k]);
   }
   return output_close(&f);
 }
@@ -91,6 +92,25 @@ static double crest_force(const seawall *w, double H) {
   return isnan(H) ? NAN : waves_sainflou(k, w->s.depth, H, 1);
 }
 
+/* The force in time against linear potential flow: standard deviations after the piston's jerk. */
+static void compare_linear(output *f, const seawall *w) {
+  double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0}, deviation[2];
+  int64_t count = 0;
+  for (int64_t k = 0; k < w->samples; k++) {
+    if (w->sample[k].t <= SEAWALL_IMPULSE) continue;
+    const double value[2] = {w->sample[k].force - w->linear[0], w->linear[k] - w->linear[0]};
+    for (int i = 0; i < 2; i++) sum[i] += value[i], square[i] += value[i] * value[i];
+    count++;
+  }
+  for (int i = 0; i < 2; i++)
+    deviation[i] = sqrt(fmax(square[i] - sum[i] * sum[i] / (double)count, 0.0) / (double)count);
+  JSON_NUMBERS(f, {"force_deviation", deviation[0]}, {"force_deviation_linear", deviation[1]});
+  if (deviation[1] > 0.0)
+    printf("force of the waves in time, standard deviation %.2f N; linear potential flow in this "
+           "tank %.2f N (%+.1f %%)\n",
+           deviation[0], deviation[1], 100.0 * (deviation[0] / deviation[1] - 1.0));
+}
+
 static void summarise(output *f, const seawall *w, const sainflou *h) {
   const seawall_settings *s = &w->s;
   const seawall_sample *at = &w->look.at;
@@ -108,8 +128,7 @@ static void summarise(output *f, const seawall *w, const sainflou *h) {
                {"force_crest", crest ? most : NAN}, {"force_crest_time", crest ? crest_at : NAN},
                {"force_peak", peak}, {"force_peak_time", peak_at}, {"sainflou_height", h->harmonic},
                {"sainflou_force", crest_force(w, h->harmonic)}, {"sainflou_height_level", h->level},
-               {"sainflou_force_level", crest_force(w, h->level)}, {"havelock_height", h->paddle},
-               {"sainflou_force_havelock", crest_force(w, h->paddle)},
+               {"sainflou_force_level", crest_force(w, h->level)},
                {"force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth});
   const seawall_sample *last = &w->sample[w->samples - 1];
   JSON_NUMBERS(f, {"force_end", last->force}, {"moment_end", last->moment},
@@ -125,6 +144,7 @@ static void summarise(output *f, const seawall *w, const sainflou *h) {
     printf(
         "Sainflou for the level itself, the jet of a breaking wave included (H = %.3f m): %.1f N\n",
         h->level, crest_force(w, h->level));
+  compare_linear(f, w);
   if (!isnan(peak)) printf("largest force below 10 Hz %.1f N at %.3f s\n", peak, peak_at);
 }
 
@@ -186,6 +206,9 @@ static void warn_of_limits(app *a, const seawall *w) {
 bool seawall_write(app *a, seawall *w) {
   const sainflou h = find_heights(w);
   warn_of_limits(a, w);
+  w->linear = calloc((size_t)w->samples, sizeof *w->linear);
+  if (!w->linear) return app_no_memory(a);
+  seawall_linear(w, w->linear);
   if (!write_force(a, w) || !write_pressure(a, w, h.harmonic) || !write_wall(a, w) ||
       !close_series(a, w) || !write_summary(a, w, &h) || !seawall_draw(a, w, h.harmonic))
     return false;

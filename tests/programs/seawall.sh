@@ -3,7 +3,7 @@
 # water, and going on from a checkpoint. The paper's size: docs/verification/fluid/seawall.md.
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/checks.sh"
-coarse="--spacing 0.02 --dt 0.002 --wall-height 0.44 --threads 1"
+coarse="--amplitude 0.05 --spacing 0.02 --dt 0.002 --wall-height 0.44 --threads 1"
 
 # The force at 5.16 s is 629 N with this spacing in a computation apart from this one, 643 to 657 N
 # with finer ones; see docs/verification/fluid/seawall.md.
@@ -16,7 +16,7 @@ in_range "$s" force_at_516 598 675
 in_range "$s" force_crest 620 726
 in_range "$s" moment_at_516 76 93
 in_range "$s" force_peak 600 810
-has "$work/a/force.csv" "t_s,force_N,force_10_Hz_N,moment_N_m,level_m,deflection_m,piston_m"
+has "$work/a/force.csv" "t_s,force_N,force_10_Hz_N,moment_N_m,level_m,deflection_m,piston_m,linear_force_N"
 has "$work/a/pressure.csv" "y_m,pressure_Pa,sainflou_Pa"
 for name in waves force pressure deflection; do picture "$work/a/$name.png" 0x0; done
 if command -v gnuplot >/dev/null; then
@@ -36,6 +36,13 @@ s=$work/still/summary.json
 in_range "$s" force_end 441.4 441.5
 in_range "$s" moment_end 44.10 44.20
 in_range "$s" deflection_end 0.99e-7 1.03e-7
+
+# Waves that stand: the force in time is that of linear potential flow, in two tanks, the piston from rest and risen.
+for tank in "--length 1.6 --depth 0.3" "--length 1.2 --depth 0.4 --period 0.9 --ramp 0.5 --amplitude 0.008"; do
+  "$1/mps-seawall" $tank --spacing 0.02 --wall-height 0.6 --dt 2ms --duration 3 --frames 0 --threads 1 --out "$work/stand" >"$work/log"
+  linear=$(sed -n 's/^ *"force_deviation_linear": \([^,]*\),*$/\1/p' "$work/stand/summary.json")
+  in_range "$work/stand/summary.json" force_deviation "$(awk "BEGIN { print 0.98 * $linear }")" "$(awk "BEGIN { print 1.02 * $linear }")"
+done
 
 # The water and wall of the paper: what --paper says, levels by the number of particles, and a wall of whole cells that
 # bends within a fifth of the theory of beams above.
