@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include "common/closed_tank.h"
 #include "common/series.h"
 
 #include <math.h>
@@ -203,12 +204,23 @@ static void warn_of_limits(app *a, const seawall *w) {
         w->s.depth + high->level, high->t, height);
 }
 
+static bool find_linear(app *a, seawall *w) {
+  const double still = 0.5 * WAVES_DENSITY * WAVES_G * w->s.depth * w->s.depth;
+  closed_tank c = {.length = w->s.length, .depth = w->s.depth, .mass = NAN, .piston = w->motion};
+  closed_tank_begin(&c);
+  w->linear = calloc((size_t)w->samples, sizeof *w->linear);
+  if (!w->linear) return app_no_memory(a);
+  for (int64_t k = 0; k < w->samples; k++) {
+    if (!app_check(a, closed_tank_advance(&c, w->sample[k].t))) return false;
+    w->linear[k] = still + closed_tank_force(&c);
+  }
+  return true;
+}
+
 bool seawall_write(app *a, seawall *w) {
   const sainflou h = find_heights(w);
   warn_of_limits(a, w);
-  w->linear = calloc((size_t)w->samples, sizeof *w->linear);
-  if (!w->linear) return app_no_memory(a);
-  seawall_linear(w, w->linear);
+  if (!find_linear(a, w)) return false;
   if (!write_force(a, w) || !write_pressure(a, w, h.harmonic) || !write_wall(a, w) ||
       !close_series(a, w) || !write_summary(a, w, &h) || !seawall_draw(a, w, h.harmonic))
     return false;

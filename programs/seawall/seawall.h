@@ -86,7 +86,7 @@ typedef struct seawall {
   int64_t samples, capacity, frames, room; /* room: points of the look */
   resume_schedule saves;
   double *force;         /* N, after each step */
-  double *linear;        /* N/m, at each sample: seawall_linear */
+  double *linear;        /* N/m, at each sample, by linear potential flow on a rigid wall */
   int64_t forces, steps; /* how many there are, and will be at the end */
   seawall_look look;
   double restarted; /* s, NaN: from the start */
@@ -114,8 +114,6 @@ mps_status seawall_peek(mps_context *context, seawall *w);
 mps_status seawall_restore(mps_context *context, seawall *w);
 /* run.c: the force around step k less all that is faster than 10 Hz. */
 double seawall_smooth(const seawall *w, int64_t k);
-/* linear.c: N/m at each sample, by linear potential flow on a rigid wall. */
-void seawall_linear(const seawall *w, double *force);
 /* results.c: tables and summary; pictures.c. */
 bool seawall_write(app *a, seawall *w);
 bool seawall_draw(app *a, const seawall *w, double height); /* Sainflou's H, NaN where none */
