@@ -99,6 +99,8 @@ static mps_reaction face_of(const run *r) {
   return reaction;
 }
 
+static const char *mirrored(int way) { return way < 0 ? "mirrored " : ""; }
+
 /* ---- one layer ------------------------------------------------------------------------------- */
 
 static void slides_by_the_law(layer p) {
@@ -142,7 +144,8 @@ TEST(a_row_runs_down_a_slope_to_its_terminal_velocity) {
         run r = begin(&p, 0.04 * sqrt(p.l0 / G));
         OK(mps_fluid_run(r.fluid, T, 1000, NULL, NULL));
         const double u = speed(&r, 0.4, 0.6), law = V * tanh(pull * T / V);
-        printf("slope of %g degrees, l0 %g: u %.4f, law %.4f m/s\n", angles[a], p.l0, u, law);
+        printf("%sslope of %g degrees, l0 %g: u %.4f m/s, %+.2f %% off the law\n", mirrored(way),
+               angles[a], p.l0, u, 100.0 * (u / law - 1.0));
         NEAR(u / law, 1.0, 0.006);
         end(&r);
       }
@@ -163,8 +166,8 @@ TEST(a_face_acts_along_all_its_length) {
       OK(mps_fluid_step(r.fluid, 1));
       const double tau = 500.0 * p.f * p.u0 * p.u0, length = p.columns * p.l0;
       const double force = -taken(&r, face_of(&r).force) * p.u0;
-      printf("lattice at %g degrees, l0 %g: force over tau L %.4f\n", lattices[a], p.l0,
-             force / (tau * length));
+      printf("lattice at %g degrees, l0 %g: force %+.2f %% off tau L\n", lattices[a], p.l0,
+             100.0 * (force / (tau * length) - 1.0));
       NEAR(force / (tau * length), 1.0, 0.006); /* its ends are within a spacing */
       end(&r);
     }
@@ -172,8 +175,9 @@ TEST(a_face_acts_along_all_its_length) {
 
 /* ---- deeper layers --------------------------------------------------------------------------- */
 
+/* Above the lowest particles smoothing is one-sided, and no momentum is conserved by it. */
 TEST(layers_lose_what_the_bed_takes) {
-  for (int rows = 2; rows <= 4; rows++)
+  for (int rows = 2; rows <= 8; rows += rows < 4 ? 1 : 2)
     for (int way = -1; way <= 1; way += 2) {
       layer p = plain;
       p.rows = rows, p.u0 = way, p.line = rows == 3, p.angle = 17.0 * way * DEGREES;
@@ -182,10 +186,10 @@ TEST(layers_lose_what_the_bed_takes) {
       OK(mps_fluid_step(r.fluid, 200));
       const double water = (double)(p.rows * p.columns) * r.mass * (speed(&r, 0.0, 1.0) - p.u0);
       const double bed = taken(&r, face_of(&r).impulse), u = speed(&r, 0.4, 0.6);
-      printf("%d rows: the water's change of momentum over the bed's impulse %.3f; u over a "
-             "block's %.3f\n",
-             rows, water / bed, u / block);
-      NEAR(water / bed, 1.0, 0.05);
+      printf("%s%d rows: the water's change of momentum %+.1f %% off the bed's impulse; u %+.1f %% "
+             "off a block's\n",
+             mirrored(way), rows, 100.0 * (water / bed - 1.0), 100.0 * (u / block - 1.0));
+      NEAR(water / bed, 1.0, rows > 4 ? 0.15 : 0.05);
       NEAR(u / block, 1.0, 0.03);
       end(&r);
     }
