@@ -82,6 +82,32 @@ TEST_EACH(a_run_that_is_rolled_back_is_the_same, NULL, drop) {
   assert_true(first.force[0] < 0.0); /* against the water */
 }
 
+/* The bed's segment of a tank of one polyline has the friction that a plane bed has. */
+TEST_EACH(segments_have_their_friction, NULL, drop) {
+  const double corner[4][3] = {{0.0, 2.0, 0.0}, {0.0}, {LENGTH, 0.0, 0.0}, {LENGTH, 2.0, 0.0}};
+  double force[9], moment[3];
+  int64_t count = 0;
+  mps_reaction plane, line;
+  fill(NULL);
+  add_walls(0.1);
+  push(0.5);
+  OK(mps_fluid_step(fluid, 1));
+  OK(mps_fluid_get_reaction(fluid, 0, &plane));
+  drop(NULL);
+  fill(NULL);
+  USING(fluid_boundary, mps_fluid_add_boundary(fluid, &given, NULL), .kind = MPS_BOUNDARY_ROLLER,
+        .corners = corner[0], .corner_count = 4, .friction_factor = 0.1);
+  push(0.5);
+  OK(mps_fluid_step(fluid, 1));
+  OK(mps_fluid_get_reaction(fluid, 0, &line));
+  OK(mps_fluid_get_segments(fluid, 0, 3, &count, force, moment));
+  assert_true(plane.force[0] < 0.0);
+  NEAR(force[3] / plane.force[0], 1.0, 0.01);
+  for (int c = 0; c < 2; c++)
+    NEAR((force[c] + force[3 + c] + force[6 + c]) / line.force[c], 1.0, 1e-9);
+  NEAR((moment[0] + moment[1] + moment[2]) / line.moment[2], 1.0, 1e-9);
+}
+
 /* ---- bodies ---------------------------------------------------------------------------------- */
 
 /* What is missing in the budget of momentum along x, of a box and the boundaries up to `walls`. */
