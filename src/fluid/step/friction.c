@@ -11,7 +11,10 @@
  *   v' = v/(1 + dt f |v| L/(2 l0^2)),
  *
  * the solution of the law for this particle alone: v falls and keeps its sign, however long the
- * step. SPDX-License-Identifier: BSD-3-Clause */
+ * step. A body that floats yields: with n, its mass and that of a layer of l0 all around it over
+ * its mass (and their moments of inertia likewise), v' = v - v a/(1 + n a), a = dt f |v| L/(2
+ * l0^2), so that even without bound they end with one velocity. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "fluid/step/friction.h"
 
 #include "fluid/boundary/vicinity.h"
@@ -51,15 +54,15 @@ static double length_of(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i,
   return mpsi_fluid_larger(high - low, 0.0);
 }
 
-/* A face that moves along itself with `moves`, m/s. */
+/* A face that moves along itself with `moves`, m/s; `yield` is n. */
 static void shear_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t chunk, int64_t i,
-                     double moves, double *u) {
+                     double moves, double yield, double *u) {
   const double d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), f->x[0][i], f->x[1][i]);
   if (!(d > 0.0 && d < BESIDE * f->l0)) return;
   const double length = length_of(f, w, i, d), along[2] = {-w->normal[1], w->normal[0]};
   const double v = u[0] * along[0] + u[1] * along[1] - moves;
   const double rate = 0.5 * w->friction * fabs(v) * length / (f->l0 * f->l0);
-  const double less = v * (f->dt * rate / (1.0 + f->dt * rate));
+  const double less = v * (f->dt * rate / (1.0 + yield * f->dt * rate));
   if (less == 0.0) return;
   const double dv[2] = {-less * along[0], -less * along[1]};
   for (int c = 0; c < 2; c++) u[c] += dv[c];
@@ -77,14 +80,29 @@ static double moves_along(const mps_fluid *f, const mpsi_fluid_body *body, const
   return v[1] * w->normal[0] - v[0] * w->normal[1];
 }
 
+static double yield_of(const mps_fluid *f, const mpsi_fluid_body *own) {
+  const mps_body *body = own->body;
+  double length = 0.0, square = 0.0;
+  if (!own->floats) return 1.0;
+  for (int k = 0; k < own->faces; k++) {
+    const double *x = body->xy + 2 * k;
+    length += f->wall[own->first + k].length;
+    square = mpsi_fluid_larger(x[0] * x[0] + x[1] * x[1], square);
+  }
+  const double water = f->def.density * f->l0 * f->def.measure * length;
+  return 1.0 + water / body->def.mass + water * square / body->def.inertia[2];
+}
+
 static void shear_at_bodies(const mps_fluid *f, int64_t chunk, int64_t i, double *u) {
   for (int b = 0; b < f->bodies; b++) {
     const mpsi_fluid_body *body = &f->body[b];
     const double x[2] = {f->x[0][i], f->x[1][i]};
     if (!mpsi_fluid_beside(body, x, 2.0 * BESIDE * f->l0)) continue;
+    if (!(f->wall[body->first].friction > 0.0)) continue;
+    const double yield = yield_of(f, body);
     for (int k = body->first; k < body->first + body->faces; k++) {
       const mpsi_fluid_wall *w = &f->wall[k];
-      if (w->used && w->friction > 0.0) shear_at(f, w, chunk, i, moves_along(f, body, w, i), u);
+      if (w->used) shear_at(f, w, chunk, i, moves_along(f, body, w, i), yield, u);
     }
   }
 }
@@ -100,10 +118,11 @@ void mpsi_fluid_add_friction(mps_fluid *f, int64_t begin, int64_t end, int64_t c
     if (pore && pore->porosity < 1.0) continue; /* the rock's resistance is that of all its faces */
     double u[2] = {f->u_new[0][i], f->u_new[1][i]};
     for (int b = 0; b < f->boundaries; b++)
-      if (f->wall[b].used && f->wall[b].friction > 0.0) shear_at(f, &f->wall[b], chunk, i, 0.0, u);
+      if (f->wall[b].used && f->wall[b].friction > 0.0)
+        shear_at(f, &f->wall[b], chunk, i, 0.0, 1.0, u);
     for (int64_t k = 0; k < list.count; k++) {
       const mpsi_fluid_wall *w = &mpsi_fluid_segment_of(f, list.item[k])->wall;
-      if (w->friction > 0.0) shear_at(f, w, chunk, i, 0.0, u);
+      if (w->friction > 0.0) shear_at(f, w, chunk, i, 0.0, 1.0, u);
     }
     shear_at_bodies(f, chunk, i, u);
     for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
