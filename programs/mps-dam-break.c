@@ -377,6 +377,9 @@ static int complete(const options_program *program, settings *s) {
     return options_refuse(program, "--impact needs --method mps, and has no --still and --n2");
   if (s->paper && s->method == METHOD_MPS)
     return options_refuse(program, "--paper is for --method mpm");
+  if (s->roughness > 0.0 && s->method != METHOD_MPS)
+    return options_refuse(program, "--friction-factor is for --method mps only: of the grid the "
+                                   "bed has slip or none, --bed");
   if (s->solver != 0 && s->method != METHOD_MPS)
     return options_refuse(program, "--solver is for --method mps only");
   if (s->impact) s->tank = 0.5 * 5.366;
@@ -426,6 +429,7 @@ int main(int argc, char **argv) {
                        MPS_MATERIAL_STATE_EQUATION_TAIT),
       OPTION_CHOICE_OF("negative-pressure", "none|full", &s->tension, NULL),
       OPTION_CHOICE_OF("bed", "slip|fixed", &s->bed, NULL),
+      OPTION_NUMBER("friction-factor", &s->roughness, "of the bed, of --method mps", 0.0),
       OPTION_FLAG("still", &s->rest, NULL),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("cell", &s->h, "default width/40", NAN),

@@ -7,9 +7,9 @@
 
 /* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
  * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
- * blocks. PUDDLE is less than one, POND little more, EXACT the same with a closer
- * pressure. CLASSICAL: the column by the classical scheme. BREAKWATER: a column beside rock that
- * has water too, on a polyline, which collapses.
+ * blocks. Beds and the body have friction but where water runs out. PUDDLE is less than one, POND
+ * little more, EXACT the same with a closer pressure. CLASSICAL: the column by the classical
+ * scheme. BREAKWATER: a column beside rock that has water too, on a polyline, which collapses.
  */
 enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND, EXACT, CLASSICAL, BREAKWATER };
 
@@ -27,6 +27,13 @@ static inline void drop_scene(scene *s) {
   mps_body_destroy(&s->body);
   mps_signal_destroy(&s->piston);
   mps_particles_destroy(&s->set);
+}
+
+static inline mps_status rough_wall(scene *s, int32_t kind, double x, double y, double nx,
+                                    double ny, double friction) {
+  DEF(fluid_boundary, def, .kind = kind, .point[0] = x, .point[1] = y, .normal[0] = nx,
+      .normal[1] = ny, .friction_factor = friction);
+  return mps_fluid_add_boundary(s->fluid, &def, NULL);
 }
 
 static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
@@ -54,7 +61,7 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, s->piston));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 4.0, 0.0, -1.0, 0.0, NULL));
-  DEF(fluid_contact, afloat, .kind = MPS_BOUNDARY_ROLLER);
+  DEF(fluid_contact, afloat, .kind = MPS_BOUNDARY_ROLLER, .friction_factor = 0.1);
   TRY(mps_fluid_add_contact(s->fluid, s->body, &afloat, &s->contact));
   DEF(fluid_load, load, .kind = MPS_FLUID_LOAD_PRESSURE, .pressure = 200.0, .lower[0] = 3.0);
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
@@ -75,7 +82,7 @@ static inline mps_status add_breakwater(scene *s) {
   const double bed[4][3] = {{-0.5, 0.0, 0.0}, {2.0, 0.0, 0.0}, {2.5, 0.3, 0.0}, {2.5, 1.5, 0.0}};
   const double stones[4][3] = {
       {0.9, -0.1, 0.0}, {1.5, -0.1, 0.0}, {1.4, 1.2, 0.0}, {0.9, 1.2, 0.0}};
-  DEF(fluid_boundary, line, .corners = bed[0], .corner_count = 4);
+  DEF(fluid_boundary, line, .corners = bed[0], .corner_count = 4, .friction_factor = 0.1);
   mps_status status = mps_fluid_add_boundary(s->fluid, &line, NULL);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 3.5, 0.0, -1.0, 0.0, NULL));
@@ -109,7 +116,8 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
   if (what == CLASSICAL) TRY(mps_experimental_fluid_classical(s->fluid, 0.2));
   if (status != MPS_OK || what == AFLOAT) return status == MPS_OK ? add_float(own, s) : status;
   if (what == BREAKWATER) return add_breakwater(s);
-  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
+  const double friction = what == COLLAPSE || what == CLASSICAL ? 0.1 : 0.0; /* of the bed */
+  TRY(rough_wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, friction));
   TRY(wall(s, MPS_BOUNDARY_HELD, 0.0, 0.0, 1.0, 0.0, NULL));
   if (what == SPILL) TRY(wall(s, MPS_BOUNDARY_OPEN, 2.02, 0.0, -1.0, 0.0, NULL));
   if (what != SPILL) TRY(wall(s, MPS_BOUNDARY_ROLLER, 2.5, 0.0, -1.0, 0.0, NULL));
@@ -155,8 +163,8 @@ static inline mps_status tell(scene *s, int what, result *r) {
   TRY(mps_fluid_get_pressure(s->fluid, 0, 4, points, r->other + 4));
   TRY(mps_fluid_get_report(s->fluid, &report));
   if (status != MPS_OK) return status;
-  const int64_t counts[] = {report.ghosts,     report.surface,       report.apart,
-                            report.iterations, report.collisions,    report.limited,
+  const int64_t counts[] = {report.ghosts,     report.surface,        report.apart,
+                            report.iterations, report.collisions,     report.limited,
                             report.pushed,     report.all_iterations, report.pairs};
   for (int k = 0; k < 9; k++) r->other[8 + k] = (double)counts[k];
   r->dt = mps_fluid_dt(s->fluid), r->limit = mps_fluid_limit(s->fluid);

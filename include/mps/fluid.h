@@ -288,11 +288,14 @@ typedef struct mps_fluid_boundary_def {
   const double
       *nodes; /* of a bending wall: points along it (3 values each, m, in any order; projected onto
                  the plane), copied; NULL (default): it stays plane, and moves as one node */
-  int64_t node_count;    /* default 0; at most 1 with a signal */
-  const double *corners; /* of a polyline: its corners in order, the fluid to the left of the way
-                            along them (3 values each, m, z 0), copied; NULL (default): a plane
-                            wall. `point`, `normal` and `factor` are not read then */
-  int64_t corner_count;  /* 2 to 10000, default 0. The first again as the last: it is closed */
+  int64_t node_count;     /* default 0; at most 1 with a signal */
+  const double *corners;  /* of a polyline: its corners in order, the fluid to the left of the way
+                             along them (3 values each, m, z 0), copied; NULL (default): a plane
+                             wall. `point`, `normal` and `factor` are not read then */
+  int64_t corner_count;   /* 2 to 10000, default 0. The first again as the last: it is closed */
+  double friction_factor; /* f, 0 to 1e6, default 0: the stress 1/2 rho f |v| v along the wall, v
+                             the velocity of the particles beside it along it. Fanning's f, a
+                             quarter of Darcy's; in waves Jonsson's. Not of OPEN */
 } mps_fluid_boundary_def;
 
 static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
@@ -342,8 +345,9 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary_motion(mps_fluid *fluid,
                                                                const double *velocity);
 
 /** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
- *  summed over the points of mps_fluid_get_boundary_points. Impulse, moment_impulse and work
- * include collisions with the wall and the smoothing of velocities at it. MPS_ERROR_ARGUMENT: no
+ *  summed over the points of mps_fluid_get_boundary_points, and, but in an open step, of its
+ *  friction. Impulse, moment_impulse and work include collisions with the wall and the smoothing of
+ *  velocities at it. MPS_ERROR_ARGUMENT: no
  * wall `number`, NULL, or a `size` unknown to this library. */
 static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
                                                 mps_reaction *out) {
@@ -381,6 +385,7 @@ typedef struct mps_fluid_contact_def {
   int32_t kind;  /* mps_boundary_kind of the body's surface: HELD (no slip, default) or ROLLER */
   int32_t mover; /* mps_contact_mover, default SOLVER: the fluid moves the body */
   int32_t reserved;
+  double friction_factor; /* of all edges, as that of a boundary; default 0 */
 } mps_fluid_contact_def;
 
 static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
@@ -410,9 +415,9 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
  *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the
  * water's action on it, by parts, in an open step of the last solution: moments about its reference
  * point, moment_impulse about its present position; `count` is that of wetted points. Force and
- * moment are those of the pressures, impulses include collisions and smoothing, as those of
- * mps_body_get_reaction; they act on a floating body one step later. mps_contact_get_particles is
- * MPS_ERROR_UNSUPPORTED.
+ * moment are those of the pressures and friction, impulses include collisions and smoothing, as
+ * those of mps_body_get_reaction. All but the pressures act on a floating body one step later.
+ * mps_contact_get_particles is MPS_ERROR_UNSUPPORTED.
  *
  *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
  *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a

@@ -173,6 +173,8 @@ static const struct {
         "frequency-ratio", "1", FROM_TO(0.05, 20.0),
         "resonance: frequency of the waves over that of the wall in water, which gives its spring"),
     NUMBER("friction", "1", FROM_TO(0.0, 10.0), "Coulomb's coefficient mu of the contact"),
+    NUMBER("friction-factor", "1", FROM_TO(0.0, 10.0),
+           "f of water on faces, of Fanning: stress rho f v^2/2"),
     NUMBER("gamma", "1", FROM_TO(1.0, 20.0), "peak enhancement of JONSWAP"),
     TEXT("gauge", "m,...", "stations of level gauges"),
     CHOICE(

@@ -19,6 +19,7 @@ enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP, METHOD_MPM = 0, METHOD_MPS 
 typedef struct settings {
   double courant;
   double h, base, viscosity, sound, duration, tank, disturb, tolerance;
+  double roughness; /* friction factor of the bed */
   int64_t n2, ppc, threads;
   int method, state, tension, spline, volumetric, bed, solver;
   mpm_method variant;

@@ -19,11 +19,12 @@ enum { BED = 0, LEFT, FAR_WALL };
 
 static double far_wall(const settings *s) { return (s->rest ? 1.0 : s->tank) * s->base; }
 
-static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
+static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny, double friction) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
   def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = x;
   def.normal[0] = nx, def.normal[1] = ny;
+  def.friction_factor = friction;
   return mps_fluid_add_boundary(fluid, &def, NULL);
 }
 
@@ -51,9 +52,9 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   if (status == MPS_OK &&
       !waves_choose_solver(sim->m.a, s->solver, sim->m.fluid, sim->m.why, sizeof sim->m.why))
     return MPS_ERROR_UNSUPPORTED;
-  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 0.0, 1.0);
-  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 1.0, 0.0);
-  return status == MPS_OK ? add_wall(sim->m.fluid, far_wall(s), -1.0, 0.0) : status;
+  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 0.0, 1.0, s->roughness);
+  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 1.0, 0.0, 0.0);
+  return status == MPS_OK ? add_wall(sim->m.fluid, far_wall(s), -1.0, 0.0, 0.0) : status;
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */

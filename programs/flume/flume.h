@@ -64,6 +64,7 @@ typedef struct flume_settings {
   double zone, rate;                            /* wave lengths; 1/period */
   double crest, cotangent, width;               /* m, 1, m: of the wall */
   double density, friction;                     /* kg/m3, 1: of the caisson */
+  double roughness;                             /* friction factor of the ground and the body */
   double dt;                                    /* s, at most */
   double duration, sample, disturb;             /* s, s, spacings */
   double gauge[FLUME_GAUGES], window[2];        /* m, s */

@@ -23,14 +23,18 @@ static mps_status add_line(const flume *m, int count, const double (*point)[2], 
   for (int k = 0; k < count + closed; k++) memcpy(xy[k], point[k % count], sizeof point[0]);
   def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.corners = xy[0], def.corner_count = count + closed;
+  def.friction_factor = m->s.roughness;
   return mps_fluid_add_boundary(m->fluid, &def, NULL);
 }
 
 /* A plane where nothing stands on it and it has no corners. */
 static mps_status add_bed(const flume *m) {
-  const double corner[2] = {0.0, 0.0};
+  mps_fluid_boundary_def plane = mps_fluid_boundary_defaults();
   if (flume_has_structure(m) || m->shape.bed > 0) return add_line(m, m->grounds, m->ground, false);
-  return waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
+  plane.kind = MPS_BOUNDARY_ROLLER; /* slip */
+  plane.normal[1] = 1.0;
+  plane.friction_factor = m->s.roughness;
+  return mps_fluid_add_boundary(m->fluid, &plane, NULL);
 }
 
 static mps_status add_rock(const flume *m, const flume_rock *r) {

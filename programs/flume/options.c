@@ -77,6 +77,7 @@ static option table[] = {
     OPTION_NUMBER("wall-density", &model.s.density, "the caisson, for its safeties"),
     OPTION_NUMBER_IN("friction", OPTION_FROM_TO(1e-3, 10.0), &model.s.friction,
                      "below the caisson"),
+    OPTION_NUMBER("friction-factor", &model.s.roughness, "bed, structure and body"),
     OPTION_CHOICE_OF("end", "open|closed", &model.s.closed, NULL),
     OPTION_CHOICE_OF("passed", "returns|leaves", &model.s.leaves, NULL),
     OPTION_TEXT("rock", &model.s.rocks, NULL),

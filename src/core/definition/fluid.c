@@ -33,11 +33,13 @@ MPSI_DEFINITION_RULED(mps_fluid_def, "fluid", FLUID, FLUID_RULES)
   X(S, ADDRESS, nodes,        1, "",  ANY,                                                  NULL, OWN) \
   X(S, LONG,    node_count,   1, "",  IN(0, 1000000),                                       0,    OWN) \
   X(S, ADDRESS, corners,      1, "",  ANY,                                                  NULL, OWN) \
-  X(S, LONG,    corner_count, 1, "",  OR_ZERO IN(2, 10000),                                 0,    OWN)
+  X(S, LONG,    corner_count, 1, "",  OR_ZERO IN(2, 10000),                                 0,    OWN) \
+  X(S, REAL, friction_factor, 1, "",  IN(0, 1e6),                                           0,    OWN)
 #define FLUID_BOUNDARY_RULES(X, S) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN, or MPS_BOUNDARY_ROLLER for slip")) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
   X(S, signal, NOT_GIVEN, WITH(S, corner_count), BECAUSE("a polyline does not move")) \
+  X(S, friction_factor, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
   X(S, node_count, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_OPEN)) \
   X(S, node_count, NOT_GIVEN, WITH(S, corner_count), BECAUSE("a polyline does not move")) \
   X(S, node_count, IN(0, 1), WITH(S, signal)) \
@@ -72,7 +74,8 @@ MPSI_DEFINITION_RULED(mps_fluid_load_def, "fluid_load", FLUID_LOAD, FLUID_LOAD_R
 #define FLUID_CONTACT(X, S) \
   X(S, INT, kind,     1, "", ONE_OF(MPS_BOUNDARY_, "HELD||ROLLER"),       0, SAME) \
   X(S, INT, mover,    1, "", ONE_OF(MPS_CONTACT_MOVER_, "SOLVER|OTHER"), 0, SAME) \
-  X(S, INT, reserved, 1, "", RESERVED,                                   0, OWN)
+  X(S, INT, reserved, 1, "", RESERVED,                                   0, OWN) \
+  X(S, REAL, friction_factor, 1, "", IN(0, 1e6),                         0, SAME)
 MPSI_DEFINITION(mps_fluid_contact_def, "fluid_contact", FLUID_CONTACT)
 
 #define FLUID_ROCK(X, S) \

@@ -98,6 +98,7 @@ struct mps_fluid {
   mpsi_fluid_lines *lines;              /* where segments are, see vicinity.c */
   mpsi_room box_room;                   /* of each chunk's particles: low x, y, high x, y, m */
   int32_t limited, faces, bent, sticky; /* numbers of such walls, and of used faces of bodies */
+  int32_t rough;                        /* of walls, faces and polylines with friction */
   double (*wedge)[2];                   /* m, edges of acute corners between faces and boundaries */
   int wedges;
   int64_t cloud_capacity, ghost_capacity; /* of particles and ghosts together; of ghosts */

@@ -169,22 +169,27 @@ void mpsi_fluid_load_body(const mps_fluid *f, mpsi_fluid_body *own, const double
 }
 
 /* Adds the impulses (N s) of collisions and smoothing on the body in the step to those of its
- * parts, about `about`. */
+ * parts, about `about`; on a floating one those of friction too, which are not in the forces that
+ * its accelerations balance. */
 static void add_struck(const mps_fluid *f, mpsi_fluid_body *own, const double *about) {
   const mps_body *body = own->body;
   for (int k = 0; k < own->faces; k++) {
     const mpsi_fluid_wall *w = &f->wall[own->first + k];
     if (!w->used) continue;
     mpsi_load *to = &own->source->part[body->part_of[body->face_of[k]]].impulse;
-    const double *of = w->struck.impulse;
-    for (int c = 0; c < 2; c++) to->force[c] -= of[c];
-    to->moment[2] -= w->struck.moment - (about[0] * of[1] - about[1] * of[0]);
+    const double moment = w->struck.moment + (own->floats ? w->sheared.moment : 0.0);
+    double of[2];
+    for (int c = 0; c < 2; c++) {
+      of[c] = w->struck.impulse[c] + (own->floats ? w->sheared.impulse[c] : 0.0);
+      to->force[c] -= of[c];
+    }
+    to->moment[2] -= moment - (about[0] * of[1] - about[1] * of[0]);
   }
 }
 
 /* Applies the step's forces to the body: to a floating one those in balance with its accelerations.
- * Impulses of collisions and smoothing act in its next step, where the water around it takes part:
- * otherwise a light body would be unstable. */
+ * The other impulses act in its next step, where the water around it takes part: otherwise a light
+ * body would be unstable. */
 static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
   if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
   mpsi_body_react(own->body, own->source, f->dt);
@@ -352,8 +357,8 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
 }
 
 /* Body number `b` and the walls of its faces. */
-static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *contact, int32_t kind,
-                             int32_t b) {
+static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *contact,
+                             const mps_fluid_contact_def *def, int32_t b) {
   mps_body *body = contact->body;
   const int first = mpsi_fluid_make_body(f, b) ? mpsi_fluid_make_faces(f, (int)body->edges) : -1;
   if (first < 0)
@@ -370,7 +375,10 @@ static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *co
   const double ends[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0}; /* along the normal (0, -1) */
   for (int k = 0; k < own->faces && status == MPS_OK; k++) {
     mpsi_fluid_wall *w = &f->wall[first + k];
-    *w = (mpsi_fluid_wall){.of_body = b + 1, .kind = kind, .normal = {0.0, -1.0}};
+    *w = (mpsi_fluid_wall){.of_body = b + 1,
+                           .kind = def->kind,
+                           .friction = def->friction_factor,
+                           .normal = {0.0, -1.0}};
     status = mpsi_fluid_make_motion(f, function, w, 2, ends);
   }
   if (status != MPS_OK) return status;
@@ -440,6 +448,7 @@ static void get_def(const void *owner, const mps_contact *contact, void *out) {
   const mpsi_fluid_body *body = &f->body[mpsi_fluid_body_number(f, contact)];
   mps_fluid_contact_def *def = out;
   def->kind = f->wall[body->first].kind;
+  def->friction_factor = f->wall[body->first].friction;
   def->mover = body->source->moves ? MPS_CONTACT_MOVER_SOLVER : MPS_CONTACT_MOVER_OTHER;
 }
 
@@ -478,7 +487,7 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
     status = mpsi_body_check_mover(body, __func__);
   if (status == MPS_OK)
     status = mpsi_contact_make(f->context, __func__, body, &owner_of_contacts, f, &contact);
-  if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b);
+  if (status == MPS_OK) status = make_faces(f, __func__, contact, &def, b);
   status = settle(f, __func__, status, b, &def, body);
   if (status != MPS_OK) {
     if (contact && b < f->bodies && f->body[b].contact == contact)

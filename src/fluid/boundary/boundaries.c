@@ -87,7 +87,7 @@ static mps_status start_motion(mps_fluid *f, const char *function, const mps_sig
 /* A wall without motion, of which the segments are parts. */
 static mps_status make_line(mps_fluid *f, const char *function, const mps_fluid_boundary_def *def,
                             int32_t number, mpsi_fluid_wall *w) {
-  *w = (mpsi_fluid_wall){.kind = def->kind, .factor = 1.0};
+  *w = (mpsi_fluid_wall){.kind = def->kind, .factor = 1.0, .friction = def->friction_factor};
   mps_status status = mpsi_fluid_make_motion(f, function, w, 0, NULL);
   if (status == MPS_OK)
     status = mpsi_fluid_make_polyline(f, function, number, def->corner_count, def->corners, w);
@@ -104,7 +104,11 @@ static mps_status make(void *solver, const char *function, int32_t number, void 
   if (def->corner_count != 0) return make_line(f, function, def, number, w);
   const double length = hypot(def->normal[0], def->normal[1]);
   const bool open = def->kind == MPS_BOUNDARY_OPEN;
-  *w = (mpsi_fluid_wall){.used = !open, .open = open, .kind = def->kind, .factor = def->factor};
+  *w = (mpsi_fluid_wall){.used = !open,
+                         .open = open,
+                         .kind = def->kind,
+                         .factor = def->factor,
+                         .friction = def->friction_factor};
   for (int c = 0; c < 2; c++) w->at[c] = def->point[c], w->normal[c] = def->normal[c] / length;
   mps_status status = start_motion(f, function, def->signal, number, w);
   if (status == MPS_OK)

@@ -221,11 +221,13 @@ static void find_angles(mpsi_fluid_polyline *line) {
 }
 
 static mps_status make_segments(mps_fluid *f, const char *function, int32_t number,
-                                const double *xy, int32_t kind, mpsi_fluid_polyline *line) {
+                                const double *xy, const mpsi_fluid_wall *wall,
+                                mpsi_fluid_polyline *line) {
   for (int64_t k = 0; k < line->count; k++) {
     mpsi_fluid_segment *s = &line->segment[k];
     *s = (mpsi_fluid_segment){.boundary = number, .number = (int32_t)k};
-    s->wall = (mpsi_fluid_wall){.kind = kind, .of_line = number + 1, .factor = 1.0};
+    s->wall = (mpsi_fluid_wall){
+        .kind = wall->kind, .of_line = number + 1, .factor = 1.0, .friction = wall->friction};
     s->infinite[0] = !line->closed && k == 0;
     s->infinite[1] = !line->closed && k + 1 == line->count;
     place_segment(s, xy + 3 * k, xy + 3 * k + 3);
@@ -245,7 +247,7 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t 
   line->count = corners - 1;
   line->closed = corners > 3 && xy[0] == xy[3 * corners - 3] && xy[1] == xy[3 * corners - 2];
   wall->line = line; /* dropped with the wall */
-  mps_status status = make_segments(f, function, number, xy, wall->kind, line);
+  mps_status status = make_segments(f, function, number, xy, wall, line);
   for (int c = 0; c < 2; c++)
     wall->at[c] = xy[c], wall->normal[c] = line->segment[0].wall.normal[c];
   if (status == MPS_OK) status = check_angles(f, function, line);

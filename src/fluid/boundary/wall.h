@@ -19,7 +19,7 @@ typedef struct mpsi_fluid_load {
   int64_t wetted;                 /* points with water */
 } mpsi_fluid_load;
 
-/* Impulse, moment and work of a wall by collisions and smoothing in a step, see exchange.c. */
+/* Impulse, moment and work of a wall in a step besides the pressure, see exchange.c. */
 typedef struct mpsi_fluid_struck {
   double impulse[2], moment, work; /* N s; N m s about the origin; J */
 } mpsi_fluid_struck;
@@ -42,6 +42,7 @@ typedef struct mpsi_fluid_wall {
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
+  double friction;       /* friction factor */
   double factor, origin; /* origin: the signal's displacement that counts as 0, m */
   double rate;           /* m/s: factor times the signal's velocity now */
   double ahead[2];       /* m, m/s: displacement and rate at the end of the step being made */
@@ -54,9 +55,11 @@ typedef struct mpsi_fluid_wall {
   int64_t first_image, images;  /* ghosts: images of particles here alone, in their order */
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
   mpsi_fluid_load former;       /* of the solution before the one being made */
-  mpsi_fluid_struck struck;     /* of the step being made */
+  mpsi_fluid_struck struck;     /* by collisions and smoothing, of the step being made */
+  mpsi_fluid_struck sheared;     /* by friction, likewise; 0 until velocities are known */
   double impulse[2], moment_impulse, work;
   int64_t first_sum; /* of its values in a row of mpsi_fluid_exchange */
+  int64_t first_shear; /* of those of friction, where it has some */
   int64_t removed;   /* particles through an open side */
   double removed_mass;
 } mpsi_fluid_wall;

@@ -244,14 +244,15 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t particles, int64_t ghosts) {
   return true;
 }
 
-/* Walls that bend, and those of no slip. */
+/* Walls that bend, those of no slip, and those with friction. */
 static void find_kinds(mps_fluid *f) {
-  f->bent = f->sticky = 0;
+  f->bent = f->sticky = f->rough = 0;
   for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     w->bent = w->used && !w->of_body && w->nodes > 1;
     w->sticky = w->used && (w->kind == MPS_BOUNDARY_HELD || w->kind == MPS_BOUNDARY_DRIVEN);
     f->bent += w->bent, f->sticky += w->sticky;
+    f->rough += (w->used || w->line) && w->friction > 0.0;
   }
 }
 

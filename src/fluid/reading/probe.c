@@ -243,6 +243,14 @@ static void add_force(void *user, const double *x, double p) {
   load->wetted++;
 }
 
+/* Friction, which is known once the water has moved. */
+static void add_friction(const mps_fluid *f, mpsi_fluid_wall *w) {
+  if (!(w->friction > 0.0)) return;
+  for (int c = 0; c < 2; c++) w->load.force[c] += w->sheared.impulse[c] / f->dt;
+  w->load.moment += w->sheared.moment / f->dt;
+  w->load.power += w->sheared.work / f->dt;
+}
+
 /* The force of a polyline is that of its segments. */
 static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall *boundary) {
   mpsi_fluid_load *all = &boundary->load;
@@ -253,6 +261,7 @@ static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall 
     if (has_images(f) && w->images == 0) continue; /* far from the water */
     resultant r = {w, pitch(f, w) * f->def.measure};
     MPSI_TRY(for_points(f, w, function, add_force, &r));
+    add_friction(f, w);
     for (int c = 0; c < 2; c++) all->force[c] += w->load.force[c];
     all->moment += w->load.moment, all->wetted += w->load.wetted;
   }
@@ -269,6 +278,7 @@ mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
     w->load = (mpsi_fluid_load){0};
     resultant r = {w, pitch(f, w) * f->def.measure};
     status = for_points(f, w, function, add_force, &r);
+    if (status == MPS_OK) add_friction(f, w);
   }
   return mpsi_fluid_agree(f, function, status);
 }

@@ -3,7 +3,8 @@
  * To a wall: of a pair of a particle and an image the change of velocity along the normals of the
  * walls that the image is mirrored at, by smoothing and by collisions; that along a wall of no slip
  * by the viscosity; and the momentum of a particle that is moved back from a wall. It is part of
- * the wall's impulse, and of a body's; it acts on a floating body in the next step.
+ * the wall's impulse, and of a body's; it acts on a floating body in the next step. Friction has
+ * sums of its own, which are part of the wall's force.
  *
  * The remainder is an error of the scheme: the gradients of the pressure at the particles sum up to
  * the pressures along the walls only nearly, smoothing of gentle flow is not the same from both
@@ -21,7 +22,11 @@
 
 #include <string.h>
 
-enum { GAIN = 2, OF_WALL = 4 }; /* values of a row: gain x, y; of each wall x, y, moment, work */
+enum {
+  GAIN = 2,
+  OF_WALL = 4
+}; /* values of a row: gain x, y; of each wall x, y, moment, work, and
+      as many by friction where it has some */
 
 static int64_t chunks_of(const mps_fluid *f) {
   return (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
@@ -35,12 +40,23 @@ static double mass_of(const mps_fluid *f) {
   return f->def.density * f->l0 * f->l0 * f->def.measure;
 }
 
+/* Room in a row for the friction of a wall. */
+static void begin_friction(mps_fluid *f, mpsi_fluid_wall *w) {
+  w->first_shear = f->exchange.width;
+  w->sheared = (mpsi_fluid_struck){{0.0}, 0.0, 0.0};
+  if (w->friction > 0.0) f->exchange.width += OF_WALL;
+}
+
 mps_status mpsi_fluid_begin_exchange(mps_fluid *f, const char *function) {
   mpsi_fluid_exchange *e = &f->exchange;
   e->width = GAIN;
   for (int b = 0; b < f->walls; b++) {
-    f->wall[b].first_sum = e->width;
-    if (f->wall[b].used || f->wall[b].line) e->width += OF_WALL;
+    mpsi_fluid_wall *w = &f->wall[b];
+    w->first_sum = e->width;
+    if (w->used || w->line) e->width += OF_WALL;
+    if (w->used) begin_friction(f, w);
+    for (int64_t k = 0; w->line && k < w->line->count; k++)
+      begin_friction(f, &w->line->segment[k].wall);
   }
   const int64_t values = chunks_of(f) * e->width;
   if (!mpsi_room_ensure(f->context, &e->rows, values, sizeof(double)))
@@ -66,6 +82,17 @@ void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64
   sum[0] += mass * dv[0], sum[1] += mass * dv[1];
   sum[2] += mass * (x * dv[1] - y * dv[0]);
   sum[3] += mass * across * mpsi_fluid_of_wall(w, w->mean, x, y);
+}
+
+void mpsi_fluid_exchange_friction(const mps_fluid *f, int64_t chunk, const mpsi_fluid_wall *w,
+                                  int64_t i, const double *dv, double moves) {
+  const double d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), f->x[0][i], f->x[1][i]);
+  const double x = f->x[0][i] - d * w->normal[0], y = f->x[1][i] - d * w->normal[1];
+  const double mass = mass_of(f);
+  double *sum = row_of(f, chunk) + w->first_shear;
+  sum[0] += mass * dv[0], sum[1] += mass * dv[1];
+  sum[2] += mass * (x * dv[1] - y * dv[0]);
+  sum[3] += mass * moves * (dv[1] * w->normal[0] - dv[0] * w->normal[1]);
 }
 
 /* Of a pair of i and the image M j, j gets -M^T dv: both together (1 - M^T) dv. */
@@ -124,6 +151,12 @@ void mpsi_fluid_gain(const mps_fluid *f, int64_t chunk, const double *du) {
 
 /* ---- after them ------------------------------------------------------------------------------ */
 
+static mpsi_fluid_struck struck_by(const mpsi_exact *of) {
+  return (mpsi_fluid_struck){{mpsi_exact_value(&of[0]), mpsi_exact_value(&of[1])},
+                             mpsi_exact_value(&of[2]),
+                             mpsi_exact_value(&of[3])};
+}
+
 void mpsi_fluid_end_exchange(mps_fluid *f) {
   mpsi_fluid_exchange *e = &f->exchange;
   mpsi_exact *sum = e->sums.item;
@@ -139,11 +172,13 @@ void mpsi_fluid_end_exchange(mps_fluid *f) {
   for (int c = 0; c < 2; c++) e->gain[c] = mass_of(f) * mpsi_exact_value(&sum[c]);
   for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
-    const mpsi_exact *of = &sum[w->first_sum];
     if (!w->used && !w->line) continue;
-    w->struck = (mpsi_fluid_struck){{mpsi_exact_value(&of[0]), mpsi_exact_value(&of[1])},
-                                    mpsi_exact_value(&of[2]),
-                                    mpsi_exact_value(&of[3])};
+    w->struck = struck_by(&sum[w->first_sum]);
+    if (w->used && w->friction > 0.0) w->sheared = struck_by(&sum[w->first_shear]);
+    for (int64_t k = 0; w->line && w->friction > 0.0 && k < w->line->count; k++) {
+      mpsi_fluid_wall *part = &w->line->segment[k].wall;
+      part->sheared = struck_by(&sum[part->first_shear]);
+    }
   }
 }
 
@@ -171,8 +206,11 @@ void mpsi_fluid_book_momentum(mps_fluid *f) {
       const mpsi_fluid_body *body = &f->body[b];
       for (int32_t part = 0; body->body && part < body->body->parts; part++)
         rest[c] += f->dt * body->source->part[part].force.force[c];
-      for (int k = 0; body->body && k < body->faces; k++)
-        if (f->wall[body->first + k].used) rest[c] -= f->wall[body->first + k].struck.impulse[c];
+      for (int k = 0; body->body && k < body->faces; k++) {
+        const mpsi_fluid_wall *w = &f->wall[body->first + k];
+        if (!w->used) continue;
+        rest[c] -= w->struck.impulse[c] + (body->floats ? w->sheared.impulse[c] : 0.0);
+      }
     }
     e->loads[c] += loads[c];
     e->scheme[c] += rest[c];

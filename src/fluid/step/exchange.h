@@ -8,6 +8,11 @@
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */
 void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,
                               const double *dv);
+/* The same by friction, at the particle's foot on a face that moves along itself with `moves`, m/s.
+ */
+void mpsi_fluid_exchange_friction(const mps_fluid *fluid, int64_t chunk,
+                                  const mpsi_fluid_wall *wall, int64_t i, const double *dv,
+                                  double moves);
 /* Component of dv, from an image, along the normals of the walls at which it is mirrored. */
 void mpsi_fluid_exchange_image(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv);

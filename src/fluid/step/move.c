@@ -1,7 +1,7 @@
 /* move.c - new velocities and positions from the pressure:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
- *   u += -(dt/rho) grad q, smoothing and viscosity (smooth.c).
+ *   u += -(dt/rho) grad q, smoothing and viscosity (smooth.c), friction of faces (friction.c).
  *
  * Guards: pairs that approach within l0/2 share their momentum, a particle that strikes a wall is
  * stopped .35 l0 before it, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and no
@@ -20,6 +20,7 @@
 #include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
+#include "fluid/step/friction.h"
 #include "fluid/step/smooth.h"
 
 #define SHIFT 2.5
@@ -87,7 +88,13 @@ static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 
 static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   find_accelerated(f, begin, end, chunk);
+  mpsi_fluid_add_friction(f, begin, end, chunk);
   limit_speed(f, begin, end, chunk);
+}
+
+static void accelerate_classical(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  mpsi_fluid_classical_accelerate(f, begin, end, chunk);
+  mpsi_fluid_add_friction(f, begin, end, chunk);
 }
 
 /* The velocity that image j has after the step. */
@@ -151,8 +158,7 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
   const bool classical = f->classical.gamma > 0.0;
   for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
   if (!classical) mpsi_fluid_prepare_smoothing(f);
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
-                 classical ? mpsi_fluid_classical_accelerate : accelerate);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? accelerate_classical : accelerate);
   mpsi_fluid_send_halo(f, 2, f->u_new);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
   mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);

@@ -82,6 +82,7 @@ static parts find_parts(const mps_fluid *f, int64_t i) {
   p.rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
   p.gentle = part * mpsi_fluid_near_surface(f, i, ZONE_SMOOTH) * f->dt * mpsi_fluid_rate(f);
   p.paired = fmin(fmax(PAIRED * mpsi_fluid_steepness(f, i) - PAIRED_FROM, 0.0), 1.0);
+  if (f->company[i] & MPSI_FLUID_NEAR_ROUGH) p.paired = 1.0;
   return p;
 }
 
