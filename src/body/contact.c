@@ -80,7 +80,7 @@ void mpsi_contact_release(mps_contact *contact) {
   mpsi_body_free_source(contact->body, &contact->source);
   mpsi_body_release(contact->body);
   mps_signal_destroy(&contact->def.friction_factor);
-  mpsi_free(context, contact->inset);
+  MPSI_FREE(context, contact->inset, contact->bearer);
   mpsi_free(context, contact);
   mpsi_context_release(context);
 }

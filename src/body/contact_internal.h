@@ -28,6 +28,14 @@ typedef struct mpsi_contact_owner {
   void (*get_def)(const void *owner, const mps_contact *contact, void *def);
 } mpsi_contact_owner;
 
+/* The particle that bears at an inset edge (contact/edge.h), as if the edge were a point of it. */
+typedef struct mpsi_edge_bearer {
+  int64_t id;   /* -1: no particle is near */
+  double apart; /* m, along the face */
+  int64_t warm; /* index of the impulse of the last step at that edge, on this particle or another;
+                   -1: none is known here */
+} mpsi_edge_bearer;
+
 struct mps_contact {
   mps_context *context;
   int32_t references;  /* the solver, and the caller's handle; one thread at a time: no atomics */
@@ -40,10 +48,17 @@ struct mps_contact {
   int32_t parts;      /* of the body's surface, in the step being made */
   double (*inset)[2]; /* m, of each edge of a polygon at both of its ends: contact/edge.h. NULL:
                          faces end at their edges */
+  mpsi_edge_bearer (*bearer)[2]; /* likewise, in the step being made */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */
   mpsi_body_source source;
 };
+
+/* The bearer of the inset edge `point` (mpsi_inset_edge); NULL: there is no such edge. */
+static inline mpsi_edge_bearer *mpsi_edge_bearer_of(const mps_contact *contact, int32_t point) {
+  if (!contact->inset || point < 1 || point > 2 * contact->body->edges) return NULL;
+  return &contact->bearer[(point - 1) / 2][(point - 1) % 2];
+}
 
 /* A contact of two references (the solver's and the caller's), not yet a source of the body; checks
  * `def`, NULL means the defaults. */

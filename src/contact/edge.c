@@ -67,23 +67,21 @@ static int64_t edge_of(const mps_body *body, const mpsi_foot *foot, double *alon
   return k;
 }
 
-mpsi_edge_place mpsi_edge_find(const mps_body *body, const double (*inset)[2], double half,
-                               const mpsi_foot *foot, double *shift) {
+mpsi_inset_edge mpsi_edge_find(const mps_body *body, const double (*inset)[2],
+                               const mpsi_foot *foot) {
   double along, length, tangent[2];
+  mpsi_inset_edge out = {.inside = INFINITY};
   const int64_t k = edge_of(body, foot, &along, &length, tangent);
-  const double *end = inset[k], reach = half * (1.0 + TINY);
-  memset(shift, 0, 3 * sizeof *shift);
-  if (foot->narrowing == 0.0) /* a corner: of the end that is nearer */
-    return end[along > 0.5 * length] > 0.0 ? MPSI_EDGE_STRIP : MPSI_EDGE_INNER;
-  const double inner[2] = {along - end[0], length - end[1] - along};
-  bool near[2];
-  for (int c = 0; c < 2; c++) {
-    if (end[c] > 0.0 && inner[c] < -reach) return MPSI_EDGE_STRIP;
-    near[c] = end[c] > 0.0 && inner[c] <= reach;
+  const double *end = inset[k], to[2] = {along, length - along};
+  if (foot->narrowing == 0.0) { /* a corner: of the end that is nearer */
+    if (end[along > 0.5 * length] > 0.0) out.inside = -INFINITY;
+    return out;
   }
-  if (!near[0] && !near[1]) return MPSI_EDGE_INNER;
-  const int to = near[0] && (!near[1] || inner[0] <= inner[1]) ? 0 : 1;
-  const double by = to == 0 ? -inner[0] : inner[1];
-  for (int c = 0; c < 2; c++) shift[c] = by * tangent[c];
-  return MPSI_EDGE_AT;
+  for (int c = 0; c < 2; c++) {
+    if (!(end[c] > 0.0) || !(to[c] - end[c] < out.inside)) continue;
+    out.inside = to[c] - end[c];
+    out.point = (int32_t)(1 + 2 * k + c);
+    for (int a = 0; a < 2; a++) out.shift[a] = (c == 0 ? -out.inside : out.inside) * tangent[a];
+  }
+  return out;
 }

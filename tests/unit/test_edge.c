@@ -75,43 +75,57 @@ TEST(edges_on_the_axis_are_those_of_the_solid) {
   ends_are(ends, 0, INSET / sqrt(3.0), INSET);
 }
 
-/* The place of a foot on the base of a box that is turned by `angle`, x from its middle and a
- * quarter of a half spacing below it, clockwise corners or not; along the base it moves by `by`. */
-static mpsi_edge_place place_of(double angle, bool clockwise, double x, double *by) {
+/* The inset edge of a foot on the base of a box that is turned by `angle`, x from its middle and a
+ * quarter of a half spacing below it, clockwise corners or not; along the base it lies at `by` from
+ * the foot. */
+static mpsi_inset_edge edge_of(double angle, bool clockwise, double x, double *by) {
   const double a = 0.2, xy[8] = {-a, -a, a, -a, a, a, -a, a}, yx[8] = {-a, a, a, a, a, -a, -a, -a};
   const double c = cos(angle), s = sin(angle), y = -a - 0.25 * HALF;
   const double at[2] = {0.3 + c * x - s * y, -0.1 + s * x + c * y};
-  double ends[4][2], shift[3];
+  double ends[4][2];
   DEF(body, def, .position[0] = 0.3, .position[1] = -0.1, .rotation[2] = angle);
   MAKE(body, body, create_polygon, context, &def, 4, clockwise ? yx : xy);
   mpsi_edge_insets(body, INSET, false, ends);
   const mpsi_foot foot = mpsi_body_foot(body, at);
-  const mpsi_edge_place place = mpsi_edge_find(body, (const double(*)[2])ends, HALF, &foot, shift);
-  *by = c * shift[0] + s * shift[1];
-  NEAR(-s * shift[0] + c * shift[1], 0.0, 1e-14);
-  return place;
+  const mpsi_inset_edge edge = mpsi_edge_find(body, (const double(*)[2])ends, &foot);
+  *by = c * edge.shift[0] + s * edge.shift[1];
+  NEAR(-s * edge.shift[0] + c * edge.shift[1], 0.0, 1e-14);
+  return edge;
 }
 
-TEST(feet_near_the_inset_edge_are_put_on_it) {
+TEST(feet_have_the_nearer_inset_edge) {
   const double edge = 0.2 - INSET;
   for (int k = 0; k < 4; k++) {
     const double angle = k < 2 ? 0.0 : 0.7;
     const bool clockwise = k % 2 != 0;
+    int32_t point = 0, last = 0;
     double by;
     for (double side = -1.0; side < 2.0; side += 2.0) {
-      assert_int_equal(place_of(angle, clockwise, side * (edge - 1.01 * HALF), &by),
-                       MPSI_EDGE_INNER);
-      NEAR(by, 0.0, 0.0);
-      for (double off = -0.99; off < 1.0; off += 0.33) {
-        assert_int_equal(place_of(angle, clockwise, side * (edge + off * HALF), &by), MPSI_EDGE_AT);
+      point = last;
+      for (double off = -3.0; off < 1.9; off += 0.33) {
+        const mpsi_inset_edge e = edge_of(angle, clockwise, side * (edge + off * HALF), &by);
+        NEAR(e.inside, -off * HALF, 1e-14);
         NEAR(by, -side * off * HALF, 1e-14);
+        assert_int_equal((e.point - 1) / 2, point > 0 ? (point - 1) / 2 : (e.point - 1) / 2);
+        assert_int_not_equal(e.point, side > 0.0 ? point : 0); /* the base's other end */
+        last = e.point;
       }
-      assert_int_equal(place_of(angle, clockwise, side * (edge + 1.01 * HALF), &by),
-                       MPSI_EDGE_STRIP);
-      assert_int_equal(place_of(angle, clockwise, side * (0.2 + 1e-3 * HALF), &by),
-                       MPSI_EDGE_STRIP); /* the foot is the corner */
+      const mpsi_inset_edge corner = edge_of(angle, clockwise, side * (0.2 + 1e-3 * HALF), &by);
+      assert_int_equal(corner.point, 0);
+      assert_true(corner.inside < 0.0); /* beyond any inset edge */
     }
   }
+}
+
+TEST(feet_without_an_inset_edge_bear) {
+  double ends[4][2];
+  const double at[2] = {0.01, -0.21};
+  MAKE(body, body, create_box, context, NULL, 0.4, 0.4);
+  mpsi_edge_insets(body, 0.0, false, ends);
+  const mpsi_foot foot = mpsi_body_foot(body, at);
+  const mpsi_inset_edge edge = mpsi_edge_find(body, (const double(*)[2])ends, &foot);
+  assert_int_equal(edge.point, 0);
+  assert_true(edge.inside > 0.0);
 }
 
 TEST(insets_are_refused_where_they_are_not_made) {

@@ -1,7 +1,8 @@
 /* test_mpm_inset.c - a rigid strip whose base ends at inset edges, pressed into clay without weight
  * wherever its edges lie between lines of the grid: Prandtl's bearing capacity (2 + pi) c, the same
  * of the mirrored scene, of other stiffness, of half and a quarter of the step and full of water,
- * and no particle inside the strip. SPDX-License-Identifier: BSD-3-Clause */
+ * and no particle inside the strip; and one that slides over elastic ground, whose particles pass
+ * its inset edges. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -145,4 +146,53 @@ TEST(clay_full_of_water_bears_the_same) {
   c.water = MPS_PORE_SCHEME_EXPLICIT;
   for (c.permeability = 1e-8; c.permeability <= 1e-3; c.permeability *= 1e4)
     NEAR(capacity(&c), exact, 0.03 * exact);
+}
+
+/* ---- ground that flows past an inset edge ---------------------------------------------------- */
+
+/* Largest change of the vertical force within a hundredth of the way, over the mean force, of a
+ * smooth strip that has been pressed into elastic ground and slides over it by two spacings. */
+static double unevenness(double cells, double young, double speed) {
+  enum { PARTS = 100 };
+  const double width = 1.0, cell = width / cells, ground = 3.0, height = 1.0;
+  scoped_mpm_scene s = mpm_scene_begin(context, 0.5 * cell, 0.0, 0.0, young);
+  mpm_scene_box(&s, 0.0, 0.0, ground, height);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = cell, .lower[0] = 0.0, .upper[0] = ground,
+        .lower[1] = 0.0, .viscous_damping = 20.0 * sqrt(young / 1e3) / height);
+  mpm_scene_side(&s, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  const double depth = 0.02 * cell, press = 20.0 * height / sqrt(young / 1e3);
+  DEF(body, at, .position[0] = 0.5 * ground - 0.13 * cell, .position[1] = height + 0.25 * width);
+  MAKE(body, plate, create_box, context, &at, width, 0.5 * width);
+  USING(contact, mps_mpm_add_contact(s.mpm, plate, &given, NULL), .inset = 0.6 * cell);
+  WITH_DEFAULTS(mps_body_motion, down, .velocity[1] = -depth / press);
+  WITH_DEFAULTS(mps_body_motion, along, .velocity[0] = speed);
+  OK(mps_body_set_motion(plate, &down));
+  OK(mps_mpm_run(s.mpm, press, INT64_MAX, NULL, NULL));
+  OK(mps_body_set_motion(plate, &along));
+  const double from = press + 0.05 * cell / speed, part = cell / speed / PARTS;
+  OK(mps_mpm_run(s.mpm, from, INT64_MAX, NULL, NULL));
+  double last = NAN, sum = 0.0, most = 0.0, now = 0.0, before, then;
+  mps_reaction r;
+  for (int k = 1; k <= PARTS; k++, last = now) {
+    OK(mps_body_get_reaction(plate, -1, &r));
+    before = r.impulse[1], then = mps_mpm_time(s.mpm);
+    OK(mps_mpm_run(s.mpm, from + part * k, INT64_MAX, NULL, NULL));
+    OK(mps_body_get_reaction(plate, -1, &r));
+    now = (r.impulse[1] - before) / (mps_mpm_time(s.mpm) - then);
+    sum += now / PARTS;
+    if (k > 1) most = fmax(most, fabs(now - last));
+  }
+  print_message("%g cells, E = %g Pa, %g m/s: force %g N/m, changes by at most %.2g of it\n", cells,
+                young, speed, sum, most / sum);
+  assert_true(sum > 0.0);
+  return most / sum;
+}
+
+/* Where the next particle had to come to the face first, 0.10, 0.08, 0.05. */
+TEST(edges_are_handed_on_without_a_drop) {
+  for (int k = 0; k < 3; k++) {
+    static const double cells[] = {8.0, 10.0, 16.0}, young[] = {1e6, 1e8, 1e7};
+    const double u = unevenness(cells[k], young[k], 0.002 * sqrt(young[k] / 1e3));
+    assert_true(u < 0.03);
+  }
 }

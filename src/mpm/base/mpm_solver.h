@@ -162,8 +162,8 @@ mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
 /* ready.c: sorts the particles by blocks and rebuilds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
-/* strips.c: once particles and bodies have moved, moves particles in the strips beyond inset edges
- * off their bodies. */
+/* inset_edges.c: once particles and bodies have moved, moves particles in the strips beyond inset
+ * edges off their bodies. */
 void mpsi_mpm_clear_strips(mps_mpm *mpm);
 /* cut.c: before a step, pairs of blocks and bodies, nodes inside bodies, and which blocks are cut
  * and split (contact/pairs.h). `status`: of the step so far on this rank; collective where there

@@ -520,14 +520,20 @@ void mpsi_mpm_return_free_fields(const mpsi_boundaries *boundaries) {
 /* ---- ground that passes a side --------------------------------------------------------------- */
 
 #define LEVEL 0.25 /* cells: how far apart level ground at the two sides may be in height */
+#define ALIKE 0.01 /* and in mass, as a part of it */
 
-/* Whether the ground at both sides is the same: columns of the same particles by height and law. */
-static bool is_level(const mpsi_grid *grid, const mpsi_boundaries *boundaries) {
+/* Whether the ground at both sides is the same: columns of particles of the same laws and masses at
+ * the same heights. `top` (m): a particle above it is not of that ground, but lies on it. */
+static bool is_level(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double *top) {
   const mpsi_free_field *a = boundaries->boundary[0].field, *b = boundaries->boundary[1].field;
-  if (!a || !b || a->count != b->count || a->rows != b->rows) return false;
+  if (a->count != b->count || a->rows != b->rows) return false;
   bool same = true;
-  for (int64_t k = 0; k < a->count && same; k++)
-    same = a->law[k] == b->law[k] && fabs(a->y[k] - b->y[k]) < LEVEL * grid->cell;
+  *top = -INFINITY;
+  for (int64_t k = 0; k < a->count && same; k++) {
+    same = a->law[k] == b->law[k] && fabs(a->y[k] - b->y[k]) < LEVEL * grid->cell &&
+           fabs(a->m[k] - b->m[k]) < ALIKE * a->m[k];
+    *top = fmax(*top, fmin(a->y[k], b->y[k]) + LEVEL * grid->cell);
+  }
   return same;
 }
 
@@ -544,7 +550,8 @@ bool mpsi_mpm_pass_free_fields(const mpsi_boundary_setup *setup) {
   const mpsi_grid *grid = setup->grid;
   const mpsi_columns *p = setup->p;
   const double low = (double)grid->low[0], high = (double)grid->high[0];
-  bool any = false;
+  double top = INFINITY;
+  bool any = false, asked = false;
   if (!setup->boundaries->boundary[0].field || !setup->boundaries->boundary[1].field) return false;
   for (int64_t b = 0; b < grid->cell_count; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
@@ -554,7 +561,9 @@ bool mpsi_mpm_pass_free_fields(const mpsi_boundary_setup *setup) {
     for (int64_t k = cells->begin; k < cells->end; k++) {
       const double X = mpsi_grid_at(grid, 0, p->x[0][k]), v = p->v[0][k];
       if (!(X - low < AT_SIDE && v < 0.0) && !(high - X < AT_SIDE && v > 0.0)) continue;
-      if (!any && !is_level(grid, setup->boundaries)) return false;
+      if (!asked && !is_level(grid, setup->boundaries, &top)) return false;
+      asked = true;
+      if (p->x[Y][k] > top) continue;
       p->x[0][k] = place_at(grid, v < 0.0 ? MPS_SIDE_X_UPPER : MPS_SIDE_X_LOWER);
       any = true;
     }

@@ -222,6 +222,25 @@ static int by_place(const void *a, const void *b) {
   return (s->body > t->body) - (s->body < t->body);
 }
 
+/* Where a particle bears that is near an edge of a body with inset edges (contact/edge.h): the
+ * bearer of an inset edge at this, others at their feet. False: it lies in the strip beyond. */
+static bool place_at_edge(const mps_contact *contact, const mpsi_foot *foot, mpsi_constraint *out) {
+  const mpsi_inset_edge edge =
+      mpsi_edge_find(contact->body, (const double(*)[2])contact->inset, foot);
+  const mpsi_edge_bearer *bearer = mpsi_edge_bearer_of(contact, edge.point);
+  if (!bearer || bearer->id != out->id) return !(edge.inside < 0.0);
+  out->point = edge.point;
+  for (int c = 0; c < 3; c++) out->impulse.at[c] += edge.shift[c];
+  return true;
+}
+
+/* The gap of an inset edge that bore in the last step is closed, also where another particle bears
+ * now. */
+static bool is_held(const mps_contact *contact, const mpsi_constraint *constraint) {
+  const mpsi_edge_bearer *bearer = mpsi_edge_bearer_of(contact, constraint->point);
+  return bearer && bearer->warm >= 0;
+}
+
 /* Contact of particle k with the body of pair t; false: it lies in the strip beyond an inset edge,
  * where it has none. */
 static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t k,
@@ -234,25 +253,21 @@ static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
       mpsi_mpm_bearing(stage->transfer.grid, stage->transfer.p, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
-  double shift[3] = {0.0};
   if (-bearing.outside > pair->deepest) {
     pair->in_contact = true;
     pair->deepest = -bearing.outside, pair->deep = k;
   }
-  if (contact->inset) {
-    const mpsi_edge_place place = mpsi_edge_find(contact->body, (const double(*)[2])contact->inset,
-                                                 contact->def.offset, &foot, shift);
-    if (place == MPSI_EDGE_STRIP) return false;
-    out->at_point = place == MPSI_EDGE_AT;
-  }
-  for (int a = 0; a < stage->transfer.grid->dim; a++) c->normal[a] = foot.normal[a];
-  out->part = mpsi_contact_part(contact, foot.face);
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
-  for (int a = 0; a < stage->transfer.grid->dim; a++)
-    c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]) + shift[a];
+  for (int a = 0; a < stage->transfer.grid->dim; a++) {
+    c->normal[a] = foot.normal[a];
+    c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+  }
+  if (contact->inset && !place_at_edge(contact, &foot, out)) return false;
+  out->part = mpsi_contact_part(contact, foot.face);
   c->aim =
       mpsi_impulse_aim(foot.distance - bearing.half, stage->transfer.run->dt,
                        fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);
+  if (is_held(contact, out)) c->aim = fmax(c->aim, 0.0);
   c->friction = contact->friction;
   c->strength = INFINITY;
   return true;
@@ -306,7 +321,7 @@ static void find_psi(const mpsi_kernels *kernels, const mpsi_transfer *work,
   double d[3];
   for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
   kernels->foot(work, constraint->particle, d, out);
-  if (constraint->at_point) fit_at_point(work, constraint->impulse.at, out);
+  if (constraint->point > 0) fit_at_point(work, constraint->impulse.at, out);
 }
 
 /* Tile node of stencil node s. */
@@ -459,6 +474,19 @@ static void begin_block(const mpsi_contact_stage *stage, const mpsi_cell_block *
   block->count = made;
 }
 
+/* Impulse from which the sweeps start: that on the particle in the last step and, of the bearer of
+ * an inset edge, that at the edge, which another may have borne. */
+static void begin_warm(const mpsi_contacts *contacts, mpsi_constraint *constraint) {
+  const mpsi_edge_bearer *bearer =
+      mpsi_edge_bearer_of(contacts->handle[constraint->body], constraint->point);
+  const mpsi_warm_impulse *from[2] = {
+      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body),
+      bearer && bearer->warm >= 0 ? &contacts->impulses.warm[bearer->warm] : NULL};
+  double *by = constraint->impulse.tangent_impulse;
+  for (int a = 0; a < 3; a++)
+    by[a] = (from[0] ? from[0]->by[a] : 0.0) + (from[1] ? from[1]->by[a] : 0.0);
+}
+
 static void fit_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_contact_stage *stage = data;
   mpsi_impulses *all = &stage->contact->impulses;
@@ -472,9 +500,7 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
   for (n = block->first; n < block->first + block->count; n++) {
     fit_constraint(stage, &work, n);
     mpsi_constraint *constraint = &all->constraint[n];
-    const mpsi_warm_impulse *warm =
-        mpsi_mpm_warm_impulse(stage->contact, constraint->id, constraint->body);
-    for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;
+    begin_warm(stage->contact, constraint);
   }
   if (block->groups > 0) mpsi_mpm_fit_prescribed(stage, &work, block);
 }

@@ -129,8 +129,12 @@ static mps_status find_insets(mps_context *context, const mpsi_grid *grid, const
   const mps_body *body = contact->body;
   if (!(contact->def.inset > 0.0) || body->shape != MPSI_POLYGON) return MPS_OK;
   contact->inset = mpsi_alloc(context, body->edges, sizeof *contact->inset);
-  if (!contact->inset)
-    return mpsi_fail_memory(context, function, (size_t)body->edges * sizeof *contact->inset);
+  if (contact->inset)
+    contact->bearer = mpsi_alloc(context, body->edges, sizeof *contact->bearer);
+  if (!contact->bearer)
+    return mpsi_fail_memory(context, function,
+                            (size_t)body->edges *
+                                (sizeof *contact->inset + sizeof *contact->bearer));
   mpsi_edge_insets(body, contact->def.inset, grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC,
                    contact->inset);
   return MPS_OK;

@@ -132,7 +132,8 @@ static void store_impulses(mpsi_contacts *contacts, double dt) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
     if (!(c->normal_impulse > 0.0)) continue;
-    next[count] = (mpsi_warm_impulse){.id = constraint->id, .body = constraint->body};
+    next[count] = (mpsi_warm_impulse){
+        .id = constraint->id, .body = constraint->body, .point = constraint->point};
     for (int a = 0; a < 3; a++)
       next[count].by[a] = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
     if (constraint->pair >= 0) add_reaction(contacts, dt, constraint, next[count].by);

@@ -30,7 +30,8 @@ typedef struct mpsi_constraint {
                         (exchange.h) */
   int32_t body, part, nodes;
   bool even;
-  bool at_point; /* the weights are those of a fit at the point where the impulse acts */
+  int32_t point; /* of mpsi_inset_edge: the impulse acts at that inset edge, by weights of a fit
+                    there; 0: elsewhere */
   int32_t areas; /* number of nodes, in around[], whose areas it has a part of (area.c) */
 } mpsi_constraint;
 
@@ -46,9 +47,11 @@ typedef struct mpsi_constraint_block {
   double group_changed, group_impulses; /* likewise, of the groups */
 } mpsi_constraint_block;
 
-/* Impulse of a body on a particle in the last step, from which the sweeps of the next one start. */
+/* Impulse of a body on a particle in the last step, from which the sweeps of the next one start:
+ * on the same particle, or at the inset edge `point` on the particle that bears there. */
 typedef struct mpsi_warm_impulse {
-  int64_t id, body;
+  int64_t id;
+  int32_t body, point;
   double by[3]; /* N s */
 } mpsi_warm_impulse;
 
@@ -98,6 +101,9 @@ typedef struct mpsi_impulses {
  * the depth of particles. */
 mps_status mpsi_mpm_find_constraints(const mpsi_contact_stage *stage, const char *function);
 void mpsi_mpm_fit_constraints(const mpsi_contact_stage *stage);
+/* step/inset_edges.c: the bearers of inset edges among the candidates, of all ranks. Collective. */
+mps_status mpsi_mpm_find_bearers(const mpsi_contact_stage *stage, const char *function,
+                                 mps_status status);
 /* area.c: memory for the areas of the step and of so many constraints; areas at the nodes; shear
  * strength of each constraint by its part of these, with the present normal impulses. */
 bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
@@ -108,9 +114,9 @@ void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
  * walls. */
 void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
 /* warm_start.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
- * step on a particle, or NULL; removes the impulses of a contact that has ended, and moves the
- * bodies above it down by one. constraints.c: foot and half size with which a particle bears on the
- * contact's body. */
+ * step on a particle, or NULL where there was none or it acted at an inset edge; removes the
+ * impulses of a contact that has ended, and moves the bodies above it down by one. constraints.c:
+ * foot and half size with which a particle bears on the contact's body. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
                                                int32_t body);

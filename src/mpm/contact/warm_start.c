@@ -41,7 +41,7 @@ const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, in
   for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
        at = (at + 1) & all->lookup_mask) {
     const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
-    if (warm->id == id && warm->body == body) return warm;
+    if (warm->id == id && warm->body == body) return warm->point == 0 ? warm : NULL;
   }
   return NULL;
 }

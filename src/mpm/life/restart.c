@@ -198,12 +198,17 @@ static int64_t count_warm_start(const void *solver) {
   return impulses_of(solver, 0)->warm_count + impulses_of(solver, 1)->warm_count;
 }
 
+/* The body, and above it the inset edge at which it bears. */
+static int64_t owner_of(const mpsi_warm_impulse *warm) {
+  return warm->body < 0 ? warm->body : (int64_t)warm->point << 32 | warm->body;
+}
+
 static void get_warm_start_owners(const void *solver, void *values) {
   int64_t *row = values;
   for (int which = 0; which < 2; which++) {
     const mpsi_impulses *all = impulses_of(solver, which);
     for (int64_t k = 0; k < all->warm_count; k++, row += 2)
-      row[0] = all->warm[k].id, row[1] = all->warm[k].body;
+      row[0] = all->warm[k].id, row[1] = owner_of(&all->warm[k]);
   }
 }
 
@@ -223,7 +228,11 @@ static void set_kept_owners(void *solver, int64_t rows, const void *values) {
   for (int which = 0; which < 2; which++) impulses_of(solver, which)->warm_count = 0;
   for (int64_t k = 0; k < rows; k++, row += 2) {
     mpsi_impulses *all = impulses_of(solver, row[1] < 0);
-    all->warm[all->warm_count].id = row[0], all->warm[all->warm_count++].body = row[1];
+    const bool list = row[1] < 0;
+    all->warm[all->warm_count++] =
+        (mpsi_warm_impulse){.id = row[0],
+                            .body = (int32_t)(list ? row[1] : row[1] & INT32_MAX),
+                            .point = list ? 0 : (int32_t)(row[1] >> 32)};
   }
 }
 
@@ -444,7 +453,8 @@ static bool contains_impulses(const mpsi_contacts *contacts, const mps_snapshot 
   if (owners->rows != impulses->rows || owners->rows > MPSI_MPM_MOST_PARTICLES) return false;
   if (!(dt >= 0.0) || !isfinite(dt)) return false;
   for (int64_t k = 0; k < owners->rows; k++) {
-    const int64_t body = ((const int64_t *)owners->data)[2 * k + 1];
+    const int64_t owner = ((const int64_t *)owners->data)[2 * k + 1];
+    const int64_t body = owner < 0 ? owner : owner & INT32_MAX;
     const bool list = body < -MPSI_SIDES && body >= INT32_MIN; /* contact/prescribed.h */
     if (!list && (body < 0 || body >= contacts->bodies)) return false;
     for (int c = 0; c < 3; c++)

@@ -204,6 +204,11 @@ static mps_status find_constraints(step *s) {
   return mpsi_mpm_find_constraints(&stage, s->function);
 }
 
+static mps_status find_bearers(step *s) {
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(s->mpm);
+  return mpsi_mpm_find_bearers(&stage, s->function, s->status);
+}
+
 static mps_status mark_constraints(step *s) {
   mpsi_mpm_mark_contact_blocks(&s->mpm->contact, &s->mpm->grid);
   return s->status;
@@ -450,6 +455,7 @@ static const step_stage stages[] = {
     {"warnings", .act = mpsi_step_warn_before},
     {"lists of particles", .run = find_lists, .exchange = within},
     {"contact constraints", .run = find_constraints},
+    {"bearers of inset edges", .when = has_strips, .run = find_bearers, .exchange = within},
     {"blocks in contact", .when = has_bodies_on_ranks, .run = mark_constraints, .exchange = later},
     {"free-field columns", .when = has_columns, .run = move_columns},
     {"tiles to other ranks", .when = on_ranks, .run = send_tiles, .exchange = later},
