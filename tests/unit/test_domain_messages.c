@@ -138,6 +138,7 @@ TEST(test_alone) { expect(SLIDE, 1, 0, 0, 1, 40000); }
 /* Bodies by impulses: what is reached and the tiles; ready, partners, contacts, loads and the end,
  * with how much the sweeps have left; twice the filter of the sand's stress, each eighth step. */
 TEST(test_bodies) {
-  /* of the six reductions one agrees on the memory of the state that a fast step saves */
-  expect(PILES, 6, 2 * (STEPS / 8), 1, 2, 60000);
+  /* of the ten reductions one agrees on the memory of the state that a fast step saves, and four on
+   * the particles that bear at the inset edges of two bodies, eight each */
+  expect(PILES, 10, 2 * (STEPS / 8), 1, 2, 60000);
 }
