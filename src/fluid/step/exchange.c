@@ -22,11 +22,9 @@
 
 #include <string.h>
 
-enum {
-  GAIN = 2,
-  OF_WALL = 4
-}; /* values of a row: gain x, y; of each wall x, y, moment, work, and
-      as many by friction where it has some */
+/* Values of a row: gain x, y; of each wall x, y, moment, work, and as many by friction where it has
+ * some. */
+enum { GAIN = 2, OF_WALL = 4 };
 
 static int64_t chunks_of(const mps_fluid *f) {
   return (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
