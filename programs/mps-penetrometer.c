@@ -65,7 +65,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE_OF("volumetric", "law|point|cell", &s->volumetric, NULL),
       OPTION_NUMBER("courant", &s->courant, "Nakamura (49)", 0.9),
       OPTION_NUMBER("flip-time", &s->flip_time,
-                    "default diameter/(40 rate) in clay, tresca and sand, else 0", NAN),
+                    "default diameter/(40 rate), of mcc diameter/(160 rate), elastic 0", NAN),
       OPTION_HEADING("Run"),
       OPTION_FLAG("also-axisymmetric", &s->both, NULL),
       MPM_COURSE_OPTIONS(&s->course, 200),

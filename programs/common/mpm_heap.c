@@ -35,9 +35,10 @@ static int inwards(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* The middle of the outermost window whose volume over its area is `thickness`: a front that does
- * not depend on how finely a foot that thins out is divided into particles. */
-static double find_edge(int64_t count, piece *pieces, const mpm_heap_def *def) {
+/* The middle of the outermost window whose volume over its area is `thickness`, at most half a
+ * spacing beyond its last particle: a front that does not depend on how finely a foot that thins
+ * out is divided into particles. */
+static double find_edge(int64_t count, piece *pieces, double spacing, const mpm_heap_def *def) {
   double volume = 0.0;
   if (!(def->thickness > 0.0 && def->window > 0.0)) return 0.0;
   qsort(pieces, (size_t)count, sizeof *pieces, inwards);
@@ -46,7 +47,8 @@ static double find_edge(int64_t count, piece *pieces, const mpm_heap_def *def) {
     while (pieces[first].x - pieces[k].x > def->window) volume -= pieces[first++].volume;
     const double middle = pieces[k].x + 0.5 * def->window;
     const double around = def->axisymmetric ? 2.0 * 3.14159265358979323846 * middle : 1.0;
-    if (volume >= def->thickness * around * def->window) return middle;
+    if (volume >= def->thickness * around * def->window)
+      return fmin(middle, pieces[first].x + 0.5 * spacing);
   }
   return 0.0;
 }
@@ -98,7 +100,7 @@ static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm
   for (int64_t i = 0; i < count; i++)
     if (*mps_view_f64(&x, rows[i], 0) > last)
       out->detached += *mps_view_f64(&m, rows[i], 0) / out->mass;
-  out->edge = find_edge(count, pieces, def);
+  out->edge = find_edge(count, pieces, spacing, def);
   free(place);
   free(pieces);
   free(rows);

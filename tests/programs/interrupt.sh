@@ -81,7 +81,7 @@ wrote dam front.csv particles.csv summary.json
 interrupt collapse 1 mps-column-collapse --compare
 wrote collapse cases.csv front_sand.csv particles_sand.csv summary.json
 has "$work/out" "before its end"
-for key in runout runout_error runout_98 runout_thick height time_at_rest; do
+for key in runout runout_error runout_98 runout_end height time_at_rest; do
   has "$work/collapse/summary.json" "\"$key\": null"
 done
 interrupt cone 2 mps-penetrometer --symmetry quarter --soil 0.3x0.3x0.3
