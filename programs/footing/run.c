@@ -15,8 +15,9 @@
 #define SOFT 1e4    /* E over q: below, the ground changes its shape before it fails */
 #define STIFF 1.6e4 /* of the run that does not */
 #define PATH 23.3   /* settlement, a q/E */
-/* The same where weight alone bears a smooth base: it fails after 4.5; from there on q grows by a
- * twentieth, as particles that dilate share the pressure ever less evenly. */
+/* The same where weight alone bears the base: a smooth one fails after 4.5, a rough one after 6; from
+ * there on q grows by a twentieth, or falls, as particles that dilate share the pressure ever less
+ * evenly. */
 #define WEIGHT_PATH 6.8
 #define PAPER_SAND 4e-3 /* m */
 /* Speed, q/(rho E)^1/2: 2 mm/s by default. Sand creeps on for long, the more so where its weight
@@ -26,10 +27,11 @@
 #define CLAY_SPEED 0.039
 #define SAND_SPEED 0.0136
 #define SLOWER 0.2
+#define SLOWER_ROUGH 0.1
 #define CLAY_FLIP 0.067
 #define GROWING_FLIP 0.0167 /* of clay that is weakest at the surface: slower */
 #define WEIGHT_FLIP 0.085
-#define ROUGH_FLIP 0.025
+#define ROUGH_FLIP 0.04
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -59,7 +61,8 @@ static double share_of_weight(const settings *s) {
 static double slow_scale(const settings *s, double q) {
   if (s->model != DRUCKER_PRAGER)
     return CLAY_SPEED * (s->gradient > 0.0 ? fmin(q, 2.0 * s->cohesion) : q);
-  return SAND_SPEED * q * (1.0 - (1.0 - SLOWER) * share_of_weight(s));
+  const double slower = s->mu > 0.0 ? SLOWER_ROUGH : SLOWER;
+  return SAND_SPEED * q * (1.0 - (1.0 - slower) * share_of_weight(s));
 }
 
 static bool weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
@@ -68,7 +71,7 @@ static bool weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
 static footing_pace pace_of(const settings *s, double young, double rate, double settlement) {
   const bool cone = s->model == DRUCKER_PRAGER;
   const double q = footing_scale(s);
-  const double path = weight_bears(s) && s->mu == 0.0 ? WEIGHT_PATH : PATH;
+  const double path = weight_bears(s) ? WEIGHT_PATH : PATH;
   footing_pace p = {young, rate, settlement};
   if (isnan(rate)) p.rate = slow_scale(s, q) / sqrt(s->density * young);
   if (isnan(settlement)) p.settlement = fmin(0.5, path * q / young) * s->half_width;
