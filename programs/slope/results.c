@@ -28,6 +28,7 @@ static comparison compare_slips(const simulation *sim, const char *source, doubl
   comparison c = compare_with(source, found_factor(sim), factor);
   compare_require(&c, !sim->s.runout, "in a run-out the strength softens");
   compare_require(&c, isfinite(factor), "none fails in this ground");
+  compare_require(&c, factor > 0.0, "no strength holds a vertical face without cohesion");
   return c;
 }
 
