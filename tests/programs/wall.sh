@@ -71,6 +71,9 @@ wall drowned --water-table 0 --density 2000 --pressure passive --length 3
 in_range "$work/drowned/summary.json" K_theory 1.49999 1.50001
 in_range "$work/drowned/summary.json" K 1.46 1.55
 layers=$(dirname "$0")/data/wall_layers.csv
+printf 'thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3\n0.29, 20, 0, 0, 1800\n2, 33, 0, 0, 1900\n' >"$work/off.csv"
+wall off --layers "$work/off.csv"
+has "$work/off/summary.json" "layer 1 of --layers ends at 0.29 m, taken as 0.3125 m"
 wall layers --layers "$layers"
 # 0.27099 1700 g/8 + 0.40586 (1700 g/4 + 1900 g/8) = 3202.6 N/m over (1700/8 + 1700/4 + 1900/8) g = 8583.8 N/m
 in_range "$work/layers/summary.json" K_theory 0.37305 0.37312
