@@ -82,14 +82,14 @@ static comparison compare_limit(const simulation *sim, const capacity *c) {
                   "the pressure grows by %.0f %% over the second half of the path: the ground has "
                   "not reached its bearing capacity",
                   100.0 * c->growth);
-  compare_require(&out, !has_fallen(c),
-                  "the pressure falls by %.0f %% from its largest, %.4g kPa: the ground has failed "
-                  "before the end of the path, over whose last fifth the capacity is taken",
-                  100.0 * (1.0 - c->last / c->most), 1e-3 * c->most);
   compare_require(&out, !(inertia > FASTEST * most),
                   "the footing moves at %g mm/s: the inertia of the ground, v (rho G)^1/2, is %.2g "
                   "of the capacity",
                   1e3 * p->rate, inertia / most);
+  compare_require(&out, !has_fallen(c),
+                  "the pressure falls by %.0f %% from its largest, %.4g kPa: the ground has failed "
+                  "before the end of the path, over whose last fifth the capacity is taken",
+                  100.0 * (1.0 - c->last / c->most), 1e-3 * c->most);
   return out;
 }
 
@@ -275,8 +275,9 @@ static void print(const simulation *sim, const capacity *c) {
            1e-3 * l->davis, 1e-3 * c->associated);
   printf("\n");
   if (!isnan(c->deformed)) {
-    printf("as the ground deforms: %.4g kPa after %.3g mm", 1e-3 * c->deformed,
-           1e3 * s->settlement);
+    const bool far = s->settlement >= 1.0;
+    printf("as the ground deforms: %.4g kPa after %.3g %s", 1e-3 * c->deformed,
+           far ? s->settlement : 1e3 * s->settlement, far ? "m" : "mm");
     print_coefficients(s, c->deformed);
     printf("\n");
   }
@@ -295,8 +296,8 @@ static void warn_of_growth(app *a, const capacity *c) {
   if (has_fallen(c))
     app_warn(a,
              "the pressure falls by %.0f %% from its largest, %.4g kPa: the ground has failed "
-             "before the end of the path, over whose last fifth the capacity is taken, take a "
-             "shorter --settlement",
+             "before the end of the path, over whose last fifth the capacity is taken; take a "
+             "shorter --settlement or a slower --rate",
              100.0 * (1.0 - c->last / c->most), 1e-3 * c->most);
 }
 
