@@ -15,11 +15,11 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground"),
       OPTION_TEXT(
           "layers", &s->layers,
-          "layers from the surface down, a line each, of words name=value: thickness, density, vs, "
-          "law=elastic|smallstrain|mohrcoulomb|cyclicsand, poisson, k0, permeability, porosity; "
-          "smallstrain also: reference-strain, curvature, strength; mohrcoulomb and cyclicsand: "
-          "phi, psi, cohesion; cyclicsand: relative-density or blow-count. The last line of --base "
-          "compliant is \"halfspace density=... vs=...\""),
+          "thickness_m, density_kg_m3, vs_m_s; law: elastic, smallstrain, mohrcoulomb or "
+          "cyclicsand; poisson, k0, permeability_m_s, porosity; smallstrain also: "
+          "reference_strain, curvature, strength_Pa; mohrcoulomb and cyclicsand: phi_degrees, "
+          "psi_degrees, cohesion_Pa, e0, emax; cyclicsand: relative_density or blow_count. The "
+          "last row of --base compliant is the half space, of thickness inf"),
       OPTION_CHOICE_OF("base", "compliant|rigid", &s->base,
                        "compliant: an elastic half space, whose outcrop moves as the record; "
                        "rigid: a base that moves as the record"),

@@ -142,6 +142,8 @@ static const char *check_ground(const settings *s, const option *table) {
   if (cone && s->top > 0.0) return "--top and --top-cohesion are for --law vonmises";
   if (ranks_launched() > 1 && (s->top > 0.0 || s->surcharge > 0.0))
     return "--top and --surcharge are for one process";
+  if (s->top > 0.0 && s->top < s->h * (1.0 - 1e-9))
+    return "--top must be at least a cell of --cell";
   if (s->top > s->depth - s->h)
     return "--top must leave at least a cell of --cell of the ground below";
   if (s->cohesion == 0.0 && (!cone || (s->gravity == 0.0 && s->surcharge == 0.0)))
@@ -182,6 +184,8 @@ const char *footing_settle(settings *s, const option *table) {
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --cell";
   const char *ground = check_ground(s, table);
   if (ground) return ground;
+  if (s->top > 0.0)
+    options_whole("top", &s->top, "the particles' spacing", s->h / sqrt((double)s->ppc));
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (sand_check(&s->voids)) return sand_check(&s->voids);

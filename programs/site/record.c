@@ -12,6 +12,7 @@ typedef struct means {
   double x, y, v;            /* m, m, m/s */
   double volume;             /* m3 in all, with the gaps between grains, which water fills */
   double shear, vertical, u; /* Pa: tau, effective compression, water */
+  double borne;              /* Pa: tau that accelerates the ground above, of find_borne */
 } means;
 
 /* Position of particle `id` along x, as if it had not passed the sides: ground that leaves at one
@@ -87,6 +88,35 @@ double site_slope(const double v[5], double step) {
   return (8.0 * (v[3] - v[1]) - (v[4] - v[0])) / (12.0 * step);
 }
 
+/* tau of a row beyond the ends: at the surface it is 0, with opposite images; the base bears on. */
+static double shear_at(const simulation *sim, const means *now, int64_t r) {
+  const int64_t last = sim->rows - 1;
+  return r < 0 ? now[-1 - r].shear : r > last ? -now[2 * last + 1 - r].shear : now[r].shear;
+}
+
+/* Half of the sum of h grad(phi_j) over the nodes above the middle of a cell, at rows of particles
+ * a quarter, three and five quarters of h from it: phi_j, grad(phi_j) of docs/theory/wls-mpm.md. */
+static const double quadratic[3] = {27.0 / 64.0, 5.0 / 64.0, 0.0};
+static const double cubic[3] = {185.0 / 512.0, 135.0 / 1024.0, 7.0 / 1024.0};
+
+/* The force of the stresses on the nodes above the middle of cell k over its area. It is what
+ * accelerates the ground above, whatever single particles bear at interfaces of layers. */
+static double borne_by_cell(const simulation *sim, const means *now, int64_t k) {
+  const double *weight = sim->s.spline == 1 ? cubic : quadratic;
+  double sum = 0.0;
+  for (int64_t i = 0; i < 3; i++)
+    sum += weight[i] * (shear_at(sim, now, 2 * k - i) + shear_at(sim, now, 2 * k + 1 + i));
+  return sum;
+}
+
+/* Rows lie a quarter of a cell off the middle of their cell. */
+static void find_borne(const simulation *sim, means *now) {
+  for (int64_t r = 0; r < sim->rows; r++) {
+    const int64_t k = r / 2, other = r % 2 ? k + 1 : k > 0 ? k - 1 : 0;
+    now[r].borne = 0.75 * borne_by_cell(sim, now, k) + 0.25 * borne_by_cell(sim, now, other);
+  }
+}
+
 static void update_row(const simulation *sim, const means *now, int64_t r, double t) {
   site_row *row = &sim->row[r];
   const double step = sim->s.sample, middle = t - 2.0 * step;
@@ -98,8 +128,11 @@ static void update_row(const simulation *sim, const means *now, int64_t r, doubl
         fmax(row->acceleration, fabs(site_slope(row->v, step) + site_input(sim, middle)));
   row->velocity = fmax(row->velocity, fabs(now[r].v + mps_signal_velocity(sim->motion, t)));
   row->displacement = fmax(row->displacement, fabs(moved));
-  row->strain = fmax(row->strain, fabs(strain_of(sim, now, r)));
-  row->stress = fmax(row->stress, fabs(now[r].shear));
+  const site_layer *l = site_layer_at(&sim->ground, row->depth);
+  const double strain =
+      l->law == SITE_ELASTIC ? now[r].borne / (l->density * l->vs * l->vs) : strain_of(sim, now, r);
+  row->strain = fmax(row->strain, fabs(strain));
+  row->stress = fmax(row->stress, fabs(now[r].borne));
   row->last_ru = sim->wet ? (now[r].u - row->pressure) / row->vertical : 0.0;
   memmove(row->u, row->u + 1, 4 * sizeof *row->u);
   row->u[4] = row->last_ru;
@@ -128,6 +161,7 @@ mps_status site_take_sample(simulation *sim) {
   if (status == MPS_OK) {
     const double t = sim->s.sample * (double)sim->count;
     if (sim->count == 0) note_rest(sim, now);
+    find_borne(sim, now);
     for (int64_t r = 0; r < sim->rows; r++) update_row(sim, now, r, t);
     find_settlements(sim, now);
     const site_row *top = &sim->row[sim->rows - 1];

@@ -86,11 +86,26 @@ static double left_of(const double *x, int64_t count) {
   return last / most;
 }
 
-static double largest_strain(const simulation *sim) {
-  double most = 0.0;
+static const site_row *most_strained(const simulation *sim) {
+  const site_row *most = &sim->row[sim->rows - 1];
   for (int64_t r = 0; r < sim->rows; r++)
-    if (sim->row[r].depth < sim->height) most = fmax(most, sim->row[r].strain);
+    if (sim->row[r].depth < sim->height && sim->row[r].strain > most->strain) most = &sim->row[r];
   return most;
+}
+
+static double largest_strain(const simulation *sim) { return most_strained(sim)->strain; }
+
+/* Whether a row has the strains of two layers: displacements have no kinks within the reach of the
+ * weights. An elastic layer has the strain of its stress (record.c). */
+static bool is_smeared(const simulation *sim, const site_row *row) {
+  const site_ground *g = &sim->ground;
+  double bottom = 0.0;
+  if (site_layer_at(g, row->depth)->law == SITE_ELASTIC) return false;
+  for (int64_t i = 0; i + 1 < g->count; i++) {
+    bottom += g->layer[i].thickness;
+    if (fabs(row->depth - bottom) < 1.5 * sim->cell) return true;
+  }
+  return false;
 }
 
 /* Steady waves in elastic layers. Spectra of a record have their ratio only where the motion is
@@ -102,7 +117,7 @@ static comparison compare_layers(const simulation *sim, const findings *f) {
     elastic = elastic && sim->ground.layer[i].law == SITE_ELASTIC;
   const double left = left_of(f->series.surface, f->series.count);
   compare_require(&c, elastic, "a layer is not linear elastic");
-  compare_require(&c, sim->s.damping == 0.0, "--damping is not that of elastic layers");
+  compare_require(&c, sim->s.damping == 0.0, "--mass-damping is not that of elastic layers");
   compare_require(&c, sim->s.base == SITE_COMPLIANT,
                   "on a rigid base undamped layers swing without end, and have no spectrum");
   compare_require(&c, !isnan(f->largest), "the input has too little motion up to --max-frequency");
@@ -257,12 +272,16 @@ static void report(const simulation *sim, const findings *f) {
   if (!isnan(f->largest)) {
     printf("largest amplification %.3f at %.3g Hz", f->largest, f->frequency);
     if (!isnan(f->error))
-      printf(" (exact %.3f; all frequencies within %.1f %%)", f->layers.reference,
+      printf(" (exact, smoothed alike, %.3f; all frequencies within %.1f %%)", f->layers.reference,
              100.0 * f->error);
     printf("\n");
   }
   compare_tell(&f->layers);
-  printf("largest shear strain %.3g", largest_strain(sim));
+  const site_row *most = most_strained(sim);
+  printf("largest shear strain %.3g", most->strain);
+  if (is_smeared(sim, most))
+    printf(" (at %.3g m: within 1.5 cells of an interface of layers, strains are means of both)",
+           most->depth);
   if (sim->wet) printf(", r_u %.3f", largest_ru(sim));
   const site_row *top = &sim->row[sim->rows - 1];
   printf(", settlement %.3g mm\n", 1e3 * top->settlement);

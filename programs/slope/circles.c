@@ -12,7 +12,8 @@
 
 enum { SLICES = 60, TURNS = 40 };
 #define DEGREE (3.14159265358979323846 / 180.0)
-#define LEAST_M 0.2 /* of m: below, the method gives forces without bound */
+#define LEAST_M 0.2     /* of m: below, the method gives forces without bound */
+#define NO_FACTOR 0.001 /* below it the search ends: 0 */
 
 double slope_cohesion(const settings *s, double y) {
   return s->cohesion + s->gradient * (s->height - y);
@@ -70,7 +71,7 @@ static double factor_of(const settings *s, const slope_arc *a, double start, slo
 static double descend(const settings *s, slope_slip_fn slip, slope_arc *best, double least) {
   double step[3] = {0.2 * s->height, 0.2 * s->height, 0.04};
   slope_circle c;
-  for (int turn = 0; turn < TURNS;) {
+  for (int turn = 0; turn < TURNS && least > NO_FACTOR;) {
     bool better = false;
     for (int k = 0; k < 6; k++) {
       slope_arc next = *best;
@@ -92,6 +93,10 @@ double slope_least_slip(const settings *s, slope_slip_fn slip, slope_circle *out
   const double before = s->base > 0.0 ? run + fmin(s->toe, 3.0 * s->height) : run;
   double least = INFINITY;
   slope_arc best = {0.0, run, 0.1};
+  if (s->slope == 0.0 && s->cohesion == 0.0 && s->gradient == 0.0) {
+    *out = (slope_circle){NAN, NAN, NAN}; /* planes of any inclination: tan(phi) over its tangent */
+    return 0.0;
+  }
   for (int i = 0; i <= 24; i++)
     for (int j = 0; j <= 24; j++)
       for (int k = 1; k <= 12; k++) {
@@ -101,7 +106,7 @@ double slope_least_slip(const settings *s, slope_slip_fn slip, slope_circle *out
       }
   if (!isinf(least)) least = descend(s, slip, &best, least);
   (void)slip(s, &best, isinf(least) ? 1.0 : least, out);
-  return least;
+  return least > NO_FACTOR ? least : 0.0;
 }
 
 double slope_circles(const settings *s, slope_circle *out) {

@@ -219,6 +219,16 @@ static mps_status sample(simulation *sim, trial *now) {
   return MPS_OK;
 }
 
+/* Ground that flows passes the farthest place where it was before the last `samples`, and stays
+ * beyond it; ground that oscillates about its equilibrium, elastically, comes back. */
+static bool flows_on(const trial *t, int samples) {
+  const int last = t->rows - 1;
+  double most = 0.0, least = INFINITY;
+  for (int k = 0; k <= last - samples; k++) most = fmax(most, t->moved[k]);
+  for (int k = last - samples / 2; k <= last; k++) least = fmin(least, t->moved[k]);
+  return least > most;
+}
+
 /* A run-out until it rests. A trial until it rests or flows steadily; or the speed over the last
  * quarter of its time decides. */
 static bool has_ended(const simulation *sim, trial *now) {
@@ -226,8 +236,10 @@ static bool has_ended(const simulation *sim, trial *now) {
     const bool whole = now->rows == SLOPE_SAMPLES + 1;
     const double last = slope_speed(&sim->s, now, WINDOW);
     const double before = 2.0 * slope_speed(&sim->s, now, 2 * WINDOW) - last;
-    now->failed = whole ? slope_speed(&sim->s, now, SLOPE_SAMPLES / 4) > SLOPE_FLOWS
-                        : last > 3.0 * SLOPE_FLOWS && last > STEADY * before;
+    now->failed = whole
+                      ? slope_speed(&sim->s, now, SLOPE_SAMPLES / 4) > SLOPE_FLOWS &&
+                            flows_on(now, SLOPE_SAMPLES / 4)
+                      : last > 3.0 * SLOPE_FLOWS && last > STEADY * before && flows_on(now, WINDOW);
     return whole || now->failed || fmax(fabs(last), fabs(before)) < 0.5 * SLOPE_FLOWS;
   }
   return now->rows > SLOPE_SAMPLES / 10 && sim->kinetic <= AT_REST * sim->peak;

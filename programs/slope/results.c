@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define BELOW 0.95 /* of the factor with Davis' strength: less is not credible */
+
 /* Trials that have ended: the last one where the run has. */
 static int ended(const simulation *sim) { return sim->now + sim->trial[sim->now].ended; }
 
@@ -28,6 +30,7 @@ static comparison compare_slips(const simulation *sim, const char *source, doubl
   comparison c = compare_with(source, found_factor(sim), factor);
   compare_require(&c, !sim->s.runout, "in a run-out the strength softens");
   compare_require(&c, isfinite(factor), "none fails in this ground");
+  compare_require(&c, factor > 0.0, "no strength holds a vertical face without cohesion");
   return c;
 }
 
@@ -226,6 +229,12 @@ static void warn_of_bound(app *a, const simulation *sim) {
   if (compare_holds(&spirals))
     compare_bound(a, "the factor of safety", stands ? last->factor : spirals.value, spirals.source,
                   spirals.reference);
+  const double davis = davis_factor(&sim->s);
+  if (spirals.value < BELOW * davis)
+    app_warn(a,
+             "the factor of safety is %.0f %% below that of spirals with the strength of Davis, "
+             "%.3f, of which ground does not fall short: look at motion.png, take another --cell",
+             100.0 * (1.0 - spirals.value / davis), davis);
 }
 
 bool slope_finish(app *a, void *user) {

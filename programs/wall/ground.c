@@ -13,6 +13,7 @@
 #include <mps/mpm.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
@@ -80,6 +81,31 @@ static const char *read_layers(settings *s) {
   return NULL;
 }
 
+/* Layers begin and end at faces of particles. */
+static const char *place_layers(settings *s) {
+  static char why[200];
+  const double spacing = s->h / sqrt((double)s->ppc);
+  double given = 0.0, top = 0.0;
+  for (int k = 0; k + 1 < s->layers; k++) {
+    wall_layer *l = &s->layer[k];
+    if (l->thickness < s->h * (1.0 - 1e-9)) {
+      snprintf(why, sizeof why,
+               "--layers: layer %d: thickness_m is %g, must be at least a cell, %g: give a smaller "
+               "--cell",
+               k + 1, l->thickness, s->h);
+      return why;
+    }
+    given += l->thickness;
+    const double bottom = spacing * nearbyint(given / spacing);
+    if (fabs(given - bottom) > 1e-5 * spacing)
+      options_note("layer %d of --layers ends at %.6g m, taken as %.6g m: a whole multiple of the "
+                   "particles' spacing, %.6g m",
+                   k + 1, given, bottom, spacing);
+    l->thickness = bottom - top, top = bottom;
+  }
+  return NULL;
+}
+
 const char *wall_settle_ground(settings *s, const option *table) {
   static const char *const own[] = {"phi", "psi", "cohesion", "density"};
   s->layers = 1;
@@ -88,6 +114,7 @@ const char *wall_settle_ground(settings *s, const option *table) {
     if (options_given(table, own[k]))
       return "--phi, --psi, --cohesion and --density are not for --layers, which have their own";
   const char *why = s->layers_file ? read_layers(s) : NULL;
+  if (!why) why = place_layers(s);
   if (why) return why;
   if (s->water > s->height) return "--water-table must be at most --height below the surface";
   for (int k = 0; k < s->layers; k++)

@@ -19,7 +19,7 @@ typedef struct pressure {
   double across, along, height; /* height: of the force across over H above the toe */
   comparison theory;            /* Rankine, of a smooth wall; Coulomb, active and rough */
   double cracked;               /* Rankine below a tension crack: active, smooth, cohesive; NaN */
-  double reduced;               /* Rankine with Davis' strength: active, smooth, psi < phi; NaN */
+  double reduced;               /* Rankine with Davis' strength: smooth, psi < phi; NaN */
 } pressure;
 
 /* Of the layers, degrees. */
@@ -60,8 +60,8 @@ static double wedge(const settings *s, const wall_layer *l) {
 static double davis(const settings *s, const wall_layer *l) {
   const double phi = l->phi * DEGREE, psi = l->psi * DEGREE;
   const double less = atan(cos(psi) * sin(phi) / (1.0 - sin(psi) * sin(phi)));
-  (void)s;
-  return pow(tan(45.0 * DEGREE - 0.5 * less), 2.0);
+  const double side = s->pressure == ACTIVE ? -1.0 : 1.0;
+  return pow(tan(45.0 * DEGREE + side * 0.5 * less), 2.0);
 }
 
 static double most_cohesion(const settings *s) {
@@ -102,13 +102,14 @@ static comparison find_theory(const simulation *sim, double across) {
   const double force = wall_theory(s, smooth ? rankine : coulomb, false);
   comparison c = compare_with(smooth ? "Rankine" : "Coulomb", across, force / wall_unit(s));
   compare_require(
+      &c, smooth || s->base > 0.0,
+      "on the smooth bed of --below-toe 0 the ground at the toe slides along with the wall%s",
+      s->pressure == PASSIVE ? ", and resists less than ground that continues below it" : "");
+  compare_require(
       &c, smooth || s->pressure == ACTIVE,
       "Coulomb's plane wedge is far above the force of a rough wall in the passive case");
   compare_require(&c, smooth || most_cohesion(s) == 0.0,
                   "the coefficient is that of ground without cohesion");
-  compare_require(
-      &c, smooth || s->base > 0.0,
-      "on the smooth bed of --below-toe 0 the ground at the toe slides along with the wall");
   compare_require(&c, s->motion != TURNS_ABOUT_TOP,
                   "the wall turns about its top, where the ground arches: the theory is of ground "
                   "that yields everywhere");
@@ -140,8 +141,8 @@ static double find_cracked(const settings *s) {
  * between Rankine's of phi and of phi*. On a smooth bed the ground is free to take planes of phi.
  */
 static double find_reduced(const settings *s) {
-  if (s->pressure == PASSIVE || s->friction > 0.0 || most_cohesion(s) > 0.0 || s->base == 0.0 ||
-      s->motion == TURNS_ABOUT_TOP || is_associated(s))
+  if (s->friction > 0.0 || most_cohesion(s) > 0.0 || s->motion == TURNS_ABOUT_TOP ||
+      is_associated(s))
     return NAN;
   return wall_theory(s, davis, false) / wall_unit(s);
 }

@@ -98,6 +98,11 @@ without K_theory "slides along" mps-wall --cell 0.2 --rate 0.05 --friction 0.3
 
 # A disc that hops, or is soft; a block with friction.
 without "x_theory x_error_05" "hops" mps-rolling-disc --friction 0.6
+for young in 10MPa 30MPa 100MPa; do # its lattice is pushed out of the slope; rings are not
+  without "x_theory x_error_05" "off the slope" mps-rolling-disc --slope-angle 42 --friction 0.2 --young $young
+done
+with x_theory mps-rolling-disc --slope-angle 42 --friction 0.2 --young 30MPa --fill rings
+[ -x "$programs/mps-rolling-disc" ] && in_range "$work/o/summary.json" x_error_05 -0.01 0.01
 without "x_theory x_error_05" "soft" mps-rolling-disc --cell 0.02 --young 20kPa --duration 0.1
 with x_theory mps-rolling-disc --cell 0.02
 without Fy_smooth "lifts off" mps-sliding-box --cell 0.05

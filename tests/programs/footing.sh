@@ -29,6 +29,19 @@ bears weight q_over_weight 7.27 8.4 --law druckerprager --cohesion 0 --soil 2x0.
 in_range "$work/weight/summary.json" q_exact 37550 37640
 bears psi q_over_c 24.1 36.81 --law druckerprager --psi 0 --soil 3x1.5 --cell 0.125
 in_range "$work/psi/summary.json" q_davis 240e3 242e3
+# Dense sand whose dilation soon ends fails, and bears less at the end of the path: that is not its capacity.
+falls="--law druckerprager --phi 40 --e0 0.93 --cell 0.125 --young 10GPa --soil 2x1 --settlement 10mm --rate 20mm/s"
+"$programs/mps-footing" $falls --threads 1 --out "$work/falls" >"$work/log" 2>&1 || exit 1
+has "$work/log" "the ground has failed before the end of the path"
+has "$work/falls/summary.json" '"q_exact": null'
+! grep -q "from its largest" "$work/sand/summary.json" "$work/weight/summary.json" || fail "sand that has not failed"
+# A circle that sinks by a third of its radius lifts its rim off the ground late, by the cells: said beyond 0.15 radii.
+for sunk in 0.1 0.35; do
+  "$programs/mps-footing" --shape circle --soil 2x1.5 --young 3MPa --rate 20mm/s --settlement "$(awk "BEGIN { print 0.5 * $sunk }")" \
+    --threads 1 --out "$work/sunk$sunk" >"$work/log" 2>&1 || exit 1
+done
+has "$work/sunk0.35/summary.json" "deformed ground bears under a circle depends on the cell"
+! grep -q "depends on the cell" "$work/sunk0.1/summary.json" || fail "a warning of a footing that has hardly sunk"
 # Strength that grows by 4 c/B: characteristics have 7.819.
 bears grows q_over_c 7.5 8.15 --strength-gradient 40kPa/m --soil 2x1
 has "$work/log" "characteristics"

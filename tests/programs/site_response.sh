@@ -19,6 +19,27 @@ awk -F, 'NR > 1 { x = 6.283185307 * $1 * 12 / 120; c = cos(x) ^ 2; exact = 1 / s
   "$work/wave/amplification.csv" || fail "amplification of a layer"
 picture "$work/wave/surface.png" 1100x900
 picture "$work/wave/profile.png" 1100x700
+# At interfaces of layers shear stresses have no jump, and strains that of the moduli: Haskell's matrices and the transform of
+# the wavelet, between rows. edges LAYERS FREQUENCY CELL SPLINE DEPTH=kPa...
+edges() {
+  "$program" --layers "$work/$1" --frequency "$2" --cell "$3" --spline "$4" --threads 1 --out "$work/edges" >"$work/log" || exit 1
+  shift 4
+  for edge; do
+    awk -F, -v at="${edge%=*}" -v exact="${edge#*=}" '
+      NR > 2 && $1 >= at && depth < at { found = 1e-3 * (tau + ($7 - tau) * (at - depth) / ($1 - depth)) }
+      NR > 1 { depth = $1; tau = $7 }
+      END { print at " m: " found " of " exact " kPa"; exit !((found / exact - 1) ^ 2 < 0.02 ^ 2) }' \
+      "$work/edges/profile.csv" || fail "shear stress at interfaces of layers"
+  done
+}
+printf 'thickness_m, density_kg_m3, vs_m_s\n3, 2000, 300\n5, 1700, 120\ninf, 2100, 500\n' >"$work/hard"
+printf 'thickness_m, density_kg_m3, vs_m_s\n4, 1750, 150\n7.3, 1900, 240\ninf, 2200, 600\n' >"$work/harder"
+for cell in 0.33 0.25 0.2; do
+  edges hard 2.5 $cell 3 2.9=11.04 3.1=11.73 7.9=21.95 8.1=22.15
+  in_range "$work/edges/summary.json" shear_strain 8.8e-4 9.2e-4 # 9.00e-4 at 8 m
+done
+edges hard 2.5 0.2 2 2.9=11.04 3.1=11.73 7.9=21.95 8.1=22.15
+edges harder 3 0.35 3 3.99=11.97 4.01=12.02 11.29=27.21 11.31=27.24
 # On a rigid base the surface of a layer that is shaken far below its frequency moves as 1/cos(kH).
 printf 'thickness_m, density_kg_m3, vs_m_s\n12, 1800, 120\n' >"$work/bare"
 "$program" --layers "$work/bare" --base rigid --record sine --frequency 0.5 --cycles 4 --max-frequency 5 --threads 1 \

@@ -58,6 +58,21 @@ TEST(spirals_are_chens) {
   }
 }
 
+/* The plane through the toe of a vertical face in sand slips whatever the strength (Culmann): the
+ * search for the least factor ends, at 0. */
+TEST(sand_has_no_vertical_face) {
+  const double height[] = {0.3, 10.0, 40.0}, phi[] = {20.0, 30.0, 42.0};
+  for (size_t k = 0; k < 3; k++) {
+    settings s = usual();
+    s.height = height[k], s.slope = 0.0, s.crest = 2.0 * height[k];
+    s.phi = phi[k], s.cohesion = 0.0;
+    NEAR(circles(&s), 0.0, 1e-12);
+    NEAR(spirals(&s), 0.0, 1e-12);
+    s.cohesion = 1e-2 * s.density * s.gravity * s.height;
+    assert_true(circles(&s) > 0.03 && spirals(&s) > 0.04);
+  }
+}
+
 /* Sand slides down an infinite slope where sin(phi_F) is tan(slope), the plane on which it does not
  * dilate (Davis 1968). */
 TEST(sand_that_does_not_dilate_is_weaker) {

@@ -25,6 +25,20 @@ in_range "$work/toe/summary.json" K_along -0.003 0.003
 ! grep -q "cannot exceed" "$work/passive/summary.json" || fail "a warning of a bound that holds"
 wall sharp --pressure passive --length 3 --below-toe 0.5 --inset 0 --corner 0
 has "$work/sharp/summary.json" "above that of a sliding wedge, which such ground cannot exceed"
+# Sand that does not dilate, on a smooth bed: between Rankine of phi and of phi*, tan(phi*) = sin(phi); the more friction
+# and the smaller the cells, the further below the first.
+for phi in 27 33 42; do
+  [ "$phi" = 42 ] && h=0.0625 || h=0.125
+  wall "sand$phi" --pressure passive --length 4 --phi "$phi" --young 200MPa
+  has "$work/log" "with the strength that Davis takes for psi < phi"
+  awk -v phi="$phi" -v low="$(value "sand$phi" K_reduced)" -v K="$(value "sand$phi" K)" 'BEGIN {
+    x = phi * 3.14159265358979 / 180; s = sin(x); t = s / sqrt(1 + s * s)
+    print "K " K ", by Davis " low; exit !((low * (1 - t) / (1 + t) - 1) ^ 2 < 1e-10 && K > 0.97 * low &&
+      K < 1.03 * (1 + s) / (1 - s) && (phi < 42 || K < 0.95 * (1 + s) / (1 - s))) }' || fail "passive sand of $phi degrees"
+done
+unset h
+wall bedded --pressure passive --friction 0.3
+has "$work/log" "slides along with the wall, and resists less than ground that continues below it"
 wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
 in_range "$work/clay/summary.json" K 2.09 2.18 # 1 + 4 c/(gamma H) = 2.133
 wall cohesive --phi 25 --cohesion 1413Pa # 0.08002 gamma H
@@ -57,6 +71,9 @@ wall drowned --water-table 0 --density 2000 --pressure passive --length 3
 in_range "$work/drowned/summary.json" K_theory 1.49999 1.50001
 in_range "$work/drowned/summary.json" K 1.46 1.55
 layers=$(dirname "$0")/data/wall_layers.csv
+printf 'thickness_m, phi_degrees, psi_degrees, cohesion_Pa, density_kg_m3\n0.29, 20, 0, 0, 1800\n2, 33, 0, 0, 1900\n' >"$work/off.csv"
+wall off --layers "$work/off.csv"
+has "$work/off/summary.json" "layer 1 of --layers ends at 0.29 m, taken as 0.3125 m"
 wall layers --layers "$layers"
 # 0.27099 1700 g/8 + 0.40586 (1700 g/4 + 1900 g/8) = 3202.6 N/m over (1700/8 + 1700/4 + 1900/8) g = 8583.8 N/m
 in_range "$work/layers/summary.json" K_theory 0.37305 0.37312
