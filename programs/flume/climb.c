@@ -175,9 +175,20 @@ static void find_formula(app *a, const flume *m, flume_figures *f) {
   f->has_formula = mps_eurotop_find_run_up(a->context, &def, &f->formula) == MPS_OK;
 }
 
+/* Of a solitary wave: the highest reading of all. */
+static void find_single_climb(const flume *m, flume_figures *f) {
+  for (int64_t k = 0; k < m->samples; k++)
+    f->run_up_highest = fmax(f->run_up_highest, m->sample[k].run_up);
+  f->climbs = isnan(f->run_up_highest) ? 0 : 1, f->run_up_mean = f->run_up_highest;
+}
+
 bool flume_find_run_up(app *a, const flume *m, flume_figures *f) {
   double waves = 0.0, sum = 0.0;
   if (!flume_has_slope(m)) return true;
+  if (m->s.waves == FLUME_SOLITARY) {
+    find_single_climb(m, f);
+    return true;
+  }
   double *height = calloc((size_t)m->samples + 1, sizeof *height);
   if (!height || !count_waves(m, f, &waves)) {
     free(height);

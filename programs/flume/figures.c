@@ -255,7 +255,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
     f->from = 0.0, f->to = m->samples ? m->sample[m->samples - 1].t : 0.0;
     flume_find_solitary(m, f);
     if (flume_is_loaded(m)) find_forces(m, f);
-    return true;
+    return flume_find_run_up(a, m, f);
   }
   if (!find_window(m, f)) {
     if (!progress_interrupted()) /* else its own line says enough */

@@ -198,6 +198,9 @@ void flume_make_ground(flume *m);
 bool flume_is_solid(const flume *m, double x, double y);
 /* Height (m) of the ground over a station, the highest where it hangs over; -INFINITY: none. */
 double flume_ground_at(const flume *m, double x);
+/* Depth (m) of the water at rest at the far end; whether a piston can follow its level there. */
+double flume_end_depth(const flume *m);
+bool flume_end_is_wet(const flume *m);
 /* Whether segments p-q and r-s cross inside both, and their distance (m). */
 bool flume_cross(const double *p, const double *q, const double *r, const double *s);
 double flume_distance(const double *p, const double *q, const double *r, const double *s);
@@ -210,7 +213,8 @@ double flume_face_distance(const flume *m, const double *x);
 double flume_nearest_face(const flume *m, const double *x, double *on, int32_t *wall);
 bool flume_fill_cells(flume *m);
 bool flume_is_wet(const flume *m, double x, double y);
-/* gauges.c: the default ones, and which lie before and behind structure, rock and zone. */
+/* gauges.c: the default ones, and which lie before and behind structure, rock, a
+ * change of the bed and zone. */
 void flume_place_gauges(flume *m);
 /* fill.c: particles of the water at rest, appended. */
 /* *cut: whether faces cut the lattice. */
@@ -260,7 +264,7 @@ typedef struct flume_figures {
   double from, to; /* s, as used */
   bool separated;  /* there are incident and reflected waves */
   mps_separation split;
-  bool passed; /* there are waves behind structure or rock */
+  bool passed; /* there are waves behind structure, rock or a change of the bed */
   mps_separation behind;
   int64_t bands;
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */

@@ -74,7 +74,8 @@ static void follow_wall(flume *m, double level, double dt) {
  * Of the level at its face b, the mean above the asked one over theta, and what moves all of the
  * water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
 static void follow_two(flume *m, const double *above, double dt) {
-  const double T = m->s.period, d = m->s.depth, through = m->toe / sqrt(WAVES_G * d);
+  const double T = m->s.period, d[2] = {m->s.depth, flume_end_depth(m)};
+  const double through = m->toe / sqrt(WAVES_G * fmin(d[0], d[1]));
   const double theta = fmax((m->s.waves == FLUME_REGULAR ? 1.0 : GROUP) * T, 0.4 * through);
   mps_absorber *const piston[2] = {m->maker, m->end};
   double rate[2];
@@ -91,7 +92,7 @@ static void follow_two(flume *m, const double *above, double dt) {
     const double push = 0.25 * m->toe / WAVES_G * (rate[k] - rate[1 - k]);
     mean->slow += -expm1(-dt / T) * (above[k] - push - mean->slow);
     mean->level += -expm1(-dt / theta) * (mean->slow - mean->level);
-    mean->offset = mean->level + push + mean->speed * sqrt(d / WAVES_G);
+    mean->offset = mean->level + push + mean->speed * sqrt(d[k] / WAVES_G);
   }
 }
 

@@ -97,25 +97,25 @@ static void warn_of_gauges(app *a, const flume *m) {
     for (int k = 0; k < m->rears; k++) counts = counts || m->rear[k] == g;
     if (counts) continue;
     app_warn(a,
-             "the gauge at %g m lies between the ends of structure, rock or zone: incident and "
-             "reflected waves are found without it",
+             "the gauge at %g m lies between the ends of structure, rock, a bed that is not level, or "
+             "zone: incident and reflected waves are found without it",
              m->s.gauge[g]);
     break;
   }
   if (m->fronts < 2)
     app_warn(a,
-             "incident and reflected waves need two gauges before structure, rock or zone: there "
-             "%s %d",
+             "incident and reflected waves need two gauges before structure, rock, a bed that is not "
+             "level, or zone: there %s %d",
              m->fronts == 1 ? "is" : "are", m->fronts);
-  for (int k = 0; k < m->fronts; k++) {
-    const double x = m->s.gauge[m->front[k]], y = flume_ground_at(m, x);
-    if (fabs(y) <= 0.02 * m->s.depth) continue;
-    app_warn(a,
-             "at the gauge at %g m the bed is %.3g m high: incident and reflected waves are found "
-             "with the depth at the maker",
-             x, y);
-    break;
-  }
+}
+
+static void warn_of_end(app *a, const flume *m) {
+  const bool piston = m->s.absorb == FLUME_ACTIVE && m->s.wall == FLUME_OPEN_END;
+  if (!piston || flume_is_open(m) || flume_end_is_wet(m)) return;
+  app_warn(a,
+           "the bed is %.3g m high at the far end, with less than 2 spacings of water above it: no "
+           "piston absorbs there",
+           m->s.depth - flume_end_depth(m));
 }
 
 static void warn_of_record(app *a, const flume *m) {
@@ -138,6 +138,7 @@ void flume_warn(app *a, const flume *m) {
   warn_of_focus(a, m);
   if (flume_has_body(m) && !m->bedded)
     app_warn(a, "there is no rock below the caisson: it is held where it is, and has no safeties");
+  warn_of_end(a, m);
   warn_of_gauges(a, m);
   warn_of_spacing(a, m);
 }

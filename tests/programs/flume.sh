@@ -127,7 +127,7 @@ s=$work/block/summary.json
 in_range "$s" reflection 0.40 0.65
 in_range "$s" transmission 0.40 0.65
 in_range "$s" reflection_behind 0 0.08
-has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock or zone"
+has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock, a bed that is not level, or zone"
 has "$s" '"loss_per_wavelength": null'
 has "$s" '"harmonic_bound": null'
 
