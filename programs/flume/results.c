@@ -220,7 +220,8 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   if (there && m->end) printf(", mean place of the far piston %.1f mm", 1e3 * g->mean_end);
   if (there && m->maker) printf("\n");
   if (g->passed)
-    printf("behind structure, rock or a change of the bed Hm0 %.4f m, transmission %.3f, reflection there %.3f\n",
+    printf("behind structure, rock or a change of the bed Hm0 %.4f m, transmission %.3f, "
+           "reflection there %.3f\n",
            g->behind.incident_height, g->behind.incident_height / g->split.incident_height,
            g->behind.reflection);
   if (!isnan(g->bound))
@@ -385,8 +386,8 @@ static void summarise_run_up(output *f, const flume *m, const flume_figures *g) 
   json_number_if(f, formula, "Ru2_eurotop_low", g->formula.low);
   json_number_if(f, formula, "Ru2_eurotop_high", g->formula.high);
   if (slope && g->climbs > 0)
-    printf("run-up: highest %.4f m, mean of %lld %.4f m\n", g->run_up_highest,
-           (long long)g->climbs, g->run_up_mean);
+    printf("run-up: highest %.4f m, mean of %lld %.4f m\n", g->run_up_highest, (long long)g->climbs,
+           g->run_up_mean);
   if (many) printf("run-up that 2 %% of the waves exceed %.4f m by the tongue", g->run_up);
   if (many && !isnan(g->run_up_layer)) printf(", %.4f m by the layer", g->run_up_layer);
   if (many && formula)

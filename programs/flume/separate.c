@@ -1,6 +1,6 @@
 /* separate.c - incident and reflected waves by the gauges before structure, rock, a bed that is not
- * level, or zone, beside the linear target there, and the waves that pass by the gauges behind. One set of progressive
- * waves to either side describes neither both waters nor what is between them.
+ * level, or zone, beside the linear target there, and the waves that pass by the gauges behind. One
+ * set of progressive waves to either side describes neither both waters nor what is between them.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 

@@ -96,17 +96,19 @@ static void warn_of_gauges(app *a, const flume *m) {
     for (int k = 0; k < m->fronts; k++) counts = counts || m->front[k] == g;
     for (int k = 0; k < m->rears; k++) counts = counts || m->rear[k] == g;
     if (counts) continue;
-    app_warn(a,
-             "the gauge at %g m lies between the ends of structure, rock, a bed that is not level, or "
-             "zone: incident and reflected waves are found without it",
-             m->s.gauge[g]);
+    app_warn(
+        a,
+        "the gauge at %g m lies between the ends of structure, rock, a bed that is not level, or "
+        "zone: incident and reflected waves are found without it",
+        m->s.gauge[g]);
     break;
   }
   if (m->fronts < 2)
-    app_warn(a,
-             "incident and reflected waves need two gauges before structure, rock, a bed that is not "
-             "level, or zone: there %s %d",
-             m->fronts == 1 ? "is" : "are", m->fronts);
+    app_warn(
+        a,
+        "incident and reflected waves need two gauges before structure, rock, a bed that is not "
+        "level, or zone: there %s %d",
+        m->fronts == 1 ? "is" : "are", m->fronts);
 }
 
 static void warn_of_end(app *a, const flume *m) {

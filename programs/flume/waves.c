@@ -113,8 +113,7 @@ mps_status flume_make_pistons(app *a, flume *m) {
   else
     status = mps_absorber_create(a->context, &def, &m->maker);
   def.waves = NULL, def.depth = flume_end_depth(m);
-  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m) &&
-      flume_end_is_wet(m))
+  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m) && flume_end_is_wet(m))
     status = mps_absorber_create(a->context, &def, &m->end);
   return app_settle(a, status);
 }
