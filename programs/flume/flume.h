@@ -278,6 +278,8 @@ typedef struct flume_figures {
   double discharge;                            /* m2/s */
   double *thin;        /* m2: of events too low for particles, so far at each sample; NULL: none */
   int64_t thin_events; /* of all times */
+  double thrown;       /* m2/s: part of `discharge` that has passed the crest of a slope whose layer
+                          has not come to it; NAN: no slope */
   int64_t climbs;      /* of the window, up a slope */
   double run_up_layer; /* m: what 2 % exceed by the layer on the slope */
   double run_up, run_up_mean, run_up_highest; /* m above the water at rest: what 2 % exceed; of the
@@ -296,7 +298,6 @@ typedef struct flume_figures {
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
   double front, crest; /* m: x of the front edge of a caisson's base; its crest above the water */
-  char why[600];       /* reason why a formula is not valid here */
 } flume_figures;
 
 /* Waves of a gauge by crossings of the mean level upwards. */
@@ -318,6 +319,7 @@ void flume_find_solitary(const flume *m, flume_figures *f);
 /* climb.c. False after an error line. Mean discharge (m2/s) of `thin` between two times, NAN where
  * there is none. */
 bool flume_find_thin(app *a, const flume *m, flume_figures *f);
+void flume_find_thrown(app *a, const flume *m, flume_figures *f);
 bool flume_find_run_up(app *a, const flume *m, flume_figures *f);
 double flume_thin_between(const flume *m, const flume_figures *f, double from, double to);
 /* harmonics.c: bound and those after it, NAN where the gauges are too near. */

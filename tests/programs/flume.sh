@@ -131,6 +131,34 @@ has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock, a 
 has "$s" '"loss_per_wavelength": null'
 has "$s" '"harmonic_bound": null'
 
+# A window of two periods, whose ends differ by a little less in floating point.
+"$1/mps-flume" --period 0.7 --height 0.03 --spacing 0.05 --length 5 --window 0.7,2.1 --duration 2.1 --frames 0 \
+  --threads 1 --out "$work/two" >"$work/log" 2>&1
+! grep -q "too short" "$work/log" || fail "two periods are too short"
+
+# Run-up of a solitary wave on 1:2.5, Synolakis' 2.831 cot(angle)^1/2 (H/d)^5/4 d = .180 m.
+for l0 in 0.03 0.025 0.02; do
+  "$1/mps-flume" --waves solitary --depth 0.3 --height 0.06 --wall slope --slope 2.5 --freeboard 0.3 --length 3 \
+    --spacing $l0 --duration 5 --frames 0 --threads 1 --out "$work/climb" >"$work/log" 2>&1
+  in_range "$work/climb/summary.json" run_up_highest 0.162 0.198
+  has "$work/log" "run-up: highest 0.1"
+done
+
+# Breakers on 1:4 throw particles over a crest three wave heights up, which water does not pass; over a low dike it flows.
+"$1/mps-flume" --depth 0.5 --height 0.1 --period 1.6 --wall slope --slope 4 --freeboard 0.3 --spacing 0.03125 --duration 14 \
+  --length 4 --frames 0 --threads 1 --out "$work/thrown" >"$work/log" 2>&1
+s=$work/thrown/summary.json
+thrown=$(sed -n 's/.*"q_thrown": \([^,]*\),*$/\1/p' "$s")
+in_range "$s" q_thrown 1e-5 1e-2
+in_range "$s" q "$thrown" "$thrown"
+has "$work/log" "without particles thrown over the crest 0 m2/s"
+has "$s" "in particles that breakers throw up, while the layer on the slope stayed below it"
+"$1/mps-flume" --height 0.12 --period 1.6 --wall slope --slope 2 --freeboard 0.06 --spacing 0.04 --duration 13 --length 4 \
+  --frames 0 --threads 1 --out "$work/flows" >"$work/log" 2>&1
+s=$work/flows/summary.json
+in_range "$s" q 1e-3 2e-2
+in_range "$s" q_thrown 0 4e-4
+
 # On from a checkpoint: the results of the run that never stopped.
 run="$sea --freeboard 0.05 --duration 12 --frames 0"
 "$1/mps-flume" $run --out "$work/c" >"$work/log" 2>&1
