@@ -1,5 +1,5 @@
 /* warnings.c - warnings of mps-flume before a run: waves of few spacings or that break on the way,
- * a record of other periods, gauges without use, a body without rock below.
+ * a record of other periods, gauges without use, a body without rock below, thin rock.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
@@ -10,6 +10,7 @@
 #define LEAST_OF_WAVES 3.0
 #define LEAST_OF_DISCHARGE 4.0
 #define HIGHEST_OF_SEA 1.8       /* highest of some hundred waves over Hm0 */
+#define LEAST_OF_ROCK 4.4        /* particles across (docs/limits.md) */
 #define LEAST_OF_BAND 0.95       /* of the height of a record */
 #define LEAST_OF_COLLISIONS 0.05 /* a step */
 #define LONGEST 26.3             /* Ursell's number up to which second order holds, 8 pi^2/3 */
@@ -120,6 +121,25 @@ static void warn_of_end(app *a, const flume *m) {
            m->s.depth - flume_end_depth(m));
 }
 
+/* Of a region that reaches through the water: fewer particles across reflect too much. */
+static void warn_of_rock(app *a, const flume *m) {
+  for (int k = 0; k < m->shape.rocks; k++) {
+    const flume_rock *r = &m->shape.rock[k];
+    double left = INFINITY, right = -INFINITY, top = -INFINITY;
+    for (int j = 0; j < r->corners; j++) {
+      left = fmin(left, r->corner[j][0]), right = fmax(right, r->corner[j][0]);
+      top = fmax(top, r->corner[j][1]);
+    }
+    const double across = (right - left) * sqrt(r->porosity) / m->s.spacing;
+    if (top < m->s.depth || across >= LEAST_OF_ROCK) continue;
+    app_warn(
+        a,
+        "the rock from %g to %g m is %.2g particles across, width porosity^1/2 / spacing: below "
+        "%g its reflection is more than a tenth too high",
+        left, right, across, LEAST_OF_ROCK);
+  }
+}
+
 static void warn_of_record(app *a, const flume *m) {
   mps_waves_report r;
   if (m->s.waves != FLUME_FILE || mps_waves_get_report(m->waves, &r) != MPS_OK) return;
@@ -141,6 +161,7 @@ void flume_warn(app *a, const flume *m) {
   if (flume_has_body(m) && !m->bedded)
     app_warn(a, "there is no rock below the caisson: it is held where it is, and has no safeties");
   warn_of_end(a, m);
+  warn_of_rock(a, m);
   warn_of_gauges(a, m);
   warn_of_spacing(a, m);
 }

@@ -87,6 +87,16 @@ is "$work/beach/force.csv" end_m -1 0 0
 "$flume" $run --wall slope --spacing 0.04 --length 2 --duration 0.1 --rock 1.8,0,2,0.08,2.16,0.08,2,0 --stone 2cm \
   --out "$work/rock" >"$work/log" 2>&1
 in_range "$work/rock/summary.json" particles 490 620
+! grep -q "particles across" "$work/log" || fail "a warning of rock that does not reach the surface"
+thin() { # RIGHT: rock from 2 m to there
+  printf 'length: 4\nspacing: 0.05\nrock: [{corners: [[2,0],[2,0.6],[%s,0.6],[%s,0]], porosity: 0.49, stone: 2cm}]\n' $1 $1 \
+    >"$work/thin.yaml"
+  "$flume" --model "$work/thin.yaml" $run --duration 0.1 --sample 0.1 --out "$work/thin" >"$work/log" 2>&1
+}
+thin 2.2
+has "$work/log" "the rock from 2 to 2.2 m is 2.8 particles across"
+thin 2.4
+! grep -q "particles across" "$work/log" || fail "a warning of rock of 5.6 particles"
 
 # Errors: file, line, key, value, what is allowed.
 refuse() { # TEXT MODEL

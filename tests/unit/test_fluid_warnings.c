@@ -152,9 +152,9 @@ static mps_status let_go(mps_context *own, double x, double y, double density, i
   return mps_fluid_step(t.fluid, steps);
 }
 
-/* Boundaries hold water alone: a body goes on through the bed on which it stands, or the wall that
- * it touches, with one warning. One that comes down on the bed stops the run: no particle fits into
- * the last spacing of the gap. */
+/* Boundaries hold water alone: a body continues through the bed on which it stands, or the wall
+ * that it is in contact with, with one warning. One that comes down on the bed stops the run: no
+ * particle fits into the last spacing of the gap. */
 TEST(a_floating_body_at_a_boundary) {
   const struct {
     double x, y, density;

@@ -79,7 +79,8 @@ static double behind(const mps_fluid *f, const mpsi_fluid_body *body, int *bound
   return most;
 }
 
-/* Boundaries are those of the water: a body that sinks, or drifts to a wall, goes on through it. */
+/* Boundaries are those of the water: a body that sinks, or drifts to a wall, continues through it.
+ */
 void mpsi_fluid_warn_of_ground(mps_fluid *f) {
   for (int number = 0; number < f->bodies; number++) {
     mpsi_fluid_body *body = &f->body[number];
