@@ -111,6 +111,20 @@ has "$work/log" "0.36 m (1.8 Hm0), are above the breaking height 0.27 m"
 "$1/mps-flume" $short --waves focused --height 0.1 --focus 3,4 >"$work/log" 2>&1
 has "$work/log" "the focus at 4 s is too early: the waves of the peak need 5"
 
+# What the library says of its choices is said by the options.
+refuse_waves() { # TEXT OPTIONS
+  text=$1
+  shift
+  code=0
+  "$flume" --spacing 0.05 --length 5 --duration 0.05 --out "$work/refused" "$@" >"$work/log" 2>&1 || code=$?
+  [ $code -ne 0 ] || fail "no error of $*"
+  has "$work/log" "$text"
+}
+flume=$1/mps-flume
+refuse_waves "must be below 26.3 with --order second: longer waves are of --order stream" --height 0.08 --period 3 --depth 0.25
+refuse_waves "--order stream is for --waves regular" --order stream --waves jonswap
+refuse_waves "--order stream is for k depth <= 1: take --order second" --order stream --period 0.8 --height 0.03
+
 # Regular waves too long for second order; steps.
 "$1/mps-flume" $short --order stream --height 0.08 --period 3 --depth 0.25 >"$work/log" 2>&1
 has "$work/log" "1 components, wave length 4.902 m"
