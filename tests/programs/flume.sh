@@ -145,6 +145,16 @@ has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock, a 
 has "$s" '"loss_per_wavelength": null'
 has "$s" '"harmonic_bound": null'
 
+# Before a wall the maker absorbs what that sends back, however far it is: the incident waves are as high 1.63 and 1.88
+# wave lengths away, where what a maker sent back would be in phase and against it.
+for l0 in 0.05 0.04 0.0333333333; do
+  for toe in 3.9 4.5; do
+    "$1/mps-flume" --height 0.08 --wall vertical --spacing $l0 --length $toe --duration 20 --window 9,20 --frames 0 \
+      --threads 1 --out "$work/toe" >"$work/log" 2>&1
+    in_range "$work/toe/summary.json" H_incident 0.0740 0.0815 # .0723 to .0832 with .06 sent back
+  done
+done
+
 # A window of two periods, whose ends differ by a little less in floating point.
 "$1/mps-flume" --period 0.7 --height 0.03 --spacing 0.05 --length 5 --window 0.7,2.1 --duration 2.1 --frames 0 \
   --threads 1 --out "$work/two" >"$work/log" 2>&1
