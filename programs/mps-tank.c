@@ -77,6 +77,8 @@ static int complete(const options_program *program, tank_settings *s) {
       return options_refuse(program, "--gauge must be in the tank, 0 to --length");
   if (kind == TANK_FLOAT) {
     const double gap = 0.5 * (s->length - s->width), h = s->spacing;
+    if (s->width < 1.999 * h)
+      return options_refuse(program, "--width must be at least 2 times --spacing");
     if (!(gap > 4.999 * h && s->draft > 1.999 * h && s->depth - s->draft > 4.999 * h))
       return options_refuse(program, "--width and --draft must leave at least 5 spacings of water "
                                      "beside and below the box, and --draft be at least 2");

@@ -550,11 +550,29 @@ bool options_given(const option *table, const char *name) {
   return false;
 }
 
-/* "--cell is 0.43 m by default"; false where the option has no value. */
+/* "0.4 m, taken as 0.5 m: ..." of the note of an option; NULL: its value is as given. */
+static const char *find_note(const option *o) {
+  const size_t length = strlen(o->name);
+  for (int k = 0; k < notes; k++)
+    if (strncmp(noted[k], "--", 2) == 0 && strncmp(noted[k] + 2, o->name, length) == 0 &&
+        strncmp(noted[k] + 2 + length, " is ", 4) == 0 && strchr(noted[k], ','))
+      return noted[k] + length + 6;
+  return NULL;
+}
+
+/* "--cell is 0.43 m by default", "--depth is 0.4 m by default, taken as 0.5 m"; false where the
+ * option has no value. */
 static bool show_value(const option *o, char *out, size_t size) {
   char value[160];
+  const char *note = find_note(o), *standard = o->given ? "" : " by default";
   const bool any = shown_value(o, value, sizeof value);
-  snprintf(out, size, "--%s is %s%s", o->name, value, o->given ? "" : " by default");
+  if (note) {
+    const int first = (int)strcspn(note, ","), all = (int)strcspn(note, ":");
+    snprintf(out, size, "--%s is %.*s%s%.*s", o->name, first, note, standard, all - first,
+             note + first);
+  } else {
+    snprintf(out, size, "--%s is %s%s", o->name, value, standard);
+  }
   return any;
 }
 

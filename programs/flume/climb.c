@@ -1,6 +1,7 @@
 /* climb.c - how the water climbs the structure of mps-flume: the head of the level before an
  * upright face over its crest, and the tongue on a slope; from their records the discharge of
- * events too low for particles, and run-up beside EurOtop's.
+ * events too low for particles, that of particles thrown over a crest, and run-up beside
+ * EurOtop's.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
@@ -18,7 +19,9 @@
 #define UPRIGHT 0.1   /* most of run over rise of an upright face */
 #define GENTLEST 0.01 /* least and most tangent of a slope whose tongue is read */
 #define STEEPEST 1.0
-#define LEAST_WAVES 50 /* for what 2 % of them exceed */
+#define EDGE 2.0 /* spacings along the slope from its end: a layer within them has passed it */
+#define MOST_THROWN 0.1 /* of the discharge, from which on it is warned of */
+#define LEAST_WAVES 50  /* for what 2 % of them exceed */
 
 /* ---- the structure --------------------------------------------------------------------------- */
 
@@ -113,6 +116,41 @@ double flume_thin_between(const flume *m, const flume_figures *f, double from, d
   return f->thin ? (last - first) / (to - from) : NAN;
 }
 
+/* ---- particles thrown over a crest ------------------------------------------------------------
+ */
+
+/* The highest reading of the layer on the slope in a period before sample k and at it. */
+static double layer_before(const flume *m, int64_t k) {
+  double most = -INFINITY;
+  for (int64_t j = k; j >= 0 && m->sample[j].t >= m->sample[k].t - m->s.period; j--)
+    most = fmax(most, m->sample[j].layer);
+  return most;
+}
+
+/* Water flows over a crest where the layer on the slope before it has come to its end: the last
+ * particle of one that has lies within EDGE spacings of that. What passes else is thrown. */
+void flume_find_thrown(app *a, const flume *m, flume_figures *f) {
+  tongue_slope slope;
+  if (!flume_is_open(m) || !find_slope(m, &slope) || isnan(f->discharge)) return;
+  const double end = slope.length - EDGE * m->s.spacing;
+  const double edge = slope.foot[1] - m->s.depth + end * sin(slope.angle);
+  double thrown = 0.0, highest = -INFINITY;
+  for (int64_t k = 1; k < m->samples; k++) {
+    const double passed = m->sample[k].volume - m->sample[k - 1].volume;
+    if (m->sample[k].t < f->from || m->sample[k].t > f->to) continue;
+    highest = fmax(highest, m->sample[k].layer);
+    if (passed > 0.0 && layer_before(m, k) < edge) thrown += passed;
+  }
+  f->thrown = thrown / (f->to - f->from);
+  if (f->thrown > MOST_THROWN * f->discharge)
+    app_warn(
+        a,
+        "%.3g of the %.3g m2/s have passed the crest in particles that breakers throw up, while "
+        "the layer on the slope stayed below it, at %.3g m at most: water of the spacing "
+        "squared each, which no formula has",
+        f->thrown, f->discharge, highest);
+}
+
 /* ---- run-up ---------------------------------------------------------------------------------- */
 
 static int compare_heights(const void *a, const void *b) {
@@ -175,9 +213,20 @@ static void find_formula(app *a, const flume *m, flume_figures *f) {
   f->has_formula = mps_eurotop_find_run_up(a->context, &def, &f->formula) == MPS_OK;
 }
 
+/* Of a solitary wave: the highest reading of all. */
+static void find_single_climb(const flume *m, flume_figures *f) {
+  for (int64_t k = 0; k < m->samples; k++)
+    f->run_up_highest = fmax(f->run_up_highest, m->sample[k].run_up);
+  f->climbs = isnan(f->run_up_highest) ? 0 : 1, f->run_up_mean = f->run_up_highest;
+}
+
 bool flume_find_run_up(app *a, const flume *m, flume_figures *f) {
   double waves = 0.0, sum = 0.0;
   if (!flume_has_slope(m)) return true;
+  if (m->s.waves == FLUME_SOLITARY) {
+    find_single_climb(m, f);
+    return true;
+  }
   double *height = calloc((size_t)m->samples + 1, sizeof *height);
   if (!height || !count_waves(m, f, &waves)) {
     free(height);

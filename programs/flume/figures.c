@@ -35,7 +35,7 @@ static bool find_window(const flume *m, flume_figures *f) {
   f->to = fmin(isnan(s->window[1]) ? last : s->window[1], last);
   if (s->waves == FLUME_REGULAR)
     f->to = f->from + floor((f->to - f->from) / s->period + 1e-6) * s->period;
-  return f->to - f->from >= 2.0 * s->period;
+  return f->to - f->from >= 2.0 * s->period * (1.0 - 1e-9);
 }
 
 /* ---- waves ----------------------------------------------------------------------------------- */
@@ -222,7 +222,7 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
     app_warn(a, "the window has some %.0f waves: the formula's mean discharge is that of hundreds",
              (f->to - f->from) / s->period);
   if (!f->has_eurotop)
-    snprintf(f->why, sizeof f->why, "%s", mps_context_error(a->context)->message);
+    app_warn(a, "no discharge by EurOtop: %s", mps_context_error(a->context)->message);
 }
 
 /* Of a sea from a dike, tanh(a xi^b), a = .167 (1 - exp(-3.2 gamma)), b = 1.49 (gamma - .38)^2 +
@@ -249,13 +249,13 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
   if (!flume_find_thin(a, m, f)) return false;
-  f->reflection = NAN;
+  f->reflection = f->thrown = NAN;
   f->crest_first = f->crest_last = f->speed = f->trailing = NAN;
   if (m->s.waves == FLUME_SOLITARY) {
     f->from = 0.0, f->to = m->samples ? m->sample[m->samples - 1].t : 0.0;
     flume_find_solitary(m, f);
     if (flume_is_loaded(m)) find_forces(m, f);
-    return true;
+    return flume_find_run_up(a, m, f);
   }
   if (!find_window(m, f)) {
     if (!progress_interrupted()) /* else its own line says enough */
@@ -275,6 +275,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_sainflou(a, m, f);
   if (f->separated) find_discharge(a, m, f);
+  flume_find_thrown(a, m, f);
   if (f->separated) find_reflection(m, f);
   return flume_find_run_up(a, m, f);
 }

@@ -198,6 +198,9 @@ void flume_make_ground(flume *m);
 bool flume_is_solid(const flume *m, double x, double y);
 /* Height (m) of the ground over a station, the highest where it hangs over; -INFINITY: none. */
 double flume_ground_at(const flume *m, double x);
+/* Depth (m) of the water at rest at the far end; whether a piston can follow its level there. */
+double flume_end_depth(const flume *m);
+bool flume_end_is_wet(const flume *m);
 /* Whether segments p-q and r-s cross inside both, and their distance (m). */
 bool flume_cross(const double *p, const double *q, const double *r, const double *s);
 double flume_distance(const double *p, const double *q, const double *r, const double *s);
@@ -210,7 +213,8 @@ double flume_face_distance(const flume *m, const double *x);
 double flume_nearest_face(const flume *m, const double *x, double *on, int32_t *wall);
 bool flume_fill_cells(flume *m);
 bool flume_is_wet(const flume *m, double x, double y);
-/* gauges.c: the default ones, and which lie before and behind structure, rock and zone. */
+/* gauges.c: the default ones, and which lie before and behind structure, rock, a
+ * change of the bed and zone. */
 void flume_place_gauges(flume *m);
 /* fill.c: particles of the water at rest, appended. */
 /* *cut: whether faces cut the lattice. */
@@ -260,7 +264,7 @@ typedef struct flume_figures {
   double from, to; /* s, as used */
   bool separated;  /* there are incident and reflected waves */
   mps_separation split;
-  bool passed; /* there are waves behind structure or rock */
+  bool passed; /* there are waves behind structure, rock or a change of the bed */
   mps_separation behind;
   int64_t bands;
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */
@@ -274,6 +278,8 @@ typedef struct flume_figures {
   double discharge;                            /* m2/s */
   double *thin;        /* m2: of events too low for particles, so far at each sample; NULL: none */
   int64_t thin_events; /* of all times */
+  double thrown;       /* m2/s: part of `discharge` that has passed the crest of a slope whose layer
+                          has not come to it; NAN: no slope */
   int64_t climbs;      /* of the window, up a slope */
   double run_up_layer; /* m: what 2 % exceed by the layer on the slope */
   double run_up, run_up_mean, run_up_highest; /* m above the water at rest: what 2 % exceed; of the
@@ -292,7 +298,6 @@ typedef struct flume_figures {
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
   double front, crest; /* m: x of the front edge of a caisson's base; its crest above the water */
-  char why[600];       /* reason why a formula is not valid here */
 } flume_figures;
 
 /* Waves of a gauge by crossings of the mean level upwards. */
@@ -314,6 +319,7 @@ void flume_find_solitary(const flume *m, flume_figures *f);
 /* climb.c. False after an error line. Mean discharge (m2/s) of `thin` between two times, NAN where
  * there is none. */
 bool flume_find_thin(app *a, const flume *m, flume_figures *f);
+void flume_find_thrown(app *a, const flume *m, flume_figures *f);
 bool flume_find_run_up(app *a, const flume *m, flume_figures *f);
 double flume_thin_between(const flume *m, const flume_figures *f, double from, double to);
 /* harmonics.c: bound and those after it, NAN where the gauges are too near. */

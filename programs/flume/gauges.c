@@ -1,11 +1,26 @@
 /* gauges.c - level gauges of mps-flume: where they stand by default, and which of them lie before
- * and behind what changes the waves: structure, body, rock, damping zone.
+ * and behind what changes the waves: structure, body, rock, another bed, damping zone.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>
 
-/* Start and end (m) of structure, body, rock and damping zone. Of a flume without any: its end. */
+#define LEVEL 0.02 /* of the depth: change of the bed that waves feel little of */
+
+/* The bed from where it leaves the height of the maker's foot to where it has that of its end: the
+ * depth is another one there, and so are the wave numbers. */
+static void find_change_of_bed(const flume *m, double obstacle[2]) {
+  const flume_shapes *p = &m->shape;
+  const double most = LEVEL * m->s.depth;
+  for (int k = p->bed - 1; k > 0; k--) {
+    const double *a = p->bed_point[k - 1], *b = p->bed_point[k];
+    if (fabs(b[1]) > most) obstacle[0] = fmin(obstacle[0], a[0]);
+    if (fabs(a[1] - p->bed_point[p->bed - 1][1]) > most) obstacle[1] = fmax(obstacle[1], b[0]);
+  }
+}
+
+/* Start and end (m) of structure, body, rock, change of the bed and damping zone. Of a flume
+ * without any: its end. */
 static void find_obstacle(const flume *m, double obstacle[2]) {
   const flume_shapes *p = &m->shape;
   obstacle[0] = m->toe, obstacle[1] = 0.0;
@@ -17,6 +32,7 @@ static void find_obstacle(const flume *m, double obstacle[2]) {
       obstacle[0] = fmin(obstacle[0], p->rock[k].corner[j][0]);
       obstacle[1] = fmax(obstacle[1], p->rock[k].corner[j][0]);
     }
+  find_change_of_bed(m, obstacle);
   if (m->s.absorb != FLUME_ZONE) return;
   obstacle[0] = fmin(obstacle[0], m->outlet - m->s.zone * m->wave_length);
   obstacle[1] = m->outlet;

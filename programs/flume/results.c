@@ -220,7 +220,8 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   if (there && m->end) printf(", mean place of the far piston %.1f mm", 1e3 * g->mean_end);
   if (there && m->maker) printf("\n");
   if (g->passed)
-    printf("behind structure or rock Hm0 %.4f m, transmission %.3f, reflection there %.3f\n",
+    printf("behind structure, rock or a change of the bed Hm0 %.4f m, transmission %.3f, "
+           "reflection there %.3f\n",
            g->behind.incident_height, g->behind.incident_height / g->split.incident_height,
            g->behind.reflection);
   if (!isnan(g->bound))
@@ -343,11 +344,11 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   }
 }
 
-static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
-                                int64_t events) {
+static void summarise_discharge(output *f, const flume *m, const flume_figures *g, int64_t events) {
   const bool body = flume_is_open(m);
   json_number_if(f, body, "q", g->discharge);
   const double thin = isnan(g->discharge) ? NAN : flume_thin_between(m, g, g->from, g->to);
+  json_number_if(f, !isnan(g->thrown), "q_thrown", g->thrown);
   json_number_if(f, !isnan(thin), "q_thin", thin);
   json_number_if(f, !isnan(thin), "q_with_thin", g->discharge + thin);
   json_integer_if(f, g->thin, "thin_events", g->thin_events);
@@ -366,12 +367,16 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
     printf(", EurOtop %.3g m2/s (%.3g to %.3g), ratio %.2f", g->eurotop.discharge, g->eurotop.low,
            g->eurotop.high, g->discharge / g->eurotop.discharge);
   if (body && !isnan(g->discharge)) printf("\n");
+  if (g->thrown > 0.0) {
+    printf("without particles thrown over the crest %.3g m2/s", g->discharge - g->thrown);
+    if (g->has_eurotop) printf(", ratio %.2f", (g->discharge - g->thrown) / g->eurotop.discharge);
+    printf("\n");
+  }
   if (!isnan(thin)) {
     printf("with events too low for particles %.3g m2/s", g->discharge + thin);
     if (g->has_eurotop) printf(", ratio %.2f", (g->discharge + thin) / g->eurotop.discharge);
     printf("\n");
   }
-  if (g->why[0]) app_warn(a, "no discharge by EurOtop: %s", g->why);
 }
 
 static void summarise_run_up(output *f, const flume *m, const flume_figures *g) {
@@ -384,6 +389,9 @@ static void summarise_run_up(output *f, const flume *m, const flume_figures *g) 
   json_number_if(f, formula, "Ru2_eurotop", g->formula.height);
   json_number_if(f, formula, "Ru2_eurotop_low", g->formula.low);
   json_number_if(f, formula, "Ru2_eurotop_high", g->formula.high);
+  if (slope && g->climbs > 0)
+    printf("run-up: highest %.4f m, mean of %lld %.4f m\n", g->run_up_highest, (long long)g->climbs,
+           g->run_up_mean);
   if (many) printf("run-up that 2 %% of the waves exceed %.4f m by the tongue", g->run_up);
   if (many && !isnan(g->run_up_layer)) printf(", %.4f m by the layer", g->run_up_layer);
   if (many && formula)
@@ -402,7 +410,7 @@ static bool write_summary(app *a, const flume *m, const flume_figures *g, int64_
   summarise_solitary(&f, m, g);
   summarise_absorption(&f, m);
   summarise_force(&f, m, g);
-  summarise_discharge(a, &f, m, g, events);
+  summarise_discharge(&f, m, g, events);
   summarise_run_up(&f, m, g);
   json_integer(&f, "collisions", m->report.collisions);
   json_integer(&f, "limited", m->report.limited);

@@ -54,15 +54,19 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
  * both change the mean level of a closed one. So the offset is the mean b at the face in a flume
  * whose piston stands at X = 0,
  *
- *   b' = (eta - X d/L - b)/T_b,
+ *   c' = (eta - X d/L - c)/tau,  b' = (c - b)/tau,
  *
- * by which slow motions are X' = -(g d)^1/2 X/L. T_b is a period, or the time that long waves take
- * through the flume, which are still absorbed. All absorb about their mean places. */
+ * by which slow motions are X' = -(g d)^1/2 X/L. tau is a period, or half the time that long waves
+ * take through the flume, which are still absorbed. What b has of the waves, 1/(1 + (omega tau)^2)
+ * of them at most .025, turns the level that the maker follows, and half of that is sent back: with
+ * one filter in place of two it was .06, and incident waves 7 % too low to 5 % too high by the
+ * distance of the wall. All absorb about their mean places. */
 static void follow_wall(flume *m, double level, double dt) {
   flume_mean *mean = &m->mean[0];
   const double through = m->toe / sqrt(WAVES_G * m->s.depth);
-  const double part = -expm1(-dt / fmax(m->s.period, through));
-  mean->offset += part * (level - place_of(m->maker) * m->s.depth / m->toe - mean->offset);
+  const double part = -expm1(-dt / fmax(m->s.period, 0.5 * through));
+  mean->slow += part * (level - place_of(m->maker) * m->s.depth / m->toe - mean->slow);
+  mean->offset += part * (mean->slow - mean->offset);
 }
 
 /* No level takes two pistons back that move together, and waves that arrive, or .1 mm of mean level
@@ -74,7 +78,8 @@ static void follow_wall(flume *m, double level, double dt) {
  * Of the level at its face b, the mean above the asked one over theta, and what moves all of the
  * water, L/(2 g) (v_1' - v_2')/2, is not absorbed. */
 static void follow_two(flume *m, const double *above, double dt) {
-  const double T = m->s.period, d = m->s.depth, through = m->toe / sqrt(WAVES_G * d);
+  const double T = m->s.period, d[2] = {m->s.depth, flume_end_depth(m)};
+  const double through = m->toe / sqrt(WAVES_G * fmin(d[0], d[1]));
   const double theta = fmax((m->s.waves == FLUME_REGULAR ? 1.0 : GROUP) * T, 0.4 * through);
   mps_absorber *const piston[2] = {m->maker, m->end};
   double rate[2];
@@ -91,7 +96,7 @@ static void follow_two(flume *m, const double *above, double dt) {
     const double push = 0.25 * m->toe / WAVES_G * (rate[k] - rate[1 - k]);
     mean->slow += -expm1(-dt / T) * (above[k] - push - mean->slow);
     mean->level += -expm1(-dt / theta) * (mean->slow - mean->level);
-    mean->offset = mean->level + push + mean->speed * sqrt(d / WAVES_G);
+    mean->offset = mean->level + push + mean->speed * sqrt(d[k] / WAVES_G);
   }
 }
 

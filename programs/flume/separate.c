@@ -1,6 +1,6 @@
-/* separate.c - incident and reflected waves by the gauges before structure, rock or zone, beside
- * the linear target there, and the waves that pass by the gauges behind. One set of progressive
- * waves to either side describes neither both waters nor what is between them.
+/* separate.c - incident and reflected waves by the gauges before structure, rock, a bed that is not
+ * level, or zone, beside the linear target there, and the waves that pass by the gauges behind. One
+ * set of progressive waves to either side describes neither both waters nor what is between them.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
@@ -54,6 +54,7 @@ static mps_status separate(app *a, const flume *m, flume_figures *f, const part 
                            mps_separation *out) {
   double position[FLUME_GAUGES];
   mps_separation_def def = band_of(m, f);
+  if (p->gauge == m->rear) def.depth -= flume_ground_at(m, m->s.gauge[p->gauge[0]]);
   for (int n = 0; n < p->count; n++) position[n] = m->s.gauge[p->gauge[n]];
   def.gauges = p->count, def.position = position;
   def.times = p->t, def.levels = p->level;

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SHALLOWEST 2.0 /* spacings of water before a piston */
+
 /* ---- the ground ------------------------------------------------------------------------------ */
 
 static void add_point(flume *m, double x, double y) {
@@ -101,6 +103,12 @@ double flume_ground_at(const flume *m, double x) {
     y = fmax(y, p[1] + (q[1] - p[1]) * (x - p[0]) / (q[0] - p[0]));
   }
   return y;
+}
+
+double flume_end_depth(const flume *m) { return m->s.depth - m->ground[m->grounds - 1][1]; }
+
+bool flume_end_is_wet(const flume *m) {
+  return flume_end_depth(m) >= SHALLOWEST * m->s.spacing * (1.0 - 1e-9);
 }
 
 bool flume_in_rock(const flume_rock *r, double x, double y) {

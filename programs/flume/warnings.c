@@ -1,5 +1,5 @@
 /* warnings.c - warnings of mps-flume before a run: waves of few spacings or that break on the way,
- * a record of other periods, gauges without use, a body without rock below.
+ * a record of other periods, gauges without use, a body without rock below, thin rock.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
@@ -10,6 +10,7 @@
 #define LEAST_OF_WAVES 3.0
 #define LEAST_OF_DISCHARGE 4.0
 #define HIGHEST_OF_SEA 1.8       /* highest of some hundred waves over Hm0 */
+#define LEAST_OF_ROCK 4.4        /* particles across (docs/limits.md) */
 #define LEAST_OF_BAND 0.95       /* of the height of a record */
 #define LEAST_OF_COLLISIONS 0.05 /* a step */
 #define LONGEST 26.3             /* Ursell's number up to which second order holds, 8 pi^2/3 */
@@ -96,25 +97,46 @@ static void warn_of_gauges(app *a, const flume *m) {
     for (int k = 0; k < m->fronts; k++) counts = counts || m->front[k] == g;
     for (int k = 0; k < m->rears; k++) counts = counts || m->rear[k] == g;
     if (counts) continue;
-    app_warn(a,
-             "the gauge at %g m lies between the ends of structure, rock or zone: incident and "
-             "reflected waves are found without it",
-             m->s.gauge[g]);
+    app_warn(
+        a,
+        "the gauge at %g m lies between the ends of structure, rock, a bed that is not level, or "
+        "zone: incident and reflected waves are found without it",
+        m->s.gauge[g]);
     break;
   }
   if (m->fronts < 2)
-    app_warn(a,
-             "incident and reflected waves need two gauges before structure, rock or zone: there "
-             "%s %d",
-             m->fronts == 1 ? "is" : "are", m->fronts);
-  for (int k = 0; k < m->fronts; k++) {
-    const double x = m->s.gauge[m->front[k]], y = flume_ground_at(m, x);
-    if (fabs(y) <= 0.02 * m->s.depth) continue;
-    app_warn(a,
-             "at the gauge at %g m the bed is %.3g m high: incident and reflected waves are found "
-             "with the depth at the maker",
-             x, y);
-    break;
+    app_warn(
+        a,
+        "incident and reflected waves need two gauges before structure, rock, a bed that is not "
+        "level, or zone: there %s %d",
+        m->fronts == 1 ? "is" : "are", m->fronts);
+}
+
+static void warn_of_end(app *a, const flume *m) {
+  const bool piston = m->s.absorb == FLUME_ACTIVE && m->s.wall == FLUME_OPEN_END;
+  if (!piston || flume_is_open(m) || flume_end_is_wet(m)) return;
+  app_warn(a,
+           "the bed is %.3g m high at the far end, with less than 2 spacings of water above it: no "
+           "piston absorbs there",
+           m->s.depth - flume_end_depth(m));
+}
+
+/* Of a region that reaches through the water: fewer particles across reflect too much. */
+static void warn_of_rock(app *a, const flume *m) {
+  for (int k = 0; k < m->shape.rocks; k++) {
+    const flume_rock *r = &m->shape.rock[k];
+    double left = INFINITY, right = -INFINITY, top = -INFINITY;
+    for (int j = 0; j < r->corners; j++) {
+      left = fmin(left, r->corner[j][0]), right = fmax(right, r->corner[j][0]);
+      top = fmax(top, r->corner[j][1]);
+    }
+    const double across = (right - left) * sqrt(r->porosity) / m->s.spacing;
+    if (top < m->s.depth || across >= LEAST_OF_ROCK) continue;
+    app_warn(
+        a,
+        "the rock from %g to %g m is %.2g particles across, width porosity^1/2 / spacing: below "
+        "%g its reflection is more than a tenth too high",
+        left, right, across, LEAST_OF_ROCK);
   }
 }
 
@@ -138,6 +160,8 @@ void flume_warn(app *a, const flume *m) {
   warn_of_focus(a, m);
   if (flume_has_body(m) && !m->bedded)
     app_warn(a, "there is no rock below the caisson: it is held where it is, and has no safeties");
+  warn_of_end(a, m);
+  warn_of_rock(a, m);
   warn_of_gauges(a, m);
   warn_of_spacing(a, m);
 }

@@ -66,15 +66,37 @@ static mps_status read_file(app *a, flume *m, mps_waves_def *def, double **room)
   return *room ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
+/* The library's words of a choice, as the options have them. */
+static void say_by_options(const char *reason, size_t size, char *text) {
+  static const char *const words[][2] = {{"theory MPS_WAVES_THEORY_STREAM", "--order stream"},
+                                         {"MPS_WAVES_THEORY_STREAM", "--order stream"},
+                                         {"MPS_WAVES_THEORY_SECOND", "--order second"},
+                                         {"MPS_WAVES_REGULAR", "--waves regular"},
+                                         {"take SECOND", "take --order second"}};
+  size_t used = 0;
+  while (*reason && used + 1 < size) {
+    size_t taken = 1;
+    const char *put = reason;
+    int length = 1;
+    for (size_t k = 0; k < sizeof words / sizeof *words && taken == 1; k++)
+      if (strncmp(reason, words[k][0], strlen(words[k][0])) == 0)
+        taken = strlen(words[k][0]), put = words[k][1], length = (int)strlen(put);
+    used += (size_t)snprintf(text + used, size - used, "%.*s", length, put);
+    reason += taken;
+  }
+}
+
 /* Reasons of the library begin with the member that is the key of the model file. */
 static void find_line(app *a, flume *m) {
-  char key[40] = "";
+  char key[40] = "", text[300] = "";
   const char *reason = mps_context_error(a->context)->message;
   const size_t length = strcspn(reason, " ");
+  say_by_options(reason, sizeof text, text);
+  snprintf(m->why, sizeof m->why, "%.399s", text);
   if (!m->text || length >= sizeof key) return;
   memcpy(key, reason, length);
   const document *at = document_find(m->text, key);
-  if (at) snprintf(m->why, sizeof m->why, "%.150s, line %d: %.220s", m->s.model, at->line, reason);
+  if (at) snprintf(m->why, sizeof m->why, "%.150s, line %d: %.220s", m->s.model, at->line, text);
 }
 
 mps_status flume_make_waves(app *a, flume *m) {
@@ -112,8 +134,8 @@ mps_status flume_make_pistons(app *a, flume *m) {
     def.form = MPS_ABSORBER_FORM_SHALLOW; /* the maker stays where the wave leaves it */
   else
     status = mps_absorber_create(a->context, &def, &m->maker);
-  def.waves = NULL;
-  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m))
+  def.waves = NULL, def.depth = flume_end_depth(m);
+  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m) && flume_end_is_wet(m))
     status = mps_absorber_create(a->context, &def, &m->end);
   return app_settle(a, status);
 }

@@ -340,16 +340,16 @@ static double most_deflection(const tank_model *m) {
 static comparison compare_linear(const tank_model *m, const char *source, double value,
                                  double reference, double a, double k) {
   const tank_settings *s = &m->s;
-  const double omega = sqrt(WAVES_G * k * tanh(k * s->depth));
+  const double omega = sqrt(WAVES_G * k * tanh(k * s->depth)), nu = s->viscosity / WAVES_DENSITY;
   comparison c = compare_with(source, value, reference);
   compare_require(&c, isfinite(a), "the window has no whole period of the run");
   compare_require(&c, a <= SHALLOW * s->depth,
                   "it is of small motion, and the amplitude is %.2g of the depth", a / s->depth);
   compare_require(&c, k * a <= STEEP,
                   "it is of small motion, and the steepness k a of these waves is %.2g", k * a);
-  compare_require(&c, s->viscosity * k * k <= CREEPING * omega,
+  compare_require(&c, nu * k * k <= CREEPING * omega,
                   "it is of water without viscosity, and nu k^2 is %.2g times the frequency",
-                  s->viscosity * k * k / omega);
+                  nu * k * k / omega);
   return c;
 }
 
@@ -506,7 +506,8 @@ static void summarise_drop(output *f, const tank_model *m) {
   const tank_sample *last = &m->sample[m->samples - 1];
   double a, b, centre;
   tank_drop(m->s.depth, last->t, &a, &b, &centre);
-  const double creep = m->s.viscosity / (m->s.depth * m->s.depth); /* over the rate of 1/s */
+  const double nu = m->s.viscosity / WAVES_DENSITY;
+  const double creep = nu / (m->s.depth * m->s.depth); /* over the rate of 1/s */
   comparison c = compare_with("a drop without viscosity", last->a, a);
   compare_require(&c, creep <= CREEPING, "nu over the square of the radius is %.2g times its rate",
                   creep);

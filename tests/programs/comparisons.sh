@@ -127,9 +127,10 @@ with slip_circles mps-slope --cell 2 --factor 1.5
 without slip_circles "softens" mps-slope --runout --cell 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
 tank="mps-tank --spacing 0.05 --frames 0"
 without period_exact "small motion" $tank --case sloshing --amplitude 0.07 --duration 1
-without a_exact "nu over the square" mps-tank --frames 0 --case drop --viscosity 0.1 --duration 0.05
+with period_exact $tank --case sloshing --viscosity 1 --duration 3
+without a_exact "nu over the square" mps-tank --frames 0 --case drop --viscosity 100 --duration 0.05
 without period_exact "from rest" mps-tank --spacing 0.04 --draft 0.16 --depth 0.6 --frames 0 --case float --amplitude 0.036 --duration 0.2
-without gauge_height_linear "without viscosity" $tank --case piston --amplitude 0.05 --period 1.2 --viscosity 0.1 --duration 4 --gauge 0.5
+without gauge_height_linear "without viscosity" $tank --case piston --amplitude 0.05 --period 1.2 --viscosity 100 --duration 4 --gauge 0.5
 flume="mps-flume --spacing 0.05 --length 3 --frames 0 --absorb none"
 without force_goda "the window has" $flume --waves jonswap --height 0.08 --period 1.2 --wall caisson --freeboard 0.4 --duration 16
 exit 0

@@ -111,6 +111,20 @@ has "$work/log" "0.36 m (1.8 Hm0), are above the breaking height 0.27 m"
 "$1/mps-flume" $short --waves focused --height 0.1 --focus 3,4 >"$work/log" 2>&1
 has "$work/log" "the focus at 4 s is too early: the waves of the peak need 5"
 
+# What the library says of its choices is said by the options.
+refuse_waves() { # TEXT OPTIONS
+  text=$1
+  shift
+  code=0
+  "$flume" --spacing 0.05 --length 5 --duration 0.05 --out "$work/refused" "$@" >"$work/log" 2>&1 || code=$?
+  [ $code -ne 0 ] || fail "no error of $*"
+  has "$work/log" "$text"
+}
+flume=$1/mps-flume
+refuse_waves "must be below 26.3 with --order second: longer waves are of --order stream" --height 0.08 --period 3 --depth 0.25
+refuse_waves "--order stream is for --waves regular" --order stream --waves jonswap
+refuse_waves "--order stream is for k depth <= 1: take --order second" --order stream --period 0.8 --height 0.03
+
 # Regular waves too long for second order; steps.
 "$1/mps-flume" $short --order stream --height 0.08 --period 3 --depth 0.25 >"$work/log" 2>&1
 has "$work/log" "1 components, wave length 4.902 m"
@@ -127,9 +141,47 @@ s=$work/block/summary.json
 in_range "$s" reflection 0.40 0.65
 in_range "$s" transmission 0.40 0.65
 in_range "$s" reflection_behind 0 0.08
-has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock or zone"
+has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock, a bed that is not level, or zone"
 has "$s" '"loss_per_wavelength": null'
 has "$s" '"harmonic_bound": null'
+
+# Before a wall the maker absorbs what that sends back, however far it is: the incident waves are as high 1.63 and 1.88
+# wave lengths away, where what a maker sent back would be in phase and against it.
+for l0 in 0.05 0.04 0.0333333333; do
+  for toe in 3.9 4.5; do
+    "$1/mps-flume" --height 0.08 --wall vertical --spacing $l0 --length $toe --duration 20 --window 9,20 --frames 0 \
+      --threads 1 --out "$work/toe" >"$work/log" 2>&1
+    in_range "$work/toe/summary.json" H_incident 0.0740 0.0815 # .0723 to .0832 with .06 sent back
+  done
+done
+
+# A window of two periods, whose ends differ by a little less in floating point.
+"$1/mps-flume" --period 0.7 --height 0.03 --spacing 0.05 --length 5 --window 0.7,2.1 --duration 2.1 --frames 0 \
+  --threads 1 --out "$work/two" >"$work/log" 2>&1
+! grep -q "too short" "$work/log" || fail "two periods are too short"
+
+# Run-up of a solitary wave on 1:2.5, Synolakis' 2.831 cot(angle)^1/2 (H/d)^5/4 d = .180 m.
+for l0 in 0.03 0.025 0.02; do
+  "$1/mps-flume" --waves solitary --depth 0.3 --height 0.06 --wall slope --slope 2.5 --freeboard 0.3 --length 3 \
+    --spacing $l0 --duration 5 --frames 0 --threads 1 --out "$work/climb" >"$work/log" 2>&1
+  in_range "$work/climb/summary.json" run_up_highest 0.162 0.198
+  has "$work/log" "run-up: highest 0.1"
+done
+
+# Breakers on 1:4 throw particles over a crest three wave heights up, which water does not pass; over a low dike it flows.
+"$1/mps-flume" --depth 0.5 --height 0.1 --period 1.6 --wall slope --slope 4 --freeboard 0.3 --spacing 0.03125 --duration 14 \
+  --length 4 --frames 0 --threads 1 --out "$work/thrown" >"$work/log" 2>&1
+s=$work/thrown/summary.json
+thrown=$(sed -n 's/.*"q_thrown": \([^,]*\),*$/\1/p' "$s")
+in_range "$s" q_thrown 1e-5 1e-2
+in_range "$s" q "$thrown" "$thrown"
+has "$work/log" "without particles thrown over the crest 0 m2/s"
+has "$s" "in particles that breakers throw up, while the layer on the slope stayed below it"
+"$1/mps-flume" --height 0.12 --period 1.6 --wall slope --slope 2 --freeboard 0.06 --spacing 0.04 --duration 13 --length 4 \
+  --frames 0 --threads 1 --out "$work/flows" >"$work/log" 2>&1
+s=$work/flows/summary.json
+in_range "$s" q 1e-3 2e-2
+in_range "$s" q_thrown 0 4e-4
 
 # On from a checkpoint: the results of the run that never stopped.
 run="$sea --freeboard 0.05 --duration 12 --frames 0"

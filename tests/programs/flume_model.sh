@@ -65,10 +65,38 @@ printf 'length: 6\nspacing: 0.05\nend: closed\ncaisson: [[3,0.2],[3,0.6],[3.4,0.
 has "$work/log" "no rock below the caisson: it is held where it is, and has no safeties"
 has "$work/held/summary.json" '"safety_sliding": null'
 
+# Waves over a bed that rises to half the depth: gauges there are none of the incident waves, the far piston absorbs by
+# the depth before it (with that at the maker it reflects .2), and the height follows from the flow of energy (1.054 by
+# linear theory; .97 to 1.06 with a second harmonic of a quarter). On a beach there is no far piston.
+for l0 in 0.06 0.05 0.04; do
+  printf 'depth: 0.6\nheight: 0.06\nperiod: 1.6\nbed: [[0,0],[3,0],[4.5,0.3]]\nlength: 9\n' >"$work/shoal.yaml"
+  printf 'gauge: [1,1.3,1.8,2.6,4,5.5,5.8,6.3,7.1]\nwindow: [11,16]\nduration: 16\n' >>"$work/shoal.yaml"
+  "$flume" --model "$work/shoal.yaml" $run --spacing $l0 --out "$work/shoal" >"$work/log" 2>&1
+  has "$work/log" "the gauge at 4 m lies between the ends of structure, rock, a bed that is not level, or zone"
+  in_range "$work/shoal/summary.json" H_incident 0.057 0.062
+  in_range "$work/shoal/summary.json" reflection 0 0.05
+  in_range "$work/shoal/summary.json" reflection_behind 0 0.06
+  in_range "$work/shoal/summary.json" transmission 0.97 1.06
+done
+printf 'spacing: 0.05\nbed: [[0,0],[3,0],[5,0.5]]\nlength: 6\nheight: 0.03\n' >"$work/beach.yaml"
+"$flume" --model "$work/beach.yaml" $run --duration 2 --out "$work/beach" >"$work/log" 2>&1
+has "$work/log" "the bed is 0.5 m high at the far end, with less than 2 spacings of water above it: no piston absorbs there"
+is "$work/beach/force.csv" end_m -1 0 0
+
 # Rock by options: the file's and these agree in the water at rest.
 "$flume" $run --wall slope --spacing 0.04 --length 2 --duration 0.1 --rock 1.8,0,2,0.08,2.16,0.08,2,0 --stone 2cm \
   --out "$work/rock" >"$work/log" 2>&1
 in_range "$work/rock/summary.json" particles 490 620
+! grep -q "particles across" "$work/log" || fail "a warning of rock that does not reach the surface"
+thin() { # RIGHT: rock from 2 m to there
+  printf 'length: 4\nspacing: 0.05\nrock: [{corners: [[2,0],[2,0.6],[%s,0.6],[%s,0]], porosity: 0.49, stone: 2cm}]\n' $1 $1 \
+    >"$work/thin.yaml"
+  "$flume" --model "$work/thin.yaml" $run --duration 0.1 --sample 0.1 --out "$work/thin" >"$work/log" 2>&1
+}
+thin 2.2
+has "$work/log" "the rock from 2 to 2.2 m is 2.8 particles across"
+thin 2.4
+! grep -q "particles across" "$work/log" || fail "a warning of rock of 5.6 particles"
 
 # Errors: file, line, key, value, what is allowed.
 refuse() { # TEXT MODEL

@@ -124,6 +124,60 @@ TEST(a_body_that_rolls_onto_the_bed) {
   assert_non_null(strstr(j.last, "below the 15 degrees"));
 }
 
+/* A box of .2 x .1 m and `density` times the water's that the water moves, with its middle at x, y,
+ * for some steps: what they return. */
+static mps_status let_go(mps_context *own, double x, double y, double density, int steps) {
+  const double wide = 0.2, high = 0.1, mass = 1000.0 * density * wide * high, hi[2] = {1.2, 0.4};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_body_def at = mps_body_defaults();
+  scoped_tank t = {NULL, NULL};
+  at.motion = MPS_BODY_MOTION_FREE, at.position[0] = x, at.position[1] = y;
+  at.mass = mass, at.inertia[2] = mass * (wide * wide + high * high) / 12.0, at.gravity[1] = -9.81;
+  MAKE(body, box, create_box, own, &at, wide, high);
+  set.spacing = L0, def.level = hi[1];
+  OK(mps_particles_create(own, &set, &t.water));
+  for (double v = 0.5 * L0; v < hi[1]; v += L0)
+    for (double u = 0.5 * L0; u < hi[0]; u += L0) {
+      const double p[2] = {u, v};
+      double d;
+      OK(mps_body_distance(box, 1, p, &d, NULL, NULL, NULL));
+      if (d > 0.45 * L0) OK(mps_particles_append(t.water, 1, p));
+    }
+  OK(mps_fluid_create(own, t.water, &def, &t.fluid));
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_float(t.fluid, box);
+  return mps_fluid_step(t.fluid, steps);
+}
+
+/* Boundaries hold water alone: a body continues through the bed on which it stands, or the wall
+ * that it is in contact with, with one warning. One that comes down on the bed stops the run: no
+ * particle fits into the last spacing of the gap. */
+TEST(a_floating_body_at_a_boundary) {
+  const struct {
+    double x, y, density;
+    const char *boundary;
+  } at[] = {{0.6, 0.05, 2.0, "2"}, {0.1, 0.38, 0.5, "0"}, {1.1, 0.38, 0.5, "1"}};
+  for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
+    journal j = {0};
+    char text[80];
+    scoped_context *own = journal_context(&j, NULL);
+    OK(let_go(own, at[k].x, at[k].y, at[k].density, 60));
+    snprintf(text, sizeof text, "floating body 0 goes through boundary %s", at[k].boundary);
+    assert_int_equal(j.count, 1);
+    assert_non_null(strstr(j.last, text));
+  }
+  journal j = {0};
+  scoped_context *own = journal_context(&j, NULL);
+  OK(let_go(own, 0.6, 0.4, 0.5, 60));
+  assert_int_equal(j.count, 0);
+  assert_int_equal(let_go(own, 0.6, 0.3, 2.0, 400), MPS_ERROR_NUMERIC);
+  assert_non_null(
+      strstr(mps_context_error(own)->message, "m from boundary 2, less than the spacing"));
+}
+
 /* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
 TEST(a_run_does_not_choose_endless_steps) {
   for (int weightless = 0; weightless < 2; weightless++) {

@@ -27,13 +27,13 @@ typedef struct mpsi_fluid_body {
   bool leaves; /* its handle was destroyed in the open step: it leaves the water when that ends */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
-  double tried[3], missed[3]; /* accelerations of the last trial, and what was out of balance */
-  bool warned;                /* of its angle with a boundary */
+  double tried[3], missed[3];    /* accelerations of the last trial, and what was out of balance */
+  bool warned, warned_of_ground; /* of its angle with a boundary, and where it goes through one */
 } mpsi_fluid_body;
 
 #define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */
 
-void mpsi_fluid_place_bodies(mps_fluid *fluid);            /* faces as of the pose */
+void mpsi_fluid_place_bodies(mps_fluid *fluid); /* faces as of the pose */
 /* Evaluates the signals of bodies that the fluid moves for the end of a step of dt. */
 mps_status mpsi_fluid_look_ahead_of_bodies(mps_fluid *fluid, const char *function, double dt);
 void mpsi_fluid_drive_bodies(mps_fluid *fluid, double dt); /* next of the faces */

@@ -12,11 +12,13 @@
 #include "afloat.h"
 #include "fluid/base/flow_solver.h"
 #include "fluid/base/access.h"
+#include "fluid/boundary/pose.h"
 #include "fluid/reading/probe.h"
 
 #include "body/body_internal.h"
 #include "domain/domain_internal.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define REPEATS 40      /* most solutions a step */
@@ -130,6 +132,27 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, bool first) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
+/* Water in a gap of less than a spacing is no longer particles: why they do not agree, or "". */
+static void find_gap(const mps_fluid *f, size_t size, char *text) {
+  double least = f->l0;
+  text[0] = '\0';
+  for (int n = 0; n < f->bodies; n++)
+    for (int k = 0; f->body[n].floats && k < f->body[n].faces; k++)
+      for (int b = 0; b < f->boundaries; b++) {
+        double x[2];
+        mpsi_fluid_corner(&f->body[n], false, k, x);
+        if (!f->wall[b].used || f->wall[b].line) continue;
+        const double gap = mpsi_fluid_distance(&f->wall[b], f->wall[b].now.s, x[0], x[1]);
+        if (!(gap < least)) continue;
+        least = gap;
+        snprintf(
+            text, size,
+            ": body %d is %.3g m from boundary %d, less than the spacing, and no boundary holds "
+            "a body",
+            n, gap, b);
+      }
+}
+
 mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
   for (int repeat = 0; repeat < REPEATS; repeat++) {
     mpsi_fluid_drive_bodies(f, f->dt);
@@ -143,8 +166,10 @@ mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
       if (f->body[b].floats) agreed &= judge(f, &f->body[b], repeat == 0);
     if (agreed) return MPS_OK;
   }
+  char gap[160];
+  find_gap(f, sizeof gap, gap);
   return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
                    "step %lld, t = %g s: the bodies afloat and the water have not agreed in %d "
-                   "solutions; the step is not made",
-                   (long long)f->steps, f->time, REPEATS);
+                   "solutions%s; the step is not made",
+                   (long long)f->steps, f->time, REPEATS, gap);
 }

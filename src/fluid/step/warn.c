@@ -1,7 +1,7 @@
 /* warn.c - assumptions of the model: walls that move little in a step and bend little, particles
- * fine enough for the flow, bodies without acute corners of water at their boundary. A step that
- * breaks them is an error, one that comes near is a warning in the log, once a solver each, or once
- * a body.
+ * fine enough for the flow, bodies without acute corners of water at their boundary that stay
+ * before it. A step that breaks them is an error, one that comes near is a warning in the log, once
+ * a solver each, or once a body.
  *
  * Images are those of the step's beginning, so a wall that moves a spacing passes particles. A bent
  * wall mirrors at its local position along the normal that it has when plane: the error grows as
@@ -9,11 +9,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "warn.h"
 #include "fluid/boundary/clearance.h"
+#include "fluid/boundary/pose.h"
 
 #define WARN_FROM 50      /* steps */
 #define MOST_GUARDED 0.01 /* of the particles, in a step on average */
 #define FAR_TRAVEL 0.5    /* l0 a step: above, a warning .. */
 #define MOST_TRAVEL 1.5   /* .. and an error */
+#define FAR_BEHIND 0.5    /* l0 of a floating body behind a boundary */
 #define FAR_SLOPE 0.1     /* of a bent wall */
 #define MOST_SLOPE 1.0
 
@@ -52,6 +54,46 @@ void mpsi_fluid_warn_of_angles(mps_fluid *f) {
                  "are not to be relied on",
                  (long long)f->steps, k, number, b, angle, MPSI_FLUID_LEAST_ANGLE);
       }
+  }
+}
+
+/* The corner of a body that is farthest behind a boundary, and still goes there: how far (m), and
+ * which boundary. */
+static double behind(const mps_fluid *f, const mpsi_fluid_body *body, int *boundary) {
+  double most = -INFINITY;
+  for (int b = 0; b < f->boundaries; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used || w->line) continue;
+    for (int k = 0; k < body->faces; k++) {
+      double x[2];
+      mpsi_fluid_corner(body, false, k, x);
+      const double arm[2] = {x[0] - body->pose.x[0], x[1] - body->pose.x[1]},
+                   spin = body->pose.spin;
+      const double into = (body->pose.v[0] - spin * arm[1]) * w->normal[0] +
+                          (body->pose.v[1] + spin * arm[0]) * w->normal[1];
+      const double deep = -mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+      if (into >= 0.0 || deep <= most) continue;
+      most = deep, *boundary = b;
+    }
+  }
+  return most;
+}
+
+/* Boundaries are those of the water: a body that sinks, or drifts to a wall, continues through it.
+ */
+void mpsi_fluid_warn_of_ground(mps_fluid *f) {
+  for (int number = 0; number < f->bodies; number++) {
+    mpsi_fluid_body *body = &f->body[number];
+    int b = 0;
+    if (!body->body || !body->floats || body->warned_of_ground) continue;
+    const double deep = behind(f, body, &b);
+    if (!(deep > FAR_BEHIND * f->l0)) continue;
+    body->warned_of_ground = true;
+    mpsi_log(
+        f->context, MPS_CONTEXT_LOG_WARNING,
+        "step %lld of the fluid: floating body %d goes through boundary %d, and is %g m behind "
+        "it: boundaries hold water alone; what holds a body is the caller's or another solver's",
+        (long long)f->steps, number, b, deep);
   }
 }
 

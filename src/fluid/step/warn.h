@@ -15,3 +15,4 @@ typedef enum mpsi_fluid_warning {
 mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
 void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
+void mpsi_fluid_warn_of_ground(mps_fluid *fluid);
