@@ -15,10 +15,11 @@
 #define SOFT 1e4    /* E over q: below, the ground changes its shape before it fails */
 #define STIFF 1.6e4 /* of the run that does not */
 #define PATH 23.3   /* settlement, a q/E */
-/* The same where weight alone bears the base: a smooth one fails after 4.5, a rough one after 6; from
+/* The same where weight alone bears the base: a smooth one fails after 4.5, a rough one after 6. From
  * there on q grows by a twentieth, or falls, as particles that dilate share the pressure ever less
  * evenly. */
 #define WEIGHT_PATH 6.8
+#define ROUGH_PATH 9.0
 #define PAPER_SAND 4e-3 /* m */
 /* Speed, q/(rho E)^1/2: 2 mm/s by default. Sand creeps on for long, the more so where its weight
  * alone gives it strength. Particles keep their share of the motion for a time, of the run. With
@@ -31,7 +32,7 @@
 #define CLAY_FLIP 0.067
 #define GROWING_FLIP 0.0167 /* of clay that is weakest at the surface: slower */
 #define WEIGHT_FLIP 0.085
-#define ROUGH_FLIP 0.04
+#define ROUGH_FLIP 0.03
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -71,7 +72,7 @@ static bool weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
 static footing_pace pace_of(const settings *s, double young, double rate, double settlement) {
   const bool cone = s->model == DRUCKER_PRAGER;
   const double q = footing_scale(s);
-  const double path = weight_bears(s) ? WEIGHT_PATH : PATH;
+  const double path = !weight_bears(s) ? PATH : s->mu > 0.0 ? ROUGH_PATH : WEIGHT_PATH;
   footing_pace p = {young, rate, settlement};
   if (isnan(rate)) p.rate = slow_scale(s, q) / sqrt(s->density * young);
   if (isnan(settlement)) p.settlement = fmin(0.5, path * q / young) * s->half_width;
