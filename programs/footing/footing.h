@@ -93,6 +93,8 @@ static inline const footing_row *footing_row_of(const simulation *sim, int k) {
 const char *footing_settle(settings *s, const option *table);
 /* About the capacity of the ground, Pa, from which stiffness, path and speed of a run follow. */
 double footing_scale(const settings *s);
+/* More than half of the capacity is of the weight of the ground. */
+bool footing_weight_bears(const settings *s);
 mps_status footing_build(mps_context *context, void *user);
 mps_status footing_march(void *user);
 bool footing_finish(app *a, void *user);

@@ -66,13 +66,13 @@ static double slow_scale(const settings *s, double q) {
   return SAND_SPEED * q * (1.0 - (1.0 - slower) * share_of_weight(s));
 }
 
-static bool weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
+bool footing_weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
 
 /* What is left open of a run on ground of the modulus `young`. */
 static footing_pace pace_of(const settings *s, double young, double rate, double settlement) {
   const bool cone = s->model == DRUCKER_PRAGER;
   const double q = footing_scale(s);
-  const double path = !weight_bears(s) ? PATH : s->mu > 0.0 ? ROUGH_PATH : WEIGHT_PATH;
+  const double path = !footing_weight_bears(s) ? PATH : s->mu > 0.0 ? ROUGH_PATH : WEIGHT_PATH;
   footing_pace p = {young, rate, settlement};
   if (isnan(rate)) p.rate = slow_scale(s, q) / sqrt(s->density * young);
   if (isnan(settlement)) p.settlement = fmin(0.5, path * q / young) * s->half_width;
@@ -89,7 +89,7 @@ static double usual_flip_time(const settings *s) {
   const double share = clay          ? (s->gradient > 0.0 ? GROWING_FLIP : CLAY_FLIP)
                        : s->mu > 0.0 ? ROUGH_FLIP
                                      : WEIGHT_FLIP;
-  if (!clay && !weight_bears(s)) return NAN;
+  if (!clay && !footing_weight_bears(s)) return NAN;
   return share * p->settlement / p->rate * (clay ? slower * slower * slower : 1.0);
 }
 
@@ -158,7 +158,7 @@ static double usual_inset(const settings *s) {
   if (s->eccentricity > 0.0) return 0.0;
   if (s->model != DRUCKER_PRAGER) return s->volumetric == MPS_MPM_VOLUMETRIC_POINT ? 0.9 : 0.6;
   if (s->surcharge > 0.0) return 0.65;
-  return !weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.4 : 0.95;
+  return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.4 : 0.95;
 }
 
 const char *footing_settle(settings *s, const option *table) {
