@@ -18,9 +18,31 @@
 #define DEEPEST 0.05 /* of the half width: a footing that sinks is borne by the ground beside it   \
                       */
 
-enum { LINES = 40 };
+enum { LINES = 40, KEPT = 8 };
 
-/* By characteristics; its error falls with the square of the lines and is extrapolated. */
+static bool is_same(const strip_footing *a, const strip_footing *b) {
+  return a->half_width == b->half_width && a->cohesion == b->cohesion && a->weight == b->weight &&
+         a->gradient == b->gradient && a->surcharge == b->surcharge && a->friction == b->friction &&
+         a->rough == b->rough;
+}
+
+/* The error of the characteristics falls with the square of the lines and is extrapolated. Pace,
+ * path, inset and comparison of a run ask for the same few capacities, of .1 s each: they are kept. */
+static double capacity_of(const strip_footing *f) {
+  static struct {
+    strip_footing of;
+    double q;
+  } known[KEPT];
+  static int found;
+  for (int k = 0; k < found && k < KEPT; k++)
+    if (is_same(&known[k].of, f)) return known[k].q;
+  const double coarse = characteristics_capacity(f, LINES / 2);
+  const int at = found++ % KEPT;
+  known[at].of = *f;
+  known[at].q = (4.0 * characteristics_capacity(f, LINES) - coarse) / 3.0;
+  return known[at].q;
+}
+
 static double by_characteristics(const settings *s, bool rough, double psi) {
   strip_footing f = {.half_width = s->half_width,
                      .cohesion = s->cohesion,
@@ -35,8 +57,7 @@ static double by_characteristics(const settings *s, bool rough, double psi) {
     f.cohesion *= share;
     if (f.surcharge == 0.0) f.cohesion = fmax(f.cohesion, LITTLE * f.weight * f.half_width);
   }
-  const double coarse = characteristics_capacity(&f, LINES / 2);
-  return (4.0 * characteristics_capacity(&f, LINES) - coarse) / 3.0;
+  return capacity_of(&f);
 }
 
 double footing_find_bound(const settings *s) {

@@ -19,7 +19,7 @@
  * there on q grows by a twentieth, or falls, as particles that dilate share the pressure ever less
  * evenly. */
 #define WEIGHT_PATH 6.8
-#define ROUGH_PATH 9.0
+#define ROUGH_PATH 11.0
 #define PAPER_SAND 4e-3 /* m */
 /* Speed, q/(rho E)^1/2: 2 mm/s by default. Sand creeps on for long, the more so where its weight
  * alone gives it strength. Particles keep their share of the motion for a time, of the run. With
@@ -32,7 +32,7 @@
 #define CLAY_FLIP 0.067
 #define GROWING_FLIP 0.0167 /* of clay that is weakest at the surface: slower */
 #define WEIGHT_FLIP 0.085
-#define ROUGH_FLIP 0.03
+#define ROUGH_FLIP 0.0245
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
