@@ -29,6 +29,9 @@
 #define SAND_SPEED 0.0136
 #define SLOWER 0.2
 #define SLOWER_ROUGH 0.1
+/* q over the weight of half a width, N_gamma, below which a smooth base is pressed more slowly, by
+ * the root of it: of 30 degrees. */
+#define WEAK 7.65
 #define CLAY_FLIP 0.067
 #define GROWING_FLIP 0.0167 /* of clay that is weakest at the surface: slower */
 #define WEIGHT_FLIP 0.085
@@ -62,8 +65,10 @@ static double share_of_weight(const settings *s) {
 static double slow_scale(const settings *s, double q) {
   if (s->model != DRUCKER_PRAGER)
     return CLAY_SPEED * (s->gradient > 0.0 ? fmin(q, 2.0 * s->cohesion) : q);
-  const double slower = s->mu > 0.0 ? SLOWER_ROUGH : SLOWER;
-  return SAND_SPEED * q * (1.0 - (1.0 - slower) * share_of_weight(s));
+  const double share = share_of_weight(s), half_weight = s->density * s->gravity * s->half_width;
+  double slower = s->mu > 0.0 ? SLOWER_ROUGH : SLOWER;
+  if (s->mu == 0.0 && share > 0.0) slower *= sqrt(fmin(1.0, q / half_weight / WEAK));
+  return SAND_SPEED * q * (1.0 - (1.0 - slower) * share);
 }
 
 bool footing_weight_bears(const settings *s) { return share_of_weight(s) > 0.5; }
