@@ -79,6 +79,10 @@ bool waves_check(app *a, double period, double depth, double amplitude, double s
                  double length) {
   const double k = waves_number(period, depth), most = 0.142 * 2.0 * WAVES_PI / k * tanh(k * depth);
   const double height = 2.0 * fabs(amplitude) * waves_havelock(k, depth);
+  if (amplitude != 0.0 && 2.0 * WAVES_PI / k < 2.0 * spacing)
+    return app_error(
+        a, "--period is %g s: its waves, %.2g m long, are shorter than 2 spacings of %g m", period,
+        2.0 * WAVES_PI / k, spacing);
   if (height > 0.0 && height < 2.0 * spacing)
     app_warn(a,
              "the piston's waves, %.2g m high, are lower than 2 spacings of %g m: they will lose "
