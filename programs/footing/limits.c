@@ -15,8 +15,9 @@
 #define PI 3.14159265358979323846
 /* Of the weight of half a width: cohesion of ground that has no other strength. */
 #define LITTLE 1e-4
-#define DEEPEST 0.05 /* of the half width: a footing that sinks is borne by the ground beside it   \
-                      */
+#define DEEPEST                                                                                    \
+  0.05 /* of the half width: a footing that sinks is borne by the ground beside it                 \
+        */
 
 enum { LINES = 40, KEPT = 8 };
 
@@ -27,7 +28,8 @@ static bool is_same(const strip_footing *a, const strip_footing *b) {
 }
 
 /* The error of the characteristics falls with the square of the lines and is extrapolated. Pace,
- * path, inset and comparison of a run ask for the same few capacities, of .1 s each: they are kept. */
+ * path, inset and comparison of a run ask for the same few capacities, of .1 s each: they are kept.
+ */
 static double capacity_of(const strip_footing *f) {
   static struct {
     strip_footing of;

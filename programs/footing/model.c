@@ -16,8 +16,8 @@
 #define RAMP 12.0       /* times of it in the path */
 /* By which the sides of a rough base lean inwards where weight alone bears it. A node a cell above
  * the strip beyond the inset edge then lies in no body: in one, it takes from the ground beside the
- * edge the support that turns its velocities, and N_gamma jumps by a tenth as the edge passes a line
- * of nodes. */
+ * edge the support that turns its velocities, and N_gamma jumps by a tenth as the edge passes a
+ * line of nodes. */
 #define LEAN 0.3
 
 /* ---- building -------------------------------------------------------------------------------- */
@@ -39,8 +39,16 @@ static mps_status make_turning(mps_context *context, const settings *s, simulati
   return mps_body_create_polygon(context, &def, 4, corner, &sim->m.body[0]);
 }
 
-static double lean_of(const settings *s) {
-  return s->mu > 0.0 && s->inset > 0.0 && footing_weight_bears(s) ? LEAN : 0.0;
+/* With insets a strip that has sunk by 0.12 B bears 4.74 c, less than at the start; rounded 5.5 c.
+ */
+static bool sinks(const simulation *sim) {
+  return sim->s.twice && sim->now == FOOTING_DEFORMED && sim->s.inset > 0.0;
+}
+
+static double lean_of(const simulation *sim) {
+  const settings *s = &sim->s;
+  const bool leans = s->mu > 0.0 && s->inset > 0.0 && !sinks(sim) && footing_weight_bears(s);
+  return leans ? LEAN : 0.0;
 }
 
 /* Speed up over the ramp, then constant until the settlement is reached. */
@@ -57,11 +65,11 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
-  const double top = s->half_width - lean_of(s) * height;
+  const double top = s->half_width - lean_of(sim) * height;
   const double half[8] = {0.0, -0.5 * height, s->half_width, -0.5 * height,
                           top, 0.5 * height,  0.0,           0.5 * height};
-  const double whole[8] = {-s->half_width, -0.5 * height, s->half_width, -0.5 * height,
-                           top,            0.5 * height,  -top,          0.5 * height};
+  const double whole[8] = {-s->half_width, -0.5 * height, s->half_width, -0.5 * height, top,
+                           0.5 * height,   -top,          0.5 * height};
   if (status == MPS_OK)
     status = mps_body_create_polygon(context, &def, 4, s->shape == CIRCLE ? half : whole,
                                      &sim->m.body[0]);
@@ -75,13 +83,12 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   contact.friction = s->mu;
   contact.method = s->contact;
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k;
-  /* With insets a strip that has sunk by 0.12 B bears 4.74 c, less than at the start; rounded 5.5
-   * c. */
-  const bool sinks = s->twice && sim->now == FOOTING_DEFORMED && s->inset > 0.0;
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE)
-    contact.corner = (sinks ? ROUNDED : s->corner) * s->h;
-  /* Of a leaning corner the library takes cot(a/2) times the inset of a right angle, a its angle. */
-  if (!sinks) contact.inset = s->inset * s->h * tan(0.5 * (90.0 * DEGREE - atan(lean_of(s))));
+    contact.corner = (sinks(sim) ? ROUNDED : s->corner) * s->h;
+  /* Of a leaning corner the library takes cot(a/2) times the inset of a right angle, a its angle.
+   */
+  if (!sinks(sim))
+    contact.inset = s->inset * s->h * tan(0.5 * (90.0 * DEGREE - atan(lean_of(sim))));
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 

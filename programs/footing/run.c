@@ -15,9 +15,9 @@
 #define SOFT 1e4    /* E over q: below, the ground changes its shape before it fails */
 #define STIFF 1.6e4 /* of the run that does not */
 #define PATH 23.3   /* settlement, a q/E */
-/* The same where weight alone bears the base: a smooth one fails after 4.5, a rough one after 6. From
- * there on q grows by a twentieth, or falls, as particles that dilate share the pressure ever less
- * evenly. */
+/* The same where weight alone bears the base: a smooth one fails after 4.5, a rough one after 6.
+ * From there on q grows by a twentieth, or falls, as particles that dilate share the pressure ever
+ * less evenly. */
 #define WEIGHT_PATH 6.8
 #define ROUGH_PATH 11.0
 #define PAPER_SAND 4e-3 /* m */
