@@ -88,8 +88,8 @@ static bool has_ended(const column_case *c) {
   return !isnan(c->time_at_rest) || c->rows == SAMPLES + 1;
 }
 
-/* Where the heap is two hundredths of L0 thick. Farther out it is a layer of single particles, whose
- * end jumps by 7 % with the time step, as a gap opens in it or not. */
+/* Where the heap is two hundredths of L0 thick. Farther out it is a layer of single particles,
+ * whose end jumps by 7 % with the time step, as a gap opens in it or not. */
 #define THICKNESS 0.02
 #define WINDOW 0.05 /* L0: width of the mean thickness */
 static double runout(const settings *s, const column_case *c) {
