@@ -33,6 +33,13 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
+/* What of a gap (m) counts as the particle's own overlap, where it had `before` (m, <= 0) in the
+ * last step: particles that are inside a body when their contact begins stay so until they come off
+ * it. Pushed out they would keep the speed of that, energy from nothing. */
+static inline double mpsi_impulse_overlap(double gap, double before) {
+  return fmin(0.0, fmax(gap, before));
+}
+
 /* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again in a step of
  * the `usual` size (s, at least dt), by at most 0.02 of `speed` (m/s, of waves and particles). A
  * shorter step, as at the end of a run, opens no faster: else its force would grow as 1/dt^2. */

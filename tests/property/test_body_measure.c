@@ -112,7 +112,8 @@ TEST(a_ring_of_soil) {
     mpm_scene_solve(&s, &def);
     at.position[1] = 0.1 + 0.049; /* presses 1 mm */
     MAKE(body, plate, create_box, context, &at, 1.0, 0.1);
-    mpm_scene_contact(&s, plate, 0.0);
+    DEF(contact, push, .inside = MPS_CONTACT_INSIDE_PUSH);
+    OK(mps_mpm_add_contact(s.mpm, plate, &push, NULL));
     OK(mps_mpm_step(s.mpm, 20));
     OK(mps_body_get_reaction(plate, -1, &r));
     force[k] = r.impulse[1];

@@ -74,6 +74,33 @@ TEST_SERIAL(goes_on_from_every_step) {
 
 /* ---- walls, moving nodes, loads, several materials ------------------------------------------- */
 
+/* A block under a plate that reaches 1 mm into it; `late`: its contact begins after three steps. */
+static scene overlapped(mps_context *on, bool late) {
+  scene x = {.s = mpm_scene_begin(on, 0.01, 0.0, 0.0, 1e6)};
+  mpm_scene_box(&x.s, 0.0, 0.0, 0.2, 0.1);
+  USING(mpm, mpm_scene_solve(&x.s, &given), .cell = 0.02, .lower[1] = 0.0, .gravity[1] = -9.81);
+  if (late) OK(mps_mpm_step(x.s.mpm, 3));
+  DEF(body, at, .position[0] = 0.1, .position[1] = 0.149);
+  WITH_DEFAULTS(mps_body_motion, down, .velocity[1] = -0.1);
+  OK(mps_body_create_box(on, &at, 0.5, 0.1, &x.body[DRIVEN]));
+  OK(mps_body_set_motion(x.body[DRIVEN], &down));
+  OK(mps_mpm_add_contact(x.s.mpm, x.body[DRIVEN], NULL, NULL));
+  return x;
+}
+
+/* Saved before the first step of a contact, and after. */
+TEST_SERIAL(overlaps_go_on) {
+  SCOPED(drop) scene whole = overlapped(context, true);
+  for (int k = 0; k < 2; k++) {
+    OK(mps_mpm_save(whole.s.mpm, path, NULL));
+    SCOPED(drop) scene next = overlapped(context, false);
+    OK(mps_mpm_restore(next.s.mpm, path, NULL));
+    OK(mps_mpm_step(whole.s.mpm, 50));
+    OK(mps_mpm_step(next.s.mpm, 50));
+    same_fields(&whole, &next);
+  }
+}
+
 TEST(with_walls_loads_and_materials) {
   for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++) {
     scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

@@ -337,6 +337,54 @@ static void put_at(mpm_scene *s, int64_t name, double y) {
   EDIT(x, s->particles, "position") *mps_edit_f64(&x, k, 1) = y;
 }
 
+/* Kinetic energy (J) of a free block that a plate at rest overlaps by `overlap` of a particle's
+ * half size, after a hundred steps. */
+static double after_overlap(double cell, double young, double overlap, int32_t inside) {
+  const double half = 0.25 * cell;
+  scoped_mpm_scene s = mpm_scene_begin(context, 2.0 * half, 0.0, 0.0, young);
+  mpm_scene_box(&s, 0.0, 0.0, 10 * cell, 5 * cell);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = cell, .budget = 1);
+  DEF(body, at, .position[0] = 5 * cell, .position[1] = 7.5 * cell - overlap * half);
+  MAKE(body, plate, create_box, context, &at, 20 * cell, 5 * cell);
+  USING(contact, mps_mpm_add_contact(s.mpm, plate, &given, NULL), .inside = inside);
+  OK(mps_mpm_step(s.mpm, 100));
+  return mpm_scene_totals(&s).kinetic;
+}
+
+/* What overlaps at first stays at rest, whatever the grid, the stiffness and the depth; pushed out,
+ * if that is wanted, it moves. */
+TEST(overlaps_hold_no_energy) {
+  for (int n = 0; n < 3; n++)
+    for (int e = 0; e < 3; e++)
+      for (int d = 0; d < 3; d++) {
+        const double cell = 0.02 / (1 << n), young = 1e6 * pow(30.0, e), overlap = 0.1 + 0.4 * d;
+        NEAR(after_overlap(cell, young, overlap, MPS_CONTACT_INSIDE_REFUSE), 0.0, 1e-20);
+        assert_true(after_overlap(cell, young, overlap, MPS_CONTACT_INSIDE_PUSH) > 1e-6);
+      }
+}
+
+/* A block that overlaps a plate by a quarter of half its size bears on it there; once it has been
+ * clear of the plate it bears at its surface. */
+TEST(overlaps_end_with_contact) {
+  scoped_body *plate = NULL;
+  scoped_mpm_scene s = block_and_plate(true, 0.1, -0.00125, &plate);
+  scoped_contact *contact = NULL;
+  OK(mps_mpm_add_contact(s.mpm, plate, NULL, &contact));
+  for (int back = 0; back < 2; back++) {
+    drive(plate, 0.0, back ? -0.05 : -0.01);
+    OK(mps_mpm_run(s.mpm, back ? 0.198 : 0.02, 1, NULL, NULL));
+    mps_reaction r;
+    OK(mps_contact_get_reaction(contact, -1, &r));
+    int64_t count = 0, ids[64];
+    double gap[64];
+    OK(mps_contact_get_particles(contact, 64, &count, ids, gap, NULL, NULL, NULL));
+    assert_true(r.force[1] > 0.0 && count > 10);
+    for (int64_t k = 0; k < count; k++) NEAR(gap[k], back ? 0.0 : -0.00125, 2e-5);
+    drive(plate, 0.0, 0.05);
+    if (!back) OK(mps_mpm_run(s.mpm, 0.12, 1, NULL, NULL));
+  }
+}
+
 /* Particles too deep in a plate over many blocks of the grid: the step is refused as often as it is
  * tried, names the same particle, and one that is taken out is forgotten at once: errors report the
  * present state alone, whichever blocks the next step comes to. */

@@ -195,7 +195,8 @@ TEST(forces_are_of_the_measure) {
     mps_body_def body = mps_body_defaults();
     body.position[1] = 0.1 + 0.049; /* presses 1 mm */
     MAKE(body, plate, create_box, context, &body, 0.4, 0.1);
-    mpm_scene_contact(&s, plate, 0.0);
+    DEF(contact, push, .inside = MPS_CONTACT_INSIDE_PUSH);
+    OK(mps_mpm_add_contact(s.mpm, plate, &push, NULL));
     OK(mps_mpm_step(s.mpm, 20));
     mps_reaction r;
     OK(mps_mpm_get_reaction(s.mpm, MPS_SIDE_Y_LOWER, &r));

@@ -194,7 +194,7 @@ mps_status mpsi_mpm_find_constraints(const mpsi_contact_stage *stage, const char
   good = good && MPSI_ENSURE(context, all, constraint, n) &&
          MPSI_ENSURE(context, all, weight, n * all->stride) &&
          MPSI_ENSURE(context, all, node, n * all->stride) &&
-         mpsi_room_ensure(context, &all->next_room, n, sizeof *all->warm) &&
+         mpsi_room_ensure(context, &all->next_room, 2 * n, sizeof *all->warm) &&
          mpsi_mpm_index_impulses(stage->context, stage->contact) &&
          mpsi_mpm_area_room(stage->context, grid, stage->contact, stage->partition, n);
   if (!good) {
@@ -241,6 +241,18 @@ static bool is_held(const mps_contact *contact, const mpsi_constraint *constrain
   return bearer && bearer->warm >= 0;
 }
 
+/* Overlap with which the particle's contact began, at the gap `gap` now. */
+static double overlap_of(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
+                         double gap) {
+  const mpsi_contacts *contacts = stage->contact;
+  if (contacts->handle[constraint->body]->def.inside == MPS_CONTACT_INSIDE_PUSH) return 0.0;
+  if (contacts->state[constraint->body].first_step == stage->transfer.run->steps)
+    return mpsi_impulse_overlap(gap, gap);
+  const mpsi_warm_impulse *before =
+      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, MPSI_OVERLAP);
+  return before ? mpsi_impulse_overlap(gap, before->by[0]) : 0.0;
+}
+
 /* Contact of particle k with the body of pair t; false: it lies in the strip beyond an inset edge,
  * where it has none. */
 static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t k,
@@ -264,8 +276,10 @@ static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
   }
   if (contact->inset && !place_at_edge(contact, &foot, out)) return false;
   out->part = mpsi_contact_part(contact, foot.face);
+  const double gap = foot.distance - bearing.half;
+  out->overlap = overlap_of(stage, out, gap);
   c->aim =
-      mpsi_impulse_aim(foot.distance - bearing.half, stage->transfer.run->dt,
+      mpsi_impulse_aim(gap - out->overlap, stage->transfer.run->dt,
                        fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);
   if (is_held(contact, out)) c->aim = fmax(c->aim, 0.0);
   c->friction = contact->friction;
@@ -480,7 +494,7 @@ static void begin_warm(const mpsi_contacts *contacts, mpsi_constraint *constrain
   const mpsi_edge_bearer *bearer =
       mpsi_edge_bearer_of(contacts->handle[constraint->body], constraint->point);
   const mpsi_warm_impulse *from[2] = {
-      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body),
+      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, 0),
       bearer && bearer->warm >= 0 ? &contacts->impulses.warm[bearer->warm] : NULL};
   double *by = constraint->impulse.tangent_impulse;
   for (int a = 0; a < 3; a++)

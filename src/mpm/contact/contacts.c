@@ -234,7 +234,7 @@ static bool is_in_contact(const mpsi_contact_setup *setup, const mps_contact *co
     now->foot = mpsi_body_foot(contact->body, x);
     return true;
   }
-  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(setup->contact, id, body);
+  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(setup->contact, id, body, 0);
   if (!warm) return false;
   for (int a = 0; a < 3; a++) now->c.force[a] = warm->by[a] / setup->contact->impulses.warm_dt;
   const mpsi_bearing bearing = mpsi_mpm_bearing(setup->grid, setup->p, contact, k, x);
@@ -338,7 +338,7 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
   warn_of_areas(setup->context, setup->grid, setup->p, setup->contact, contact);
   mpsi_contact_join(contact);
   body->axial = setup->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  setup->contact->state[setup->contact->bodies] = (mpsi_contact_state){.mass = 0.0};
+  setup->contact->state[setup->contact->bodies] = (mpsi_contact_state){.first_step = setup->run->steps};
   setup->contact->handle[setup->contact->bodies] = contact;
   setup->contact->body[setup->contact->bodies++] = body;
   if (out)

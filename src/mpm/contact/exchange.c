@@ -220,7 +220,7 @@ static bool reserve(exchange *m, int64_t slots) {
          mpsi_room_ensure(context, &r->node, m->constraints * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &r->shared, m->nodes, sizeof(mpsi_shared_node)) &&
          mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
-         mpsi_room_ensure(context, &all->next_room, m->constraints, sizeof *all->warm) &&
+         mpsi_room_ensure(context, &all->next_room, 2 * m->constraints, sizeof *all->warm) &&
          mpsi_mpm_area_room(m->stage->context, m->stage->transfer.grid, m->stage->contact,
                             m->stage->partition, m->constraints);
 }

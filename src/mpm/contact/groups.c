@@ -338,7 +338,7 @@ void mpsi_mpm_fit_prescribed(const mpsi_contact_stage *stage, const mpsi_transfe
       add_particle(stage, work, member[i].particle, p->m[member[i].particle] / group->mass, n,
                    group);
       const mpsi_warm_impulse *warm =
-          mpsi_mpm_warm_impulse(&all->constraints, member[i].id, constraint->body);
+          mpsi_mpm_warm_impulse(&all->constraints, member[i].id, constraint->body, 0);
       for (int a = 0; a < 3 && warm; a++)
         constraint->impulse.tangent_impulse[a] += stage->transfer.run->dt * warm->by[a];
     }

@@ -22,6 +22,7 @@
 typedef struct mpsi_constraint {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
+  double overlap;    /* m, <= 0: with which its contact began (mpsi_impulse_overlap) */
   double carried[3]; /* m/s, part of the velocity at the foot that comes from the velocity of
                         mirrors */
   int64_t particle;  /* index of the particle */
@@ -48,7 +49,9 @@ typedef struct mpsi_constraint_block {
 } mpsi_constraint_block;
 
 /* Impulse of a body on a particle in the last step, from which the sweeps of the next one start:
- * on the same particle, or at the inset edge `point` on the particle that bears there. */
+ * on the same particle, or at the inset edge `point` on the particle that bears there. With the
+ * point MPSI_OVERLAP not an impulse but the particle's overlap, by[0] (m). */
+#define MPSI_OVERLAP INT32_MAX
 typedef struct mpsi_warm_impulse {
   int64_t id;
   int32_t body, point;
@@ -114,12 +117,12 @@ void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
  * walls. */
 void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
 /* warm_start.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
- * step on a particle, or NULL where there was none or it acted at an inset edge; removes the
+ * step on a particle (point 0) or its overlap (MPSI_OVERLAP), or NULL where there was none; removes the
  * impulses of a contact that has ended, and moves the bodies above it down by one. constraints.c:
  * foot and half size with which a particle bears on the contact's body. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
-                                               int32_t body);
+                                               int32_t body, int32_t point);
 mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
                               const mps_contact *contact, int64_t particle, const double *x);
 void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);

@@ -1,4 +1,5 @@
-/* warm_start.c - impulses of the last step, from which the sweeps start, by particle and body. On
+/* warm_start.c - impulses of the last step, from which the sweeps start, and overlaps with which
+ * contacts began, by particle and body. On
  * several ranks each has, after a step, those of its own particles and of its contact partners'
  * (partners.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
@@ -36,12 +37,12 @@ bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts) {
 }
 
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
-                                               int32_t body) {
+                                               int32_t body, int32_t point) {
   const mpsi_impulses *all = &contacts->impulses;
   for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
        at = (at + 1) & all->lookup_mask) {
     const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
-    if (warm->id == id && warm->body == body) return warm->point == 0 ? warm : NULL;
+    if (warm->id == id && warm->body == body && warm->point == point) return warm;
   }
   return NULL;
 }
@@ -114,7 +115,8 @@ mps_status mpsi_mpm_share_warm_start(mpsi_impulses *all, const mps_particles *pa
 static int by_owner(const void *left, const void *right) {
   const mpsi_warm_impulse *a = left, *b = right;
   if (a->id != b->id) return a->id < b->id ? -1 : 1;
-  return (a->body > b->body) - (a->body < b->body);
+  if (a->body != b->body) return a->body < b->body ? -1 : 1;
+  return (a->point > b->point) - (a->point < b->point);
 }
 
 void mpsi_mpm_order_warm_start(mpsi_impulses *all) {

@@ -94,6 +94,43 @@ static bool is_wave(const void *run, int64_t rows, const void *values) {
 static const mpsi_state_table wave_table = {
     .type = MPSI_STATE_F64, .columns = 1, .rows = count_wave, .get = get_wave, .set = set_wave};
 
+/* Contacts that have not yet made their first step. */
+static int64_t count_new_contacts(const void *solver) {
+  const mps_mpm *mpm = solver;
+  int64_t count = 0;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    count += mpm->contact.state[b].first_step == mpm->run.steps;
+  return count;
+}
+
+static void get_new_contacts(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  int64_t *row = values;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (mpm->contact.state[b].first_step == mpm->run.steps) *row++ = b;
+}
+
+static void set_new_contacts(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  const int64_t *row = values;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) mpm->contact.state[b].first_step = -1;
+  for (int64_t k = 0; k < rows; k++) mpm->contact.state[row[k]].first_step = mpm->run.steps;
+}
+
+static bool are_contacts(const void *solver, int64_t rows, const void *values) {
+  const mps_mpm *mpm = solver;
+  const int64_t *row = values;
+  for (int64_t k = 0; k < rows; k++)
+    if (row[k] < 0 || row[k] >= mpm->contact.bodies) return false;
+  return true;
+}
+
+static const mpsi_state_table new_contacts_table = {.type = MPSI_STATE_I64,
+                                                    .columns = 1,
+                                                    .rows = count_new_contacts,
+                                                    .get = get_new_contacts,
+                                                    .set = set_new_contacts};
+
 static void get_sizes(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
   int64_t *size = values;
@@ -198,7 +235,7 @@ static int64_t count_warm_start(const void *solver) {
   return impulses_of(solver, 0)->warm_count + impulses_of(solver, 1)->warm_count;
 }
 
-/* The body, and above it the inset edge at which it bears. */
+/* The body, and above it the inset edge at which it bears or the mark of an overlap. */
 static int64_t owner_of(const mpsi_warm_impulse *warm) {
   return warm->body < 0 ? warm->body : (int64_t)warm->point << 32 | warm->body;
 }
@@ -366,6 +403,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_add_table(s, "blocks", &blocks_table);
   mpsi_state_add_table(s, "dashpots", &dashes_table);
   mpsi_state_add_optional(s, "wave", &wave_table, is_wave, &mpm->run);
+  mpsi_state_add_optional(s, "new_contacts", &new_contacts_table, are_contacts, mpm);
 }
 
 /* ---- checks of a file ------------------------------------------------------------------------ */
