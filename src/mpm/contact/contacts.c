@@ -129,8 +129,7 @@ static mps_status find_insets(mps_context *context, const mpsi_grid *grid, const
   const mps_body *body = contact->body;
   if (!(contact->def.inset > 0.0) || body->shape != MPSI_POLYGON) return MPS_OK;
   contact->inset = mpsi_alloc(context, body->edges, sizeof *contact->inset);
-  if (contact->inset)
-    contact->bearer = mpsi_alloc(context, body->edges, sizeof *contact->bearer);
+  if (contact->inset) contact->bearer = mpsi_alloc(context, body->edges, sizeof *contact->bearer);
   if (!contact->bearer)
     return mpsi_fail_memory(context, function,
                             (size_t)body->edges *
@@ -338,7 +337,8 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
   warn_of_areas(setup->context, setup->grid, setup->p, setup->contact, contact);
   mpsi_contact_join(contact);
   body->axial = setup->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  setup->contact->state[setup->contact->bodies] = (mpsi_contact_state){.first_step = setup->run->steps};
+  setup->contact->state[setup->contact->bodies] =
+      (mpsi_contact_state){.first_step = setup->run->steps};
   setup->contact->handle[setup->contact->bodies] = contact;
   setup->contact->body[setup->contact->bodies++] = body;
   if (out)

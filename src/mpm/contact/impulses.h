@@ -117,9 +117,9 @@ void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
  * walls. */
 void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
 /* warm_start.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
- * step on a particle (point 0) or its overlap (MPSI_OVERLAP), or NULL where there was none; removes the
- * impulses of a contact that has ended, and moves the bodies above it down by one. constraints.c:
- * foot and half size with which a particle bears on the contact's body. */
+ * step on a particle (point 0) or its overlap (MPSI_OVERLAP), or NULL where there was none; removes
+ * the impulses of a contact that has ended, and moves the bodies above it down by one.
+ * constraints.c: foot and half size with which a particle bears on the contact's body. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
                                                int32_t body, int32_t point);
