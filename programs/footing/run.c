@@ -85,8 +85,8 @@ static footing_pace pace_of(const settings *s, double young, double rate, double
   return p;
 }
 
-/* Of the time of the path. A slower run on clay has more steps, each of which leaves noise that
- * softens it while particles keep it: they keep it for less. NaN: the library's. */
+/* Of the time of the path. A slower run has more steps, each of which leaves noise that softens the
+ * ground while particles keep it: they keep it for less. NaN: the library's. */
 static double usual_flip_time(const settings *s) {
   const bool clay = s->model != DRUCKER_PRAGER;
   const footing_pace *p = &s->pace[FOOTING_UNDEFORMED];
@@ -95,7 +95,7 @@ static double usual_flip_time(const settings *s) {
                        : s->mu > 0.0 ? ROUGH_FLIP
                                      : WEIGHT_FLIP;
   if (!clay && !footing_weight_bears(s)) return NAN;
-  return share * p->settlement / p->rate * (clay ? slower * slower * slower : 1.0);
+  return share * p->settlement / p->rate * pow(slower, clay ? 3.0 : 2.0);
 }
 
 /* The runs: of the ground as it is, and of stiff ground, where they differ. */
