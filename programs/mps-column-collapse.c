@@ -329,6 +329,11 @@ static comparison compare_law(const settings *s, const column_case *c, double va
   compare_require(&out, c->phi >= LOOSEST && c->phi <= DENSEST,
                   "it is of sands, of some %d to %d degrees, and --phi is %g", LOOSEST, DENSEST,
                   c->phi);
+  /* sin(phi) = 3 alpha in plane strain without dilation: 35 degrees are 55 */
+  compare_require(&out, s->axisymmetric || s->cone != MPS_MATERIAL_CONE_CIRCUMSCRIBED,
+                  "--cone circumscribed has a larger angle of friction in plane strain than the "
+                  "--phi of %g degrees",
+                  c->phi);
   compare_require(&out, fmin(s->psi, c->phi) <= DILATES,
                   "--psi is %g degrees: ground that dilates without end is no sand that flows",
                   s->psi);

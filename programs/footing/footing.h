@@ -66,6 +66,13 @@ typedef struct simulation {
   mpm_course course;
 } simulation;
 
+/* limits.c: of frictional ground in plane strain, by the cone that it has: rad and Pa. phi is pi/2
+ * where no pressure is too high for the ground. */
+typedef struct footing_strength {
+  double phi, psi, cohesion;
+} footing_strength;
+footing_strength footing_find_strength(const settings *s);
+
 /* limits.c: Pa; NaN where they are not known, `exact` of a base that is neither smooth nor rough,
  * `davis` of associated flow. */
 typedef struct footing_limits {

@@ -45,6 +45,31 @@ static double capacity_of(const strip_footing *f) {
   return known[at].q;
 }
 
+/* alpha in sqrt(J2) + alpha I1 = kappa, as mps_material_cone has it, for an angle whose sine this
+ * is.
+ */
+static double slope_of(int cone, double sine) {
+  if (cone == MPS_MATERIAL_CONE_CIRCUMSCRIBED) return 2.0 * sine / (sqrt(3.0) * (3.0 - sine));
+  if (cone == MPS_MATERIAL_CONE_EXTENSION) return 2.0 * sine / (sqrt(3.0) * (3.0 + sine));
+  return sine / sqrt(9.0 + 3.0 * sine * sine);
+}
+
+/* At the limit load nothing flows out of the plane: s_zz = -2 a q with a the slope of the flow, and
+ * Mohr's circle in the plane has the radius q sqrt(1 - 3 a^2), which makes of the cone the angle
+ * below. All cones have the apex of the pyramid, c cot(phi). */
+footing_strength footing_find_strength(const settings *s) {
+  const double phi = s->phi * PI / 180.0, psi = isnan(s->psi) ? phi : s->psi * PI / 180.0;
+  footing_strength out = {phi, psi, s->cohesion};
+  if (s->cone == MPS_MATERIAL_CONE_PLANE_STRAIN) return out;
+  const double alpha = slope_of(s->cone, sin(phi)), flow = slope_of(s->cone, sin(psi));
+  const double less = sqrt(fmax(0.0, 1.0 - 3.0 * flow * flow));
+  const double sine = 3.0 * alpha * less / (1.0 - 3.0 * alpha * flow);
+  out.phi = sine >= 0.0 && sine < 1.0 ? asin(sine) : 0.5 * PI;
+  out.psi = less > 0.0 ? fmin(asin(fmin(1.0, 3.0 * flow / less)), out.phi) : out.phi;
+  out.cohesion *= tan(out.phi) / tan(phi);
+  return out;
+}
+
 static double by_characteristics(const settings *s, bool rough, double psi) {
   strip_footing f = {.half_width = s->half_width,
                      .cohesion = s->cohesion,
@@ -53,10 +78,10 @@ static double by_characteristics(const settings *s, bool rough, double psi) {
                      .surcharge = s->surcharge,
                      .rough = rough};
   if (s->model == DRUCKER_PRAGER) {
-    const double phi = s->phi * PI / 180.0;
-    const double share = cos(psi) * cos(phi) / (1.0 - sin(psi) * sin(phi));
-    f.friction = atan(share * tan(phi));
-    f.cohesion *= share;
+    const footing_strength of = footing_find_strength(s);
+    const double share = cos(psi) * cos(of.phi) / (1.0 - sin(psi) * sin(of.phi));
+    f.friction = atan(share * tan(of.phi));
+    f.cohesion = of.cohesion * share;
     if (f.surcharge == 0.0) f.cohesion = fmax(f.cohesion, LITTLE * f.weight * f.half_width);
   }
   return capacity_of(&f);
@@ -74,9 +99,9 @@ footing_limits footing_find_limits(const settings *s) {
   footing_limits l = {(2.0 + PI) * c, (2.0 + PI) * c, NAN, NAN, "Prandtl"};
   const bool cone = s->model == DRUCKER_PRAGER;
   if (cone || s->gradient > 0.0) {
-    const double phi = s->phi * PI / 180.0;
-    l.smooth = by_characteristics(s, false, phi), l.rough = by_characteristics(s, true, phi);
-    if (cone && s->psi < s->phi) l.davis = by_characteristics(s, s->mu > 0.0, s->psi * PI / 180.0);
+    const footing_strength of = footing_find_strength(s);
+    l.smooth = by_characteristics(s, false, of.phi), l.rough = by_characteristics(s, true, of.phi);
+    if (cone && s->psi < s->phi) l.davis = by_characteristics(s, s->mu > 0.0, of.psi);
     l.source = "characteristics";
   } else if (s->top > 0.0) {
     l.smooth = l.rough = NAN;
@@ -91,7 +116,7 @@ footing_limits footing_find_limits(const settings *s) {
     l.source = s->mu > 0.0 ? "Eason and Shield" : "Shield";
   }
   /* Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
-  const double enough = cone                  ? tan(s->phi * PI / 180.0)
+  const double enough = cone                  ? tan(footing_find_strength(s).phi)
                         : s->shape == CIRCLE  ? c / l.smooth
                         : l.smooth == l.rough ? 0.0
                                               : 1.0;

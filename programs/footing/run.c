@@ -10,6 +10,7 @@
 #include "footing.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define SOFT 1e4    /* E over q: below, the ground changes its shape before it fails */
@@ -36,6 +37,7 @@
 #define GROWING_FLIP 0.0167 /* of clay that is weakest at the surface: slower */
 #define WEIGHT_FLIP 0.085
 #define ROUGH_FLIP 0.0245
+#define STEEPEST 50.0 /* degrees: the largest --phi */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -114,7 +116,7 @@ static void plan(settings *s) {
 static bool take_ground(settings *s) {
   double *const sides[] = {&s->width, &s->depth};
   if (s->domain) return options_lengths(s->domain, "m", 2, sides);
-  const double phi = s->model == DRUCKER_PRAGER ? s->phi * 3.14159265358979323846 / 180.0 : 0.0;
+  const double phi = s->model == DRUCKER_PRAGER ? footing_find_strength(s).phi : 0.0;
   const double fan = tan(0.785398163397 + 0.5 * phi) * exp(1.57079632679 * tan(phi));
   const double wide = 1.1 * (1.0 + (s->mu > 0.0 ? 2.0 : 1.0) * fan);
   const double low = s->model == DRUCKER_PRAGER ? 3.0 : 4.0;
@@ -166,8 +168,23 @@ static double usual_inset(const settings *s) {
   return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.4 : 0.95;
 }
 
+/* Cones that pass outside the pyramid in plane strain have no limit from some angle on. */
+static const char *check_cone(const settings *s) {
+  static char why[200];
+  const double degree = 3.14159265358979323846 / 180.0, phi = footing_find_strength(s).phi / degree;
+  if (s->model != DRUCKER_PRAGER || !(phi > STEEPEST + 1e-9)) return NULL;
+  (void)snprintf(
+      why, sizeof why,
+      "--cone and --phi give the ground %s %.3g degrees in plane strain, must be at most "
+      "%g: take --cone planestrain, or less --phi",
+      phi < 90.0 - 1e-9 ? "an angle of friction of" : "more than", phi, STEEPEST);
+  return why;
+}
+
 const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
+  const char *steep = check_cone(s);
+  if (steep) return steep;
   if (!take_ground(s)) return "--soil must be two lengths in m, WxH, such as 5x2";
   options_whole("soil", &s->width, "--cell", s->h);
   options_whole("soil", &s->depth, "--cell", s->h);

@@ -177,7 +177,7 @@ const char *slope_settle_water(settings *s, const option *table) {
     return "--drawdown is to a --water-level that is a level";
   if (!isnan(s->drawdown) && !(s->drawdown > s->table))
     return "--drawdown must be above --water-level, to which the pool has fallen";
-  if (s->ru > 0.0 && options_given(table, "moist-density"))
+  if (!s->table_text && options_given(table, "moist-density"))
     return "--moist-density is for ground above a --water-level";
   if (s->runout && slope_is_wet(s))
     return "--runout excludes water: its pressures are those of a slope in place";

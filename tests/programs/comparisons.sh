@@ -113,6 +113,7 @@ with Fy_smooth mps-sliding-box --cell 0.05 --friction 0
 heap="mps-column-collapse --cell 0.025 --ppc 1 --frames 0"
 without "runout_law runout_error height_law" "cohesion" $heap --cohesion 500Pa --falls 1
 without "runout_law runout_error height_law" "sands" $heap --phi 10 --falls 1
+without "runout_law runout_error height_law" "in plane strain" $heap --cone circumscribed --falls 1
 without "runout_law runout_error height_law" "still moves" $heap --falls 0.5
 without "runout_law runout_error height_law" "slides on the bed" $heap --friction 0.1 --falls 1
 dam="mps-dam-break --cell 0.01 --frames 0"

@@ -35,6 +35,14 @@ bears slow q_over_weight 14.01 15.49 --law druckerprager --cohesion 0 --friction
 in_range "$work/slow/summary.json" flip_time 0.0402 0.0403
 bears psi q_over_c 24.1 36.81 --law druckerprager --psi 0 --soil 3x1.5 --cell 0.125
 in_range "$work/psi/summary.json" q_davis 240e3 242e3
+# Other cones have angles of their own in plane strain: 25 degrees are 26.2 through the edges of extension (c 1.055 times as
+# large, 23.81 c), 12 degrees 15.1 through those of compression (1.271 times, 14.05 c).
+free="--law druckerprager --gravity 0 --cohesion 6kPa --soil 3x1.5"
+bears extension q_over_c 22.9 24.3 $free --phi 25 --cone extension
+in_range "$work/extension/summary.json" q_exact 142.7e3 143.1e3
+bears compression q_over_c 13.3 14.4 $free --phi 12 --cone circumscribed
+in_range "$work/compression/summary.json" q_exact 84.1e3 84.5e3
+! grep -q "cannot exceed" "$work/compression/summary.json" || fail "a bound of another cone"
 # Dense sand whose dilation soon ends fails, and bears less at the end of the path: that is not its capacity.
 falls="--law druckerprager --phi 40 --e0 0.93 --cell 0.125 --young 10GPa --soil 2x1 --settlement 10mm --rate 20mm/s"
 "$programs/mps-footing" $falls --threads 1 --out "$work/falls" >"$work/log" 2>&1 || exit 1

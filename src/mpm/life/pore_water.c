@@ -81,6 +81,9 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
   if (mpsi_pore_predicts(mpm)) MPSI_TRY(fill(mpm->context, &mpm->p, "pore_pressure_mean", NAN));
   if (mpm->water->flows) MPSI_TRY(fill(mpm->context, &mpm->p, "permeability", def->permeability));
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
+  if (!mpsi_pore_predicts(mpm) &&
+      !mpsi_mpm_soak_room(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->def))
+    return mpsi_fail_memory(mpm->context, add, (size_t)mpm->p.count * 10 * sizeof(double));
   mps_status status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);
   return status == MPS_OK && isnan(def->bulk) ? find_bulk(mpm->context, &mpm->p, bulk) : status;
 }
@@ -171,6 +174,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   const bool kept_values = before.values != NULL;
   status = begin(mpm, status);
   if (status == MPS_OK) {
+    if (!mpsi_pore_predicts(mpm)) mpsi_mpm_soak_laws(&mpm->p, &mpm->def);
     warn(mpm->context, &mpm->p);
     mpm->boundaries.renew = true; /* dashpots */
   } else if (kept_values) {

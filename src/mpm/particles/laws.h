@@ -43,6 +43,7 @@ typedef struct mpsi_laws {
   bool some_filtered; /* its mean stress is filtered */
   bool some_open;     /* some law has a gap between its grains */
   bool some_flow;     /* some law is one of a body that may flow slowly */
+  bool soaked;        /* explicit pressures of pore water: see mpsi_mpm_soak_laws */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
   mpsi_refusal refusal;
@@ -84,6 +85,15 @@ typedef struct mpsi_pore_speeds {
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
                           double *moduli, mpsi_pore_speeds *pores);
+/* materials.c: what the laws take under explicit pressures of pore water, from here on, for which
+ * mpsi_mpm_soak_room has made room. The water fills the cell, whose volume it keeps; by its own
+ * change of volume each particle would bear a mean stress of its own besides. One that is drawn
+ * apart bears none and opens, the others are compressed by as much: the strength of sand that flows
+ * at constant volume grew without end. So frictional laws without dilation take the mean by cell.
+ */
+bool mpsi_mpm_soak_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                        mpsi_rooms *rooms, const mps_mpm_def *def);
+void mpsi_mpm_soak_laws(mpsi_columns *p, const mps_mpm_def *def);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,

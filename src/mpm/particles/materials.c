@@ -32,8 +32,11 @@ void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law) {
 /* Chooses whether the law takes the mean change of volume or the particle's own. A mean, with
  * forces by each particle's own pressure, does net work in a closed cycle where dilation makes
  * pressures irregular: volumetric.c. */
-static void choose_volume(const mps_mpm_def *def, mpsi_law_use *law) {
-  const mpsi_volume suits = mpsi_material_volume(law->material);
+static void choose_volume(const mps_mpm_def *def, bool soaked, mpsi_law_use *law) {
+  mpsi_volume suits = mpsi_material_volume(law->material);
+  if (soaked && suits == MPSI_VOLUME_FILTERED && mpsi_material_opens(law->material) &&
+      !mpsi_material_dilates(law->material))
+    suits = MPSI_VOLUME_MEAN;
   switch (def->volumetric) {
   case MPS_MPM_VOLUMETRIC_BY_LAW:
     law->own_volume = suits != MPSI_VOLUME_MEAN;
@@ -47,6 +50,38 @@ static void choose_volume(const mps_mpm_def *def, mpsi_law_use *law) {
     return;
   default:
     law->own_volume = true;
+  }
+}
+
+/* The columns that the filter of the law's stress works on. */
+static void choose_columns(mpsi_law_use *law) {
+  law->strain = law->gap = -1;
+  law->opening = mpsi_material_gap_column(law->material);
+  if (law->filtered && mpsi_material_opens(law->material))
+    mpsi_material_sand_columns(law->material, &law->strain, &law->gap);
+}
+
+bool mpsi_mpm_soak_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                        mpsi_rooms *rooms, const mps_mpm_def *def) {
+  bool means = !p->laws.at_once;
+  for (int32_t k = 0; k < p->laws.count; k++) {
+    mpsi_law_use law = p->laws.law[k];
+    choose_volume(def, true, &law);
+    means = means || !law.own_volume;
+  }
+  return mpsi_mpm_volume_room(context, grid, p, rooms, p->count, means, p->laws.some_filtered);
+}
+
+void mpsi_mpm_soak_laws(mpsi_columns *p, const mps_mpm_def *def) {
+  p->laws.soaked = true;
+  p->laws.at_once = true, p->laws.some_own = p->laws.some_filtered = false;
+  for (int32_t k = 0; k < p->laws.count; k++) {
+    mpsi_law_use *law = &p->laws.law[k];
+    choose_volume(def, true, law);
+    choose_columns(law);
+    p->laws.at_once = p->laws.at_once && law->own_volume;
+    p->laws.some_own = p->laws.some_own || law->own_volume;
+    p->laws.some_filtered = p->laws.some_filtered || law->filtered;
   }
 }
 
@@ -64,11 +99,8 @@ mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_co
                       .bulk = mpsi_material_rest_modulus(material) -
                               4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
-  choose_volume(def, &law);
-  law.strain = law.gap = -1;
-  law.opening = mpsi_material_gap_column(material);
-  if (law.filtered && mpsi_material_opens(material))
-    mpsi_material_sand_columns(material, &law.strain, &law.gap);
+  choose_volume(def, p->laws.soaked, &law);
+  choose_columns(&law);
   const bool at_once = law.own_volume && p->laws.at_once;
   const bool some_filtered = law.filtered || p->laws.some_filtered;
   if (p->laws.count > 0 &&
