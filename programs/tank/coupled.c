@@ -88,12 +88,23 @@ static mps_status make_plate(tank_model *m) {
   return MPS_OK;
 }
 
+/* Relaxation of a coupling's first repeats: the share of the structure in what moves. More than
+ * that overshoots the water's answer, and a light structure under much water never agreed with it.
+ */
+static double first_relaxation(const tank_settings *s, double most) {
+  const bool plate = s->kind == TANK_PLATE; /* else the added mass of fast motion */
+  const double own = plate ? s->plate_density * s->plate_thickness : s->mass;
+  const double water = WAVES_DENSITY * s->depth * (plate ? 1.0 : 0.5428 * s->depth);
+  return fmin(most, own / (own + water));
+}
+
 mps_status tank_make_structure(mps_context *context, tank_model *m) {
   mps_coupling_def def = mps_coupling_defaults();
   const mps_status status = m->s.kind == TANK_PLATE ? make_plate(m) : make_spring(m);
   if (status != MPS_OK) return status;
   def.size = m->structure.shapes;
   def.method = def.size > 1 ? MPS_COUPLING_METHOD_QUASI_NEWTON : MPS_COUPLING_METHOD_AITKEN;
+  def.relaxation = first_relaxation(&m->s, def.relaxation);
   def.floor = 1e-4 * WAVES_G; /* accuracy of the pressure solution */
   m->structure.room = (def.columns + 4) * (1 + 2 * def.size);
   m->structure.memory = calloc((size_t)m->structure.room, sizeof(double));

@@ -36,6 +36,15 @@ in_range "$work/plate/summary.json" omega 498.1 508.1
 in_range "$work/plate/summary.json" deflection 6.791e-5 6.929e-5
 in_range "$work/plate/summary.json" decay -0.5 0.5
 picture "$work/plate/structure.png" 1000x460 1f4e8c
+# A light plate under forty times its mass of water, of three stiffnesses: omega^2 and rest go by E.
+for young in 3e10 1e11 3e11; do
+  "$1/mps-tank" --case plate --plate-length 0.6 --depth 0.5 --plate-density 1200 --plate-thickness 0.01 --spacing 0.05 \
+    --young "$young" --dt 5e-5 --duration 0.08 --threads 1 --frames 0 --out "$work/light-$young" >"$work/log"
+done
+in_range "$work/light-3e10/summary.json" deflection 5.94e-4 6.06e-4 # 5.997e-4 by the plate's theory
+in_range "$work/light-1e11/summary.json" deflection 1.78e-4 1.82e-4
+in_range "$work/light-3e11/summary.json" deflection 5.94e-5 6.06e-5
+in_range "$work/light-3e11/summary.json" omega 525 536 # 530.4 by potential flow
 # In waves near its own frequency: linear potential flow of this tank, and of an endless flume.
 "$1/mps-tank" --case resonance --spacing 0.02 --threads 1 --frames 0 --out "$work/resonance" >"$work/log"
 in_range "$work/resonance/summary.json" radiation_damping 389.6 389.8

@@ -257,3 +257,72 @@ TEST(a_body_gets_what_a_particle_loses) {
   NEAR(own.linear[0] + sum.linear[0], -s.mass, 1e-12);
   NEAR(sum.impulse_scheme[0], 0.0, 1e-12);
 }
+
+/* ---- a bore ---------------------------------------------------------------------------------- */
+
+#define HIGH 0.3 /* m, depths of two basins of 3 m */
+#define LOW 0.05
+#define BORE_TIME 1.4 /* s */
+
+/* Velocity behind the bore (Stoker 1957): that of the rarefaction and that of the jump. */
+static double stoker(double *front) {
+  double low = LOW, high = HIGH, u = 0.0;
+  for (int k = 0; k < 100; k++) {
+    const double h = 0.5 * (low + high);
+    u = 2.0 * (sqrt(TANK_G * HIGH) - sqrt(TANK_G * h));
+    *front = h * u / (h - LOW);
+    if ((h - LOW) * sqrt(0.5 * TANK_G * (h + LOW) / (h * LOW)) < u)
+      low = h;
+    else
+      high = h;
+  }
+  return u;
+}
+
+/* Velocity behind the bore over Stoker's, and the scheme's momentum over that of the walls. */
+static void run_bore(double l0, double *velocity, double *scheme) {
+  scoped_tank t = {NULL, NULL};
+  unsigned seed = 3;
+  double front, u[2] = {0.0, 0.0}, sum = 0.0;
+  const double exact = stoker(&front), half = 3.0;
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = l0);
+  for (int i = 0; i < (int)lround(2.0 * half / l0); i++)
+    for (int j = 0; j < (int)lround((i < lround(half / l0) ? HIGH : LOW) / l0); j++) {
+      double x[2] = {(i + 0.5) * l0, (j + 0.5) * l0};
+      jitter(&seed, x, u);
+      OK(mps_particles_append(t.water, 1, x));
+    }
+  USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = LOW);
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, 2.0 * half, 0.0, -1.0, 0.0, NULL);
+  OK(mps_fluid_run(t.fluid, BORE_TIME, 1000000, NULL, NULL));
+  const mps_view x = view_field(t.water, "position"), v = view_field(t.water, "velocity");
+  int count = 0;
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double at = *mps_view_f64(&x, i, 0) - half;
+    if (at < 0.4 || at > BORE_TIME * front - 0.4) continue;
+    sum += *mps_view_f64(&v, i, 0), count++;
+  }
+  mps_totals all;
+  OK(mps_fluid_get_totals(t.fluid, &all));
+  *velocity = sum / count / exact - 1.0;
+  *scheme = all.impulse_scheme[0] / (500.0 * TANK_G * (HIGH * HIGH - LOW * LOW) * BORE_TIME);
+  printf("bore, l0 %.4f m: velocity behind it %+.1f %%, momentum of the scheme %+.1f %%\n", l0,
+         100.0 * *velocity, 100.0 * *scheme);
+}
+
+/* Where smoothing was of one side behind the bore, it gave 2.6 to 5.6 % of the momentum, and the
+ * water was 3 to 6 % too fast. */
+TEST(a_bore_gets_its_momentum_from_the_walls) {
+  const double l0[3] = {0.025, 1.0 / 60.0, 0.0125};
+  const int count = test_quick() ? 2 : 3;
+  double velocity = 0.0, scheme = 0.0;
+  for (int k = 0; k < count; k++) {
+    double v, m;
+    run_bore(l0[k], &v, &m);
+    velocity += v / count, scheme += m / count;
+  }
+  NEAR(velocity, 0.0, 0.025);
+  NEAR(scheme, 0.0, 0.03);
+}

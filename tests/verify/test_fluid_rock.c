@@ -1,7 +1,7 @@
 /* test_fluid_rock.c - flow through rock: the discharge of a dam between two basins by Dupuit's
- * formula, which is exact for Darcy's law, and the break of a dam through crushed rock against
- * measured levels (Liu, Lin, Chang and Sakakiyama 1999, as digitised in the case CR35 of olaFlow).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * formula, which is exact for Darcy's law, the force that moves water and rock to and fro, and the
+ * break of a dam through crushed rock against measured levels (Liu, Lin, Chang and Sakakiyama 1999,
+ * as digitised in the case CR35 of olaFlow). SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 static mps_particles *water;
@@ -73,6 +73,72 @@ TEST(basins_drain_as_dupuit_says) {
   NEAR(measured / rate, 1.0, 0.08);
   for (int n = 0; n < 2; n++) NEAR(0.5 * sum[n], 0.3, 0.002);
   end();
+}
+
+/* A full box of water and rock to and fro between two walls that move as one: a displacement of A
+ * sin(wt) needs the force rho H (L dU/dt + B ((s/e - 1) dU/dt + a U)), s = 1 + Cm. From two periods
+ * the sine and the cosine of the force, hence s and f = a e/w. */
+typedef struct tube {
+  double s, f; /* over those of the rock */
+} tube;
+
+static tube shake_tube(double l0, double way) {
+  enum { ACROSS = 10, HIGH = 4 };
+  const double e = 4.0 / 9.0, pitch = 1.5 * l0, gap = 10.0 * pitch, width = ACROSS * pitch;
+  const double high = HIGH * pitch, length = 2.0 * gap + width, omega = 4.32, f = 3.0, D = 0.02;
+  const double mass = 1.0 + 0.34 * (1.0 - e) / e, solid = (1.0 - e) * (1.0 - e) / (e * e * e);
+  const double dt = 0.2 * sqrt(l0 / 9.81), period = 2.0 * 3.14159265358979 / omega;
+  const double wall[4][4] = {
+      {0.0, 1.0, 0.0, 0.0}, {0.0, -1.0, 0.0, high}, {1.0, 0.0, 0.0, 0.0}, {-1.0, 0.0, length, 0.0}};
+  const double corner[4][3] = {
+      {gap, -1.0, 0.0}, {gap + width, -1.0, 0.0}, {gap + width, 1.0, 0.0}, {gap, 1.0, 0.0}};
+  const double A = way * l0;
+  int32_t number[4];
+  start(l0);
+  for (int j = 0; j < 3 * HIGH / 2; j++)
+    for (int k = 0; k < 15; k++)
+      for (int side = 0; side < 2; side++)
+        add((k + 0.5) * l0 + side * (gap + width), (j + 0.5) * l0);
+  for (int j = 0; j < HIGH; j++)
+    for (int k = 0; k < ACROSS; k++) add(gap + (k + 0.5) * pitch, (j + 0.5) * pitch);
+  USING(fluid, mps_fluid_create(context, water, &given, &fluid), .level = high, .dt = dt);
+  MAKE(signal, sine, create_sine, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT,
+       omega / 6.28318530717959, A, 0.0);
+  for (int k = 0; k < 4; k++) {
+    USING(fluid_boundary, mps_fluid_add_boundary(fluid, &given, &number[k]),
+          .kind = k < 2 ? MPS_BOUNDARY_ROLLER : MPS_BOUNDARY_DRIVEN, .normal[0] = wall[k][0],
+          .normal[1] = wall[k][1], .point[0] = wall[k][2], .point[1] = wall[k][3],
+          .signal = k < 2 ? NULL : sine, .factor = wall[k][0] < 0.0 ? -1.0 : 1.0);
+  }
+  USING(fluid_rock, mps_fluid_add_rock(fluid, &given, NULL), .corners = corner[0],
+        .corner_count = 4, .porosity = e, .diameter = D, .beta = 0.0,
+        .alpha = f * omega / e / (solid * 1e-6 / (D * D)));
+  double sum[2] = {0.0, 0.0};
+  const int64_t steps = llround(2.0 * period / dt), first = llround(0.5 * period / dt);
+  for (int64_t n = 0; n < first + steps; n++) {
+    mps_reaction force[2];
+    OK(mps_fluid_step(fluid, 1));
+    for (int k = 0; k < 2; k++) OK(mps_fluid_get_reaction(fluid, number[2 + k], &force[k]));
+    const double t = ((double)n + 0.5) * dt, all = force[0].force[0] + force[1].force[0];
+    if (n < first) continue;
+    sum[0] += 2.0 * all * sin(omega * t) / (double)steps;
+    sum[1] += 2.0 * all * cos(omega * t) / (double)steps;
+  }
+  end();
+  const double unit = 1000.0 * high * A * omega * omega;
+  return (tube){.s = (-sum[0] / unit - (length - width)) / width * e / mass,
+                .f = sum[1] / unit / width * e / f};
+}
+
+TEST(rock_has_its_inertia_and_resistance) {
+  const double spacing[3] = {0.04, 0.02, 0.01};
+  for (int k = 0; k < 3; k++) {
+    const tube got = shake_tube(spacing[k], 1.5);
+    printf("spacing %g m: inertia %+.2f %%, resistance %+.2f %%\n", spacing[k],
+           100.0 * (got.s - 1.0), 100.0 * (got.f - 1.0));
+    NEAR(got.s, 1.0, 0.02);
+    NEAR(got.f, 1.0, 0.015);
+  }
 }
 
 enum { TIMES = 5, POINTS = 12 };

@@ -7,8 +7,8 @@
 
 /* Of a particle in the step being made. */
 typedef struct mpsi_fluid_pore {
-  double porosity, ease; /* e; e/(lambda (1 + Cm)), lambda - 1 the resistance in a step */
-  double fill;           /* sum w of the neighbours, as if all had its own spacing and radius */
+  double porosity, ease, lambda; /* e; e/(lambda (1 + Cm)); lambda - 1: resistance in a step */
+  double fill; /* sum w of the neighbours, as if all had its own spacing and radius */
   const mpsi_fluid_weight *weight;
   double spacing; /* m */
   bool mixed;     /* some neighbours are in another region, after the neighbour search */

@@ -22,6 +22,7 @@
 #include <string.h>
 
 #define REPEATS 40      /* most solutions a step */
+#define WHOLE 10        /* of them with whole steps: where suction is cut off they may cycle */
 #define AGREED 2e-4     /* of the acceleration */
 #define FLOOR 2e-5      /* of gravity */
 #define FIRST_ADDED 1.0 /* of the displaced mass: initial added mass */
@@ -98,14 +99,14 @@ static void learn(double *E, const double *da, const double *dg) {
  * the next iterate. `tried` and `missed` of the body are the previous iterate, if any. The body
  * then moves with exactly these accelerations, with which the pressure was solved: the residual of
  * forces is assigned to the water. */
-static bool judge(const mps_fluid *f, mpsi_fluid_body *own, bool first) {
+static bool judge(const mps_fluid *f, mpsi_fluid_body *own, int repeat) {
   const double length = mpsi_fluid_body_length(own, f);
   double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
   masses(own, length, mass);
   mpsi_fluid_load_body(f, own, own->pose.x);
   imbalance(own, mass, length, f->dt, g);
   if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
-  if (!first) {
+  if (repeat > 0) {
     double da[3], dg[3];
     for (int c = 0; c < 3; c++) da[c] = own->rate[c] - own->tried[c], dg[c] = g[c] - own->missed[c];
     learn(own->mass, da, dg);
@@ -126,7 +127,7 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, bool first) {
   }
   memcpy(own->tried, own->rate, sizeof own->tried);
   memcpy(own->missed, g, sizeof own->missed);
-  for (int c = 0; c < 3; c++) own->rate[c] += step[c];
+  for (int c = 0; c < 3; c++) own->rate[c] += (repeat < WHOLE ? 1.0 : 0.5) * step[c];
   return false;
 }
 
@@ -163,7 +164,7 @@ mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
     if (status != MPS_OK) return status;
     bool agreed = true;
     for (int b = 0; b < f->bodies; b++)
-      if (f->body[b].floats) agreed &= judge(f, &f->body[b], repeat == 0);
+      if (f->body[b].floats) agreed &= judge(f, &f->body[b], repeat);
     if (agreed) return MPS_OK;
   }
   char gap[160];

@@ -17,6 +17,7 @@
 #include "fluid/step/keep_off.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
+#include "fluid/particles/kink.h"
 #include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
@@ -53,7 +54,8 @@ static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end, int64_t c
     if (f->state[i] == MPSI_FLUID_APART) {
       for (int c = 0; c < 2; c++) u[c] -= ease * dt * f->g * f->up[c];
     } else {
-      pressure_gradient(f, i, gradient);
+      if (!(mpsi_fluid_is_mixed(f, i) && mpsi_fluid_kinked_gradient(f, i, gradient)))
+        pressure_gradient(f, i, gradient);
       for (int c = 0; c < 2; c++) u[c] -= ease * dt / rho * gradient[c];
     }
     for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c] + du[c];
