@@ -33,11 +33,13 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
-/* What of a gap (m) counts as the particle's own overlap, where it had `before` (m, <= 0) in the
- * last step: particles that are inside a body when their contact begins stay so until they come off
- * it. Pushed out they would keep the speed of that, energy from nothing. */
-static inline double mpsi_impulse_overlap(double gap, double before) {
-  return fmin(0.0, fmax(gap, before));
+/* Rest gap (m), from which the gap of a particle counts that its body touches when their contact
+ * begins; 0 of others. Ground that has a stress then is at rest: its particles have the size of the
+ * lattice with that stress, not without. What overlaps then bears where it is until it has come
+ * off: pushed out it would keep the speed of that, energy from nothing. `before`: of the last step.
+ */
+static inline double mpsi_impulse_rest_gap(double gap, double before) {
+  return before > 0.0 ? before : fmin(0.0, fmax(gap, before));
 }
 
 /* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again in a step of

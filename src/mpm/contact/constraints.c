@@ -241,16 +241,20 @@ static bool is_held(const mps_contact *contact, const mpsi_constraint *constrain
   return bearer && bearer->warm >= 0;
 }
 
-/* Overlap with which the particle's contact began, at the gap `gap` now. */
-static double overlap_of(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
-                         double gap) {
+#define TOUCHES 1e-6 /* half spacings */
+
+/* Rest gap of a particle at the distance `distance`, at the gap `gap` now. */
+static double rest_gap_of(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
+                          double distance, double gap) {
   const mpsi_contacts *contacts = stage->contact;
-  if (contacts->handle[constraint->body]->def.inside == MPS_CONTACT_INSIDE_PUSH) return 0.0;
-  if (contacts->state[constraint->body].first_step == stage->transfer.run->steps)
-    return mpsi_impulse_overlap(gap, gap);
+  const mps_contact_def *def = &contacts->handle[constraint->body]->def;
+  if (contacts->state[constraint->body].first_step == stage->transfer.run->steps) {
+    const bool touches = distance <= def->offset * (1.0 + TOUCHES);
+    return !touches ? 0.0 : def->inside == MPS_CONTACT_INSIDE_PUSH ? fmax(gap, 0.0) : gap;
+  }
   const mpsi_warm_impulse *before =
-      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, MPSI_OVERLAP);
-  return before ? mpsi_impulse_overlap(gap, before->by[0]) : 0.0;
+      mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, MPSI_REST_GAP);
+  return before ? mpsi_impulse_rest_gap(gap, before->by[0]) : 0.0;
 }
 
 /* Contact of particle k with the body of pair t; false: it lies in the strip beyond an inset edge,
@@ -277,9 +281,9 @@ static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
   if (contact->inset && !place_at_edge(contact, &foot, out)) return false;
   out->part = mpsi_contact_part(contact, foot.face);
   const double gap = foot.distance - bearing.half;
-  out->overlap = overlap_of(stage, out, gap);
+  out->rest_gap = rest_gap_of(stage, out, foot.distance, gap);
   c->aim =
-      mpsi_impulse_aim(gap - out->overlap, stage->transfer.run->dt,
+      mpsi_impulse_aim(gap - out->rest_gap, stage->transfer.run->dt,
                        fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);
   if (is_held(contact, out)) c->aim = fmax(c->aim, 0.0);
   c->friction = contact->friction;

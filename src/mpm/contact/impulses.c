@@ -123,7 +123,7 @@ static void add_reaction(const mpsi_contacts *contacts, double dt,
 }
 
 /* Adds the reactions of all constraints to the loads on the bodies, and stores the impulses for the
- * warm start of the next step, and the overlaps. */
+ * warm start of the next step, and the rest gaps. */
 static void store_impulses(mpsi_contacts *contacts, double dt) {
   mpsi_impulses *all = &contacts->impulses;
   mpsi_warm_impulse *next = all->next_room.item;
@@ -131,11 +131,11 @@ static void store_impulses(mpsi_contacts *contacts, double dt) {
   for (int64_t n = 0; n < all->constraint_count; n++) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
-    if (constraint->overlap < 0.0)
+    if (constraint->rest_gap != 0.0)
       next[count++] = (mpsi_warm_impulse){.id = constraint->id,
                                           .body = constraint->body,
-                                          .point = MPSI_OVERLAP,
-                                          .by = {constraint->overlap}};
+                                          .point = MPSI_REST_GAP,
+                                          .by = {constraint->rest_gap}};
     if (!(c->normal_impulse > 0.0)) continue;
     next[count] = (mpsi_warm_impulse){
         .id = constraint->id, .body = constraint->body, .point = constraint->point};

@@ -22,7 +22,7 @@
 typedef struct mpsi_constraint {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
-  double overlap;    /* m, <= 0: with which its contact began (mpsi_impulse_overlap) */
+  double rest_gap;   /* m: mpsi_impulse_rest_gap */
   double carried[3]; /* m/s, part of the velocity at the foot that comes from the velocity of
                         mirrors */
   int64_t particle;  /* index of the particle */
@@ -50,8 +50,8 @@ typedef struct mpsi_constraint_block {
 
 /* Impulse of a body on a particle in the last step, from which the sweeps of the next one start:
  * on the same particle, or at the inset edge `point` on the particle that bears there. With the
- * point MPSI_OVERLAP not an impulse but the particle's overlap, by[0] (m). */
-#define MPSI_OVERLAP INT32_MAX
+ * point MPSI_REST_GAP not an impulse but the particle's rest gap, by[0] (m). */
+#define MPSI_REST_GAP INT32_MAX
 typedef struct mpsi_warm_impulse {
   int64_t id;
   int32_t body, point;
@@ -117,8 +117,8 @@ void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
  * walls. */
 void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
 /* warm_start.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
- * step on a particle (point 0) or its overlap (MPSI_OVERLAP), or NULL where there was none; removes
- * the impulses of a contact that has ended, and moves the bodies above it down by one.
+ * step on a particle (point 0) or its rest gap (MPSI_REST_GAP), or NULL where there was none;
+ * removes the impulses of a contact that has ended, and moves the bodies above it down by one.
  * constraints.c: foot and half size with which a particle bears on the contact's body. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,

@@ -1,7 +1,6 @@
-/* warm_start.c - impulses of the last step, from which the sweeps start, and overlaps with which
- * contacts began, by particle and body. On
- * several ranks each has, after a step, those of its own particles and of its contact partners'
- * (partners.h). SPDX-License-Identifier: BSD-3-Clause */
+/* warm_start.c - impulses of the last step, from which the sweeps start, and rest gaps, by particle
+ * and body. On several ranks each has, after a step, those of its own particles and of its contact
+ * partners' (partners.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 #include "mpm/ranks/partition.h"
 

@@ -235,7 +235,7 @@ static int64_t count_warm_start(const void *solver) {
   return impulses_of(solver, 0)->warm_count + impulses_of(solver, 1)->warm_count;
 }
 
-/* The body, and above it the inset edge at which it bears or the mark of an overlap. */
+/* The body, and above it the inset edge at which it bears or the mark of a rest gap. */
 static int64_t owner_of(const mpsi_warm_impulse *warm) {
   return warm->body < 0 ? warm->body : (int64_t)warm->point << 32 | warm->body;
 }
