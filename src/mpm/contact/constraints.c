@@ -241,7 +241,7 @@ static bool is_held(const mps_contact *contact, const mpsi_constraint *constrain
   return bearer && bearer->warm >= 0;
 }
 
-#define TOUCHES 1e-6 /* half spacings */
+#define BEARS 1e-6 /* half spacings */
 
 /* Rest gap of a particle at the distance `distance`, at the gap `gap` now. */
 static double rest_gap_of(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
@@ -249,8 +249,8 @@ static double rest_gap_of(const mpsi_contact_stage *stage, const mpsi_constraint
   const mpsi_contacts *contacts = stage->contact;
   const mps_contact_def *def = &contacts->handle[constraint->body]->def;
   if (contacts->state[constraint->body].first_step == stage->transfer.run->steps) {
-    const bool touches = distance <= def->offset * (1.0 + TOUCHES);
-    return !touches ? 0.0 : def->inside == MPS_CONTACT_INSIDE_PUSH ? fmax(gap, 0.0) : gap;
+    const bool bears = distance <= def->offset * (1.0 + BEARS);
+    return !bears ? 0.0 : def->inside == MPS_CONTACT_INSIDE_PUSH ? fmax(gap, 0.0) : gap;
   }
   const mpsi_warm_impulse *before =
       mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, MPSI_REST_GAP);
