@@ -33,7 +33,7 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
-/* Rest gap (m), from which the gap of a particle counts that is in contact when that
+/* Rest gap (m), from which the gap of a particle counts that the body bears when their contact
  * begins; 0 of others. Ground that has a stress then is at rest: its particles have the size of the
  * lattice with that stress, not without. What overlaps then bears where it is until it has come
  * off: pushed out it would keep the speed of that, energy from nothing. `before`: of the last step.
