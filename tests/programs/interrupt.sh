@@ -23,13 +23,13 @@ stop() {
 }
 
 # interrupt NAME SECONDS PROGRAM OPTION...: runs into $work/NAME and presses Ctrl-C so long after the
-# run has begun (twice as late where there was no result yet, up to four times).
+# run has begun (twice as late where there was no result yet, up to six times).
 interrupt() {
   name=$1
   wait=$2
   program=$3
   shift 3
-  for try in 1 2 3 4; do
+  for try in 1 2 3 4 5 6; do
     rm -rf "$work/$name"
     "$programs/$program" "$@" --threads 1 --out "$work/$name" >"$work/out" 2>"$work/log" &
     pid=$!
