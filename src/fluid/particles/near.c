@@ -178,22 +178,18 @@ static int32_t corners_near(const mps_fluid *f, int64_t i) {
   return (corner ? MPSI_FLUID_NEAR_CORNER : 0) | (wedge ? MPSI_FLUID_NEAR_WEDGE : 0);
 }
 
-/* MPSI_FLUID_NEAR_ROUGH and _BODY. */
-static int32_t faces_near(const mps_fluid *f, int64_t count, const int32_t *index) {
-  int32_t near = 0;
+/* MPSI_FLUID_NEAR_ROUGH. */
+static int32_t rough_near(const mps_fluid *f, int64_t count, const int32_t *index) {
   for (int64_t k = 0; k < count; k++) {
     const int64_t ghost = index[k] - f->count;
     if (ghost < 0) continue;
     const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
     if (path && mpsi_fluid_segment_of(f, path->segment[0])->wall.friction > 0.0)
-      near |= MPSI_FLUID_NEAR_ROUGH;
-    MPSI_FLUID_FLIPS(n, f->flips[ghost]) {
-      const mpsi_fluid_wall *wall = &f->wall[f->flips[ghost].wall[n]];
-      if (wall->friction > 0.0) near |= MPSI_FLUID_NEAR_ROUGH;
-      if (wall->of_body > 0) near |= MPSI_FLUID_NEAR_BODY;
-    }
+      return MPSI_FLUID_NEAR_ROUGH;
+    MPSI_FLUID_FLIPS(n, f->flips[ghost])
+    if (f->wall[f->flips[ghost].wall[n]].friction > 0.0) return MPSI_FLUID_NEAR_ROUGH;
   }
-  return near;
+  return 0;
 }
 
 /* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
@@ -227,8 +223,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     if (mpsi_fluid_is_mixed(f, i)) mpsi_fluid_weigh_mixed(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
     if (cornered) company |= corners_near(f, i);
-    if ((f->rough || f->faces) && (company & MPSI_FLUID_NEAR_IMAGES))
-      company |= faces_near(f, found, index);
+    if (f->rough && (company & MPSI_FLUID_NEAR_IMAGES)) company |= rough_near(f, found, index);
     f->company[i] = (uint8_t)company;
     f->start[i] = (int32_t)(at / MPSI_FLUID_WIDE);
     f->near[i] = (uint16_t)found;

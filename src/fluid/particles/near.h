@@ -10,16 +10,14 @@
 
 /* Whether a particle has images among its neighbours, neighbours within .7 l0, a body's corner
  * within 1.5 l0, neighbours in other blocks of the matrix, an acute corner of the water, between a
- * face and a boundary, within 3.1 l0, images in faces with friction among its neighbours, and
- * images in faces of bodies. */
+ * face and a boundary, within 3.1 l0, and images in faces with friction among its neighbours. */
 enum {
   MPSI_FLUID_NEAR_IMAGES = 1,
   MPSI_FLUID_NEAR_CLOSE = 2,
   MPSI_FLUID_NEAR_CORNER = 4,
   MPSI_FLUID_NEAR_OTHERS = 8,
   MPSI_FLUID_NEAR_WEDGE = 16,
-  MPSI_FLUID_NEAR_ROUGH = 32,
-  MPSI_FLUID_NEAR_BODY = 64
+  MPSI_FLUID_NEAR_ROUGH = 32
 };
 
 #define MPSI_FLUID_CLOSE 0.7 /* l0 */

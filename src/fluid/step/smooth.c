@@ -17,9 +17,8 @@
  * normals goes to the wall, and the rest cancels with what its parent gets from the image of i.
  *
  * What is rough in less steep flow, behind a bore, pairs exchange too: the second part of a where
- * it is larger than the first and the steepness |G|^2/(.05 s0^2) above .02, off the surface and
- * off bodies, whose motion would have noise of it. From one side it gave bores up to a third of the
- * force of their jump, always ahead.
+ * it is larger than the first and the steepness |G|^2/(.05 s0^2) above .02, off the surface. From
+ * one side it gave bores up to a third of the force of their jump, always ahead.
  *
  * The Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a only what that
  * leaves. SPDX-License-Identifier: BSD-3-Clause */
@@ -92,8 +91,7 @@ static parts find_parts(const mps_fluid *f, int64_t i) {
   if (f->company[i] & MPSI_FLUID_NEAR_ROUGH) p.paired = 1.0;
   const double steep = mpsi_fluid_steepness(f, i) / SHARED_FROM - 1.0;
   const double rough = p.rough / (part * f->dt * mpsi_fluid_rate(f) + 1e-300) - 1.0;
-  const bool alone = f->zone[i] || (f->company[i] & MPSI_FLUID_NEAR_BODY);
-  p.shared = alone ? 0.0 : fmin(fmax(steep, 0.0), 1.0) * fmin(fmax(rough, 0.0), 1.0);
+  p.shared = f->zone[i] ? 0.0 : fmin(fmax(steep, 0.0), 1.0) * fmin(fmax(rough, 0.0), 1.0);
   return p;
 }
 
