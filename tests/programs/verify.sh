@@ -65,6 +65,17 @@ fails --case relative # 0.02 is 100 % above 0.01
 grep -q 'missed' "$here/docs/page.md"
 call --check
 
+# The bar is for the last value, which is the finest; with `judged = all` for each, wherever it stands.
+sed -i '/^reference = 0.01$/a values = 0.02 0.01' "$here/docs/cases/page.ini"
+sed -i 's/--cell 0.02$/--cell {r}/' "$here/docs/cases/page.ini"
+call --case relative
+if grep -q 'missed' "$here/docs/page.md"; then echo "0.01 is no error"; exit 1; fi
+sed -i 's/^values = 0.02 0.01$/&\njudged = all/' "$here/docs/cases/page.ini"
+fails --case relative
+grep -q '50 %, missed' "$here/docs/page.md"
+sed -i '/^judged/d' "$here/docs/cases/page.ini"
+call --render
+
 # A table written by hand, a command that has changed since, a case that is gone, a program that fails.
 sed -i 's/Disc slips | path/Disc slips | way/' "$here/docs/page.md"
 fails --check
