@@ -340,7 +340,8 @@ static bool finish(app *a, void *user) {
   if (compare_holds(&path))
     printf(" (theory %.5f, %+.2f %%; on the way up to %+.2f %%, at %.2g s)", path.reference,
            100.0 * compare_error(&path), 100.0 * worst, worst_at);
-  printf(", omega R/v %.3f\n", ratio);
+  if (s->mu > 0.0) printf(", omega R/v %.3f", ratio);
+  printf("\n");
   compare_tell(&path);
   return true;
 }
