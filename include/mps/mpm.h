@@ -65,7 +65,8 @@ typedef enum mps_mpm_volumetric {
                                without friction or dilation (undrained clay), von Mises, and elastic
                                laws (linear, neo-Hookean, users' that state their moduli) with nu >=
                                0.45 as CELL; all others as POINT, fluids with a filter besides.
-                               With explicit pressures of pore water laws with friction as CELL */
+                               With explicit pressures of pore water those with friction and
+                               without dilation as CELL */
   MPS_MPM_VOLUMETRIC_POINT = 1,  /* each particle's own tr(d), in axisymmetry with the hoop */
   MPS_MPM_VOLUMETRIC_CELL = 2, /* F-bar: the mean of tr(d), weighted by volumes, over the particles
                              of the cell (quadratic: of the cell-sized box about a node); the part

@@ -104,6 +104,8 @@ for young in 10MPa 30MPa 100MPa; do # springs push its corners out of the slope;
   with x_theory $steep --young $young
   [ -x "$programs/mps-rolling-disc" ] && in_range "$work/o/summary.json" x_error_05 -0.015 0.015
 done
+with x_theory mps-rolling-disc --slope-angle 42 --friction 0.2 --young 30MPa --fill rings
+[ -x "$programs/mps-rolling-disc" ] && in_range "$work/o/summary.json" x_error_05 -0.01 0.01
 without "x_theory x_error_05" "soft" mps-rolling-disc --cell 0.02 --young 20kPa --duration 0.1
 with x_theory mps-rolling-disc --cell 0.02
 without Fy_smooth "lifts off" mps-sliding-box --cell 0.05
