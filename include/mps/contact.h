@@ -27,7 +27,8 @@ typedef enum mps_contact_mover {
 
 /** Treatment of particles whose centres lie inside the body when the contact is made. By impulses
  *  also of those that only reach into it then, nearer to it than `offset`: with PUSH they are moved
- *  out, the faster the stiffer they are, else they bear where they are until they have come off. */
+ *  out, the faster the stiffer they are, else they bear where they are until they have come off, or
+ *  come out as they slide along the surface, over a spacing. */
 typedef enum mps_contact_inside {
   MPS_CONTACT_INSIDE_REFUSE = 0, /* MPS_ERROR_ARGUMENT, with their number */
   MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and the contact moves them out: a twentieth of the

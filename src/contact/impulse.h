@@ -36,10 +36,12 @@ static inline double mpsi_impulse_lever(double distance, double half) {
 /* Rest gap (m), from which the gap of a particle counts that the body bears when their contact
  * begins; 0 of others. Ground that has a stress then is at rest: its particles have the size of the
  * lattice with that stress, not without. What overlaps then bears where it is until it has come
- * off: pushed out it would keep the speed of that, energy from nothing. `before`: of the last step.
- */
-static inline double mpsi_impulse_rest_gap(double gap, double before) {
-  return before > 0.0 ? before : fmin(0.0, fmax(gap, before));
+ * off: pushed out it would keep the speed of that, energy from nothing. Only what slides along the
+ * surface, as beside a cone, comes out, over a spacing. `before`: of the last step; `slid` (m):
+ * since then; `half` (m): half the size of the particle. */
+static inline double mpsi_impulse_rest_gap(double gap, double before, double slid, double half) {
+  if (before > 0.0) return before;
+  return fmin(0.0, fmax(gap, before * fmax(0.0, 1.0 - 0.5 * slid / half)));
 }
 
 /* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again in a step of

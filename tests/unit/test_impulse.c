@@ -385,6 +385,39 @@ TEST(overlaps_end_with_contact) {
   }
 }
 
+/* Deepest overlap (m) of a block that overlapped a smooth plate by a quarter of its particles' half
+ * size, when the plate has slid along it by `way` spacings. */
+static double left_after(double cell, double young, double low, double way) {
+  const double half = 0.25 * cell, y = low * cell;
+  scoped_mpm_scene s = mpm_scene_begin(context, 2.0 * half, 0.0, y, young);
+  mpm_scene_box(&s, 0.0, y, 10 * cell, y + 5 * cell);
+  USING(mpm, mpm_scene_solve(&s, &given), .cell = cell);
+  DEF(body, at, .position[0] = 5 * cell, .position[1] = y + 7.5 * cell - 0.25 * half);
+  MAKE(body, plate, create_box, context, &at, 40 * cell, 5 * cell);
+  scoped_contact *contact = NULL;
+  OK(mps_mpm_add_contact(s.mpm, plate, NULL, &contact));
+  const double speed = 1e-2 * sqrt(young / 1000.0);
+  drive(plate, speed, 0.0);
+  OK(mps_mpm_run(s.mpm, way * 2.0 * half / speed, 1, NULL, NULL));
+  int64_t count = 0, ids[64];
+  double gap[64], deepest = 0.0;
+  OK(mps_contact_get_particles(contact, 64, &count, ids, gap, NULL, NULL, NULL));
+  for (int64_t k = 0; k < count; k++) deepest = fmin(deepest, gap[k]);
+  return deepest / half;
+}
+
+/* What slides along a surface comes out of it over a spacing, whatever the grid, the stiffness and
+ * the place. */
+TEST(overlaps_end_as_particles_slide) {
+  for (int n = 0; n < 3; n++)
+    for (int e = 0; e < 3; e++)
+      for (int d = 0; d < 5; d++) {
+        const double cell = 0.02 / (1 << n), young = 1e6 * pow(30.0, e);
+        NEAR(left_after(cell, young, 0.2 * d, 0.05), -0.25, 0.03);
+        NEAR(left_after(cell, young, 0.2 * d, 2.0), -0.03, 0.03);
+      }
+}
+
 /* Force (N) of a plate on ground that begins under `pressure` between it and another, `cells` high,
  * in the last of some steps; the ground is `low` cells above a line of nodes. `up`: the axis across
  * the plates. */

@@ -243,18 +243,35 @@ static bool is_held(const mps_contact *contact, const mpsi_constraint *constrain
 
 #define BEARS 1e-6 /* half spacings */
 
-/* Rest gap of a particle at the distance `distance`, at the gap `gap` now. */
+/* m: way of the particle along the surface in a step. */
+static double way_along(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
+                        const mpsi_foot *foot) {
+  const mpsi_columns *p = stage->transfer.p;
+  double surface[3], v[3] = {0.0}, normal = 0.0, square = 0.0;
+  mpsi_body_velocity(&stage->contact->handle[constraint->body]->body->pose, foot->at, surface);
+  for (int c = 0; c < stage->transfer.grid->dim; c++) {
+    v[c] = p->v[c][constraint->particle] - surface[c];
+    normal += v[c] * foot->normal[c];
+  }
+  for (int c = 0; c < 3; c++)
+    square += (v[c] - normal * foot->normal[c]) * (v[c] - normal * foot->normal[c]);
+  return stage->transfer.run->dt * sqrt(square);
+}
+
+/* Rest gap of a particle of half size `half`, at the gap `gap` now. */
 static double rest_gap_of(const mpsi_contact_stage *stage, const mpsi_constraint *constraint,
-                          double distance, double gap) {
+                          const mpsi_foot *foot, double half) {
+  const double gap = foot->distance - half;
   const mpsi_contacts *contacts = stage->contact;
   const mps_contact_def *def = &contacts->handle[constraint->body]->def;
   if (contacts->state[constraint->body].first_step == stage->transfer.run->steps) {
-    const bool bears = distance <= def->offset * (1.0 + BEARS);
+    const bool bears = foot->distance <= def->offset * (1.0 + BEARS);
     return !bears ? 0.0 : def->inside == MPS_CONTACT_INSIDE_PUSH ? fmax(gap, 0.0) : gap;
   }
   const mpsi_warm_impulse *before =
       mpsi_mpm_warm_impulse(contacts, constraint->id, constraint->body, MPSI_REST_GAP);
-  return before ? mpsi_impulse_rest_gap(gap, before->by[0]) : 0.0;
+  if (!before) return 0.0;
+  return mpsi_impulse_rest_gap(gap, before->by[0], way_along(stage, constraint, foot), half);
 }
 
 /* Contact of particle k with the body of pair t; false: it lies in the strip beyond an inset edge,
@@ -281,7 +298,7 @@ static bool begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t
   if (contact->inset && !place_at_edge(contact, &foot, out)) return false;
   out->part = mpsi_contact_part(contact, foot.face);
   const double gap = foot.distance - bearing.half;
-  out->rest_gap = rest_gap_of(stage, out, foot.distance, gap);
+  out->rest_gap = rest_gap_of(stage, out, &foot, bearing.half);
   c->aim =
       mpsi_impulse_aim(gap - out->rest_gap, stage->transfer.run->dt,
                        fmax(stage->transfer.run->dt, stage->next_dt), stage->transfer.run->speed);

@@ -5,9 +5,11 @@
  *   ROLLER, HELD, DRIVEN, boxes   the component is prescribed
  *   FREE_FIELD                    the component does not follow the pressures
  *   FRICTIONAL                    where v* goes into the side it bears: the normal component is
- *                                 prescribed, and the others where friction by that impulse
- * suffices ABSORBING                     the dashpot c is implicit: inertia m + dt c; until it has
- * found its forces at rest, which balance those of the water too, the component is prescribed
+ *                                 prescribed, and the others where friction by that
+ *                                 impulse suffices
+ *   ABSORBING                     the dashpot c is implicit: inertia m + dt c; until it has found
+ *                                 its forces at rest, which balance those of the water too, the
+ *                                 component is prescribed
  *
  * Then viscous damping a acts on components that are not prescribed (step/damping.c): inertia times
  * 1 + a dt. A motion that the matrix does not know comes back as a pressure of K_w/n times its
