@@ -11,6 +11,7 @@
 #define PI 3.14159265358979323846
 #define GROWTH 0.1   /* of the pressure, over the second half of the path: more is no capacity */
 #define SUNK 0.15    /* of a circle's radius: deeper, pressures depend on the cell by a tenth */
+#define STEEP 41.0   /* degrees, of friction: above, weight bears less than it should */
 #define FASTEST 0.08 /* of the capacity: v (rho G)^1/2, at which inertia adds some 5 % */
 #define DEEPEST 0.05 /* of the half width: limit analysis knows the ground's first shape only */
 
@@ -311,6 +312,17 @@ static void warn_of_cells(app *a, const settings *s, const capacity *c) {
       s->settlement / s->half_width);
 }
 
+/* N_gamma of 45 degrees falls as the particles a cell get more, and not with the cell. */
+static void warn_of_angle(app *a, const settings *s) {
+  const double degrees = footing_find_strength(s).phi * 180.0 / PI;
+  if (!(degrees > STEEP) || !footing_weight_bears(s)) return;
+  app_warn(
+      a,
+      "sand of %g degrees that its weight alone keeps: above %g degrees its capacity comes out "
+      "up to a fourth too low, by cell and particles, and finer ones do not help",
+      degrees, STEEP);
+}
+
 bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
@@ -318,6 +330,7 @@ bool footing_finish(app *a, void *user) {
   mpm_snapshot shot = {0};
   if (!isnan(c.last)) warn_of_growth(a, &c); /* before the summary, which lists it */
   warn_of_cells(a, s, &c);
+  warn_of_angle(a, s);
   const bool good = app_check(a, mpm_snapshot_last(&sim->m, 0.0, "plastic_strain", &shot)) &&
                     write_pressure(a, sim) && write_particles(a, s, &shot) &&
                     write_summary(a, sim, &c) && draw_pressure(a, sim, &c) &&

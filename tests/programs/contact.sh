@@ -88,6 +88,13 @@ in_range "$work/surcharge/summary.json" q_over_surcharge 17.8 19.3
   --out "$work/layer" >/dev/null
 in_range "$work/layer/summary.json" q_exact 61415 61417
 in_range "$work/layer/summary.json" q_over_c 6.02 7.4
+# Sand of 45 degrees on its weight alone bears too little, which is warned of; not of 40 degrees, nor with a surcharge.
+steep="$1/mps-footing --law druckerprager --cohesion 0 --cell 0.25 --soil 3x1.5 --settlement 0.02mm --rate 5mm/s --threads 1"
+for options in "40" "45 --surcharge 100kPa" "45"; do
+  $steep --phi $options --out "$work/steep" >/dev/null 2>"$work/log"
+  grep -q "a fourth too low" "$work/log" && [ "$options" != 45 ] && fail "--phi $options is warned of"
+done
+has "$work/steep/summary.json" "a fourth too low"
 # Soft clay over stiff clay bears as if all were soft where Prandtl's mechanism ends above the joint.
 "$1/mps-footing" --cohesion 30kPa --top 0.75 --top-cohesion 10kPa --soil 3x2 --rate 5mm/s --flip-time 10ms \
   --threads 1 --out "$work/layers" >/dev/null
