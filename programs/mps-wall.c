@@ -12,7 +12,8 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->length)) s->length = (active ? 2.5 : 5.0) * s->height;
   s->k0_given = !isnan(s->k0);
   if (isnan(s->k0)) s->k0 = 1.0 - sine; /* Jaky */
-  if (isnan(s->path)) s->path = (active ? 0.01 : 0.02) * s->height;
+  if (isnan(s->path))                   /* behind a toe that stays the ground yields last */
+    s->path = (active ? 0.01 : 0.02) * (s->motion == TURNS_ABOUT_TOE ? 3.0 : 1.0) * s->height;
   if (isnan(s->h)) s->h = s->height / 16.0;
   if (isnan(s->sheet)) /* turning about its toe, the part below would push the ground back */
     s->sheet = active && s->motion != TURNS_ABOUT_TOE && s->base >= 4.0 * s->h * (1.0 - 1e-9)

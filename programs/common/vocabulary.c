@@ -414,7 +414,8 @@ static const struct {
            "as derived, which conserves angular momentum, or twice that as the paper prints it"),
     CHOICE("transfer", NULL, "weights from particles to nodes"),
     NUMBER("travel", "m", LENGTH,
-           "path of the end of the wall that moves most; default 0.01 of the height, passive 0.02"),
+           "path of the end of the wall that moves most; default 0.01 of the height, passive 0.02, "
+           "three times that with --motion toe"),
     NUMBER("turn", "degrees", FROM_TO(-180.0, 180.0),
            "inclination of block and plates against the grid; forces are along the plates"),
     FLAG("undrained", "water in the pores that does not flow"),

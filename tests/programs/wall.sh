@@ -23,6 +23,11 @@ wall toe --pressure passive --length 3 --below-toe 0.5 # which a sharp toe press
 in_range "$work/toe/summary.json" K 2.85 3.15
 in_range "$work/toe/summary.json" K_along -0.003 0.003
 ! grep -q "cannot exceed" "$work/passive/summary.json" || fail "a warning of a bound that holds"
+# About its toe, beside which the ground yields last, a wall turns until all of it has.
+h=0.0625 wall turned --motion toe --phi 33 --psi 33
+in_range "$work/turned/summary.json" K 0.295 0.31 # Rankine .2948
+h=0.0625 wall pressed --motion toe --pressure passive --phi 33 --psi 33 --length 4
+in_range "$work/pressed/summary.json" K 3.29 3.49 # 3.3921
 wall sharp --pressure passive --length 3 --below-toe 0.5 --inset 0 --corner 0
 has "$work/sharp/summary.json" "above that of a sliding wedge, which such ground cannot exceed"
 # Sand that does not dilate, on a smooth bed: between Rankine of phi and of phi*, tan(phi*) = sin(phi); the more friction
