@@ -347,8 +347,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary_motion(mps_fluid *fluid,
 /** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
  *  summed over the points of mps_fluid_get_boundary_points, and, but in an open step, of its
  *  friction. Impulse, moment_impulse and work include collisions with the wall and the smoothing of
- *  velocities at it. MPS_ERROR_ARGUMENT: no
- * wall `number`, NULL, or a `size` unknown to this library. */
+ *  velocities at it, which of a wall of no slip is the viscous drag along it. MPS_ERROR_ARGUMENT:
+ * no wall `number`, NULL, or a `size` unknown to this library. */
 static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
                                                 mps_reaction *out) {
   return mps_solver_get_reaction(mps_fluid_solver(fluid), number, out);

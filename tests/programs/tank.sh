@@ -123,14 +123,14 @@ has "$work/warned" "warning: the plate bends by"
 "$1/mps-tank" --case plate --spacing 0.1 --duration 0.05 --frames 0 --out "$work/thick" >/dev/null 2>"$work/warned"
 ! grep -q "bends by" "$work/warned" || fail "a stiff plate is warned of: $(cat "$work/warned")"
 
-# Viscosities below that of the scheme, .26 (g l0^3)^1/2, and above: nothing damps waves at their surface.
+# Viscosities below that of the scheme, .26 (g l0^3)^1/2, and above.
 for l0 in 0.05 0.04 0.025; do
   for viscosity in 1 60; do
     "$1/mps-tank" --case sloshing --spacing $l0 --length 0.6 --viscosity $viscosity --duration 0.5 --threads 1 --frames 0 \
       --out "$work/thick" >"$work/log" 2>&1
     case $viscosity in
     1) has "$work/log" "--viscosity 1 Pa s has no effect: that of the scheme is" ;;
-    *) has "$work/log" "no viscous stress acts at the surface" ;;
+    *) ! grep -q "has no effect" "$work/log" || fail "a viscosity that has an effect is warned of" ;;
     esac
   done
 done
