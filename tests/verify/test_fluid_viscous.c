@@ -1,7 +1,8 @@
 /* test_fluid_viscous.c - viscosity in closed boxes full of water against exact decay rates: a
  * vortex between walls that slip, and the slowest Stokes flow between walls that hold the water.
- * And below a free surface: a film that a body force drives along a wall, and a standing wave.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * And below a free surface: a film that a body force drives along a wall, and a standing wave. And
+ * beside bodies: water that a lid drags along, the torque of a disc that turns, light discs that
+ * turn freely. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_tank.h"
@@ -269,5 +270,147 @@ TEST(a_standing_wave_decays_by_the_stress_at_its_surface) {
                       cimag(wave_rate(TANK_PI / t[0], t[1], t[3])),
                   exact, 100.0 * error);
     NEAR(error, 0.0, 0.05);
+  }
+}
+
+/* ---- beside bodies --------------------------------------------------------------------------- */
+
+#define LID 0.2  /* m/s */
+#define SPIN 3.0 /* 1/s */
+
+static mps_status at_speed(void *user, double t, double motion[3]) {
+  const double speed = *(const double *)user;
+  motion[0] = speed * t, motion[1] = speed, motion[2] = 0.0;
+  return MPS_OK;
+}
+
+/* Start of Couette's flow: a lid on water of depth h, of no slip, moves along x. */
+static double of_lid(double y, double h, double t) {
+  double u = y / h;
+  for (int k = 1; k < 100; k++)
+    u += 2.0 / (k * TANK_PI) * cos(k * TANK_PI) * exp(-NU * pow(k * TANK_PI / h, 2.0) * t) *
+         sin(k * TANK_PI * y / h);
+  return LID * u;
+}
+
+static void lid(int rows, double side, double *error, double *momentum, double *work) {
+  const double h = 0.2, length = 2.0, t = 0.4 * h * h / NU;
+  double speed = side * LID;
+  const double corners[8] = {-9.0, 0.0, 9.0, 0.0, 9.0, 1.0, -9.0, 1.0};
+  scoped_fluid *fluid = NULL;
+  DEF(particles, set, .spacing = h / rows);
+  DEF(fluid, def, .gravity[1] = 0.0, .viscosity = 1000.0 * NU);
+  MAKE(particles, water, create, context, &set);
+  tank_fill(water, length, h, NULL, NULL);
+  OK(mps_fluid_create(context, water, &def, &fluid));
+  mps_fluid_boundary_def bed = mps_fluid_boundary_defaults();
+  bed.normal[1] = 1.0;
+  OK(mps_fluid_add_boundary(fluid, &bed, NULL));
+  DEF(body, plate, .position[1] = h);
+  MAKE(body, body, create_polygon, context, &plate, 4, corners);
+  MAKE(signal, motion, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, at_speed, &speed,
+       NULL);
+  OK(mps_body_drive(body, 0, motion, 1.0));
+  mps_contact *contact = NULL;
+  OK(mps_fluid_add_contact(fluid, body, NULL, &contact)); /* no slip */
+  OK(mps_fluid_run(fluid, t, 1000, NULL, NULL));
+  const mps_view x = view_field(water, "position"), u = view_field(water, "velocity");
+  *error = 0.0;
+  for (int64_t i = 0; i < mps_particles_count(water); i++) {
+    if (fabs(*mps_view_f64(&x, i, 0) - 0.5 * length - 0.5 * speed * t) > h) continue;
+    const double exact = side * of_lid(*mps_view_f64(&x, i, 1), h, t);
+    *error = fmax(*error, fabs(*mps_view_f64(&u, i, 0) - exact) / LID);
+  }
+  mps_totals sum;
+  mps_reaction by;
+  OK(mps_fluid_get_totals(fluid, &sum));
+  OK(mps_contact_get_reaction(contact, -1, &by));
+  *momentum = fabs(sum.impulse_scheme[0] / by.impulse[0]);
+  *work = by.work / (-speed * by.impulse[0]);
+}
+
+TEST(water_is_dragged_along_by_a_lid) {
+  const int rows[3] = {6, 10, 10};
+  for (int k = 0; k < 3; k++) {
+    double error, momentum, work;
+    lid(rows[k], k < 2 ? 1.0 : -1.0, &error, &momentum, &work);
+    print_message("lid, %d rows: velocity within %.2f %%, momentum %.2f %%, work %.4f\n", rows[k],
+                  100.0 * error, 100.0 * momentum, work);
+    NEAR(error, 0.0, 0.02);
+    NEAR(momentum, 0.0, 0.04);
+    NEAR(work, 1.0, 1e-6);
+  }
+}
+
+typedef struct disc_run {
+  double l0, density, nu; /* m; over the water's, 0: driven; m2/s */
+} disc_run;
+
+/* A disc of radius .12 m with 24 corners in the middle of 1 x 1 m of water, that turns with SPIN:
+ * moments that the water has given to it, and its spins, after .2 and .4 s. */
+static void turn_disc(const disc_run *run, double *moment, double *spin) {
+  double speed = SPIN;
+  const double R = 0.12, size = 1.0, mass = run->density * 1000.0 * TANK_PI * R * R;
+  double corners[48];
+  for (int k = 0; k < 24; k++)
+    corners[2 * k] = R * cos(TANK_PI * (k + 0.5) / 12.0),
+                corners[2 * k + 1] = R * sin(TANK_PI * (k + 0.5) / 12.0);
+  scoped_fluid *fluid = NULL;
+  DEF(particles, set, .spacing = run->l0);
+  DEF(fluid, def, .viscosity = 1000.0 * run->nu);
+  MAKE(particles, water, create, context, &set);
+  const int n = (int)lround(size / run->l0);
+  for (int k = 0; k < n * n; k++) {
+    const double x[2] = {(k % n + 0.5) * run->l0, (k / n + 0.5) * run->l0};
+    if (hypot(x[0] - 0.5 * size, x[1] - 0.5 * size) > R + 0.25 * run->l0)
+      OK(mps_particles_append(water, 1, x));
+  }
+  OK(mps_fluid_create(context, water, &def, &fluid));
+  for (int b = 0; b < 3; b++) {
+    mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+    wall.point[0] = b == 2 ? size : 0.0;
+    wall.normal[b == 0] = b == 2 ? -1.0 : 1.0;
+    OK(mps_fluid_add_boundary(fluid, &wall, NULL));
+  }
+  DEF(body, given, .position[0] = 0.5 * size, .position[1] = 0.5 * size);
+  if (mass > 0.0)
+    given.motion = MPS_BODY_MOTION_FREE, given.mass = mass, given.inertia[2] = 0.5 * mass * R * R,
+    given.spin[2] = SPIN;
+  MAKE(body, body, create_polygon, context, &given, 24, corners);
+  MAKE(signal, motion, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, at_speed, &speed,
+       NULL);
+  if (!(mass > 0.0)) OK(mps_body_drive(body, 5, motion, 1.0));
+  mps_contact *contact = NULL;
+  OK(mps_fluid_add_contact(fluid, body, NULL, &contact));
+  for (int k = 0; k < 2; k++) {
+    mps_reaction by;
+    mps_body_state state;
+    OK(mps_fluid_run(fluid, 0.2 * (k + 1), 1000, NULL, NULL));
+    OK(mps_contact_get_reaction(contact, -1, &by));
+    OK(mps_body_get_state(body, &state));
+    moment[k] = by.moment_impulse[2], spin[k] = state.spin[2];
+  }
+}
+
+/* From .2 to .4 s, by finite differences of du/dt = nu (u'' + u'/r - u/r2), at rest at .56 m: the
+ * stress is mu (u' - u/r), half of it by the spin. */
+TEST(water_brakes_a_disc_that_turns) {
+  const double exact = -6.218, l0[2] = {0.02, 1.0 / 64.0};
+  for (int k = 0; k < 2; k++) {
+    double moment[2], spin[2];
+    turn_disc(&(disc_run){l0[k], 0.0, 0.05}, moment, spin);
+    const double error = (moment[1] - moment[0]) / exact - 1.0;
+    print_message("disc, R/l0 %g: moment %+.1f %%\n", 0.12 / l0[k], 100.0 * error);
+    NEAR(error, 0.0, 0.07);
+  }
+}
+
+TEST(a_light_disc_comes_to_rest) {
+  const disc_run runs[3] = {{0.02, 0.02, 0.02}, {0.02, 0.002, 0.02}, {0.025, 0.002, 0.05}};
+  for (int k = 0; k < 3; k++) {
+    double moment[2], spin[2];
+    turn_disc(&runs[k], moment, spin);
+    print_message("light disc: spin %.3f, %.3f 1/s\n", spin[0], spin[1]);
+    assert_true(fabs(spin[0]) < 0.1 * SPIN && fabs(spin[1]) < 0.05 * SPIN);
   }
 }

@@ -240,7 +240,16 @@ static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int
     const double across = along[0] * N[0] + along[1] * N[1];
     for (int c = 0; c < 2; c++) along[c] -= across * N[c];
   }
-  mpsi_fluid_exchange_wall(f, chunk, first, i, along);
+  mpsi_fluid_exchange_drag(f, chunk, first, i, along);
+}
+
+/* Spin (1/s) of the body that the first wall of no slip of an image is a face of. The stress on a
+ * face is mu (G + G^T) N, of which what pairs exchange is G N: along a face that turns G^T N is mu
+ * times the spin, whatever the water does, and adds up to no force on a body under water. */
+static double spin_at(const mps_fluid *f, int64_t ghost) {
+  const int first = first_sticky(f, ghost);
+  const int32_t body = first < 0 ? 0 : f->wall[first].of_body;
+  return body > 0 ? f->body[body - 1].next.spin : 0.0;
 }
 
 /* To walls what particle i, which keeps the part `smooth` of v, exchanges with their images. */
@@ -272,7 +281,10 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
           pair * (f->u[c][j] - f->u[c][i] - 0.5 * ((gx[i] + gx[j]) * dx + (gy[i] + gy[j]) * dy));
     }
     mpsi_fluid_exchange_image(f, chunk, ghost, i, dv);
-    if (viscous > 0.0) exchange_along(f, chunk, ghost, i, stuck);
+    if (!(viscous > 0.0)) continue;
+    const double spin = spin_at(f, ghost);
+    stuck[0] += part * viscous * spin * dy, stuck[1] -= part * viscous * spin * dx;
+    exchange_along(f, chunk, ghost, i, stuck);
   }
 }
 
