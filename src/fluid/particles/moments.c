@@ -225,9 +225,12 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.shift[c] = (float)(s.shift[c] / n0);
       }
       if (f->faces) take_turn(f, i, &local);
+      const double whole = local.divergence;
       if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
         fade_divergence(f, i, I, &local.divergence);
       if (sees_corner(f, i)) fade_faces(f, i, &s, &local.divergence);
+      /* of xx and yy, which is the divergence less xx, half each */
+      if (local.divergence != whole) local.shear[0] += (float)(0.5 * (local.divergence - whole));
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, fill, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
