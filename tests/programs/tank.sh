@@ -134,3 +134,24 @@ for l0 in 0.05 0.04 0.025; do
     esac
   done
 done
+
+# Options of other cases, and a window after the run, would look used.
+for unused in "still --amplitude 0.05" "sloshing --mass 3" "sloshing --period 2" "float --plate-length 2" "plate --length 2" \
+  "drop --gauge 0.1" "resonance --stiffness 1e4 --frequency-ratio 0.8" "piston --draft 0.1"; do
+  if "$1/mps-tank" --case $unused --duration 0.01 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then fail "--case $unused"; fi
+  has "$work/log" "is not used: it needs --case"
+done
+if "$1/mps-tank" --case still --duration 1 --window 2,3 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then
+  fail "a window after the run"
+fi
+has "$work/log" "window must begin before the end of the run"
+for unused in "mps --courant 0.3" "mps --bed fixed" "mpm --disturb 0.1"; do
+  if "$1/mps-dam-break" --method $unused --duration 0.01 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then fail "$unused"; fi
+  has "$work/log" "is not used: it needs --method"
+done
+# A run of too few periods knows no decay, and prints none.
+for case in float spring; do
+  "$1/mps-tank" --case $case --spacing 0.02 --duration $([ $case = float ] && echo 2 || echo 0.2) --frames 0 --threads 1 \
+    --out "$work/few" >"$work/log" 2>/dev/null
+  ! grep -q nan "$work/log" || fail "nan of --case $case: $(cat "$work/log")"
+done
