@@ -82,6 +82,8 @@ static int parse(settings *s, int argc, char **argv) {
   return find_size(&program, s);
 }
 
+#define MOST_POISSON 0.49 /* of bilinear elements in plane strain */
+
 static int run(app *a, const settings *s) {
   model m = {0};
   q4 reference = {0};
@@ -92,6 +94,9 @@ static int run(app *a, const settings *s) {
   bool done = app_agree(a, a->rank > 0 || output_directory(a, s->out));
   if (done && problem->clamped)
     done = q4_solve(problem, elements + 1, 49, &reference) || app_no_memory(a);
+  if (problem->clamped && problem->plane_strain && problem->poisson > MOST_POISSON)
+    app_warn(a, "the finite elements of the comparison are too stiff above --poisson %g",
+             MOST_POISSON);
   printf("%s method, %lld x %lld particles, beam %.6g m x %.6g m\n",
          elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
          problem->height);

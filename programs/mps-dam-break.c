@@ -371,6 +371,27 @@ static bool finish(app *a, void *user) {
 
 /* ---- options --------------------------------------------------------------------------------- */
 
+/* Options of the method that is not used. */
+static int check_needs(const options_program *program, const settings *s) {
+  static const char grid[] = "--method mpm", particles[] = "--method mps";
+  const bool mpm = s->method == METHOD_MPM;
+  const options_need list[] = {{"sound-speed", grid, mpm},
+                               {"equation-of-state", grid, mpm},
+                               {"negative-pressure", grid, mpm},
+                               {"bed", grid, mpm},
+                               {"ppc", grid, mpm},
+                               {"courant", grid, mpm},
+                               {"spline", grid, mpm},
+                               {"variant", grid, mpm},
+                               {"edge", grid, mpm},
+                               {"transfer", grid, mpm},
+                               {"gradient", grid, mpm},
+                               {"volumetric", grid, mpm},
+                               {"disturb", particles, !mpm},
+                               {"tolerance", particles, !mpm}};
+  return options_check_needs(program, list, sizeof list / sizeof *list);
+}
+
 /* Defaults that depend on others, and lengths that must be whole cells. Returns -1 or a code. */
 static int complete(const options_program *program, settings *s) {
   if (s->impact && (s->method != METHOD_MPS || s->rest || s->n2 != 2))
@@ -417,7 +438,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE_OF(
           "method", "mpm|mps", &s->method,
           "WLS-MPM on a grid, weakly compressible; MPS, moving particles, incompressible: "
-          "--spacing in place of --cell, and of the options of the grid none is read"),
+          "--spacing in place of --cell, and no other options of the grid"),
       OPTION_FLAG("impact", &s->impact, NULL),
       OPTION_HEADING("Water"),
       OPTION_NUMBER("width", &s->base, "a of the column (default .05715)", NAN),
@@ -455,6 +476,7 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   static const option_preset paper[] = {{"volumetric", "point"}, {0}};
   if (code < 0) code = mpm_method_settle(&program, &s->variant, s->paper, paper, 0.0);
+  if (code < 0) code = check_needs(&program, s);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
   const mpm_model_parts parts = {dam_build, dam_march, finish};

@@ -26,6 +26,34 @@ static void round_sizes(tank_settings *s) {
                s->width);
 }
 
+/* Options of other cases than the one that is computed. */
+static int check_needs(const options_program *program, const tank_settings *s) {
+  const int kind = s->kind;
+  const bool piston = kind == TANK_PISTON, resonance = kind == TANK_RESONANCE;
+  const bool spring = kind == TANK_SPRING, box = kind == TANK_FLOAT, plate = kind == TANK_PLATE;
+  const bool moves = kind == TANK_SLOSHING || piston || spring || resonance || box;
+  const options_need list[] = {
+      {"length", "--case other than plate and drop, of the plate --plate-length",
+       !plate && kind != TANK_DROP},
+      {"amplitude", "--case sloshing, piston, spring, resonance or float", moves},
+      {"period", "--case piston or resonance", piston || resonance},
+      {"ramp", "--case piston or resonance", piston || resonance},
+      {"mass", "--case spring or resonance", spring || resonance},
+      {"stiffness", "--case spring or resonance", spring || resonance},
+      {"frequency-ratio", "--case resonance without --stiffness",
+       resonance && !options_given(program->table, "stiffness")},
+      {"width", "--case float", box},
+      {"draft", "--case float", box},
+      {"plate-length", "--case plate", plate},
+      {"plate-thickness", "--case plate", plate},
+      {"young", "--case plate", plate},
+      {"poisson", "--case plate", plate},
+      {"plate-density", "--case plate", plate},
+      {"gauge", "--case other than drop", kind != TANK_DROP},
+      {"window", "--case other than drop", kind != TANK_DROP}};
+  return options_check_needs(program, list, sizeof list / sizeof *list);
+}
+
 /* Defaults that depend on the case. Returns -1, or an exit code. */
 static int complete(const options_program *program, tank_settings *s) {
   static const struct {
@@ -36,6 +64,8 @@ static int complete(const options_program *program, tank_settings *s) {
                          {3.0, 0.3, 0.01, 9.0, NAN},  {0.8, 0.4, 0.005, 4.0, NAN}};
   const int kind = s->kind;
   const bool given_amplitude = !isnan(s->amplitude);
+  const int unused = check_needs(program, s);
+  if (unused >= 0) return unused;
   if (kind == TANK_PLATE) s->length = s->plate_length;
   if (isnan(s->length)) s->length = usual[kind].length;
   if (isnan(s->depth)) s->depth = usual[kind].depth;
@@ -96,6 +126,8 @@ static int complete(const options_program *program, tank_settings *s) {
     return options_refuse(program, "--density-at must be at least 4 spacings from both walls");
   if (!(s->window[0] < s->window[1]))
     return options_refuse(program, "--window must be two times, the first before the second");
+  if (kind != TANK_DROP && !(s->window[0] < s->duration))
+    return options_refuse(program, "--window must begin before the end of the run, --duration");
   return -1;
 }
 

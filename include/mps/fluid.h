@@ -347,8 +347,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary_motion(mps_fluid *fluid,
 /** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
  *  summed over the points of mps_fluid_get_boundary_points, and, but in an open step, of its
  *  friction. Impulse, moment_impulse and work include collisions with the wall and the smoothing of
- *  velocities at it. MPS_ERROR_ARGUMENT: no
- * wall `number`, NULL, or a `size` unknown to this library. */
+ *  velocities at it, which of a wall of no slip is the viscous drag along it. MPS_ERROR_ARGUMENT:
+ * no wall `number`, NULL, or a `size` unknown to this library. */
 static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
                                                 mps_reaction *out) {
   return mps_solver_get_reaction(mps_fluid_solver(fluid), number, out);
@@ -404,13 +404,12 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
  *
  *  A free body with the mover SOLVER floats: in each step the water's pressure, the body's mass,
  *  gravity and load (mps_body_set_load), and the impulses of other solvers since its last step are
- *  in balance, however light it is. No boundary acts on it, and it goes through one with a warning
- *  in the log: keep it off the ground. A driven body with the mover SOLVER follows its signals, or
- *  the velocity of mps_body_set_motion. With OTHER
- * the caller (mps_body_advance, mps_body_set_motion) or another solver moves the body: its pose and
- *  velocity when a step is made, or solved for in parts, are those of the end of that step. By the
- *  forces of the last step that is unstable where a free body is lighter than the water that it
- *  accelerates.
+ *  in balance, however light it is. No boundary and no other body acts on it, and it goes through
+ *  one with a warning in the log: keep it off the ground. A driven body with the mover SOLVER
+ * follows its signals, or the velocity of mps_body_set_motion. With OTHER the caller
+ * (mps_body_advance, mps_body_set_motion) or another solver moves the body: its pose and velocity
+ * when a step is made, or solved for in parts, are those of the end of that step. By the forces of
+ * the last step that is unstable where a free body is lighter than the water that it accelerates.
  *
  *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
  *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the

@@ -616,6 +616,16 @@ int options_refuse(const options_program *program, const char *reason) {
   return USAGE;
 }
 
+int options_check_needs(const options_program *program, const options_need *need, size_t count) {
+  for (size_t k = 0; k < count; k++) {
+    char text[300];
+    if (need[k].given || !options_given(program->table, need[k].option)) continue;
+    snprintf(text, sizeof text, "--%s is not used: it needs %s", need[k].option, need[k].needs);
+    return options_refuse(program, text);
+  }
+  return -1;
+}
+
 /* ---- options kept with a checkpoint ---------------------------------------------------------- */
 
 bool options_free(const char *name) {

@@ -128,6 +128,14 @@ void options_whole(const char *name, double *length, const char *of, double part
  * that were not given, the line ends with their defaults and the values of the others. Returns 2.
  */
 int options_refuse(const options_program *program, const char *reason);
+/* What an option needs, such as "--case float", and whether that is so. */
+typedef struct options_need {
+  const char *option, *needs;
+  bool given;
+} options_need;
+/* Refuses the first of `count` options that was given and lacks what it needs. Returns -1, or the
+ * exit code. */
+int options_check_needs(const options_program *program, const options_need *need, size_t count);
 
 /* The k-th word of the command line as a shell reads it; false: there are no more. */
 bool options_word(int k, char *out, size_t size);

@@ -329,6 +329,11 @@ static bool draw_structure(app *a, const tank_model *m) {
 #define UPRIGHT 0.05  /* rad */
 #define THIN 0.3      /* of a plate's thickness: deflections without tension */
 
+/* Unknown where the run has too few periods. */
+static void print_decay(double decay) {
+  if (!isnan(decay)) printf(", decay %.3f 1/s", decay);
+}
+
 /* Largest |deflection| of the run, m. */
 static double most_deflection(const tank_model *m) {
   double most = 0.0;
@@ -456,7 +461,8 @@ static void summarise_structure(output *f, const tank_model *m, const figures *g
     printf("omega %.3f rad/s", 2.0 * WAVES_PI / g->period);
     if (compare_holds(&omega))
       printf(", potential flow %.3f (%+.2f %%)", exact, 100.0 * compare_error(&omega));
-    printf(", decay %.3f 1/s\n", g->decay);
+    print_decay(g->decay);
+    putchar('\n');
   }
   if (plate && !isnan(g->deflection) && compare_holds(&rest))
     printf("mean deflection %.4g m, at rest %.4g m (%+.2f %%)\n", g->deflection,
@@ -483,8 +489,8 @@ static void summarise_box(output *f, const tank_model *m, const figures *g) {
     printf("heave: period %.4f s", g->period);
     if (compare_holds(&c))
       printf(", potential flow %.4f s (%+.2f %%)", exact, 100.0 * compare_error(&c));
-    printf(", decay %.3f 1/s; mean %.3f mm, at rest %.3f mm\n", g->decay, 1e3 * g->deflection,
-           -1e3 * m->s.amplitude);
+    print_decay(g->decay);
+    printf("; mean %.3f mm, at rest %.3f mm\n", 1e3 * g->deflection, -1e3 * m->s.amplitude);
   }
   compare_tell(&c);
 }

@@ -157,8 +157,6 @@ static void warn_of_bending(app *a, const tank_model *m) {
 
 #define SCHEME 0.26 /* viscosity of the scheme over (g spacing^3)^1/2 (docs/theory/fluid.md) */
 
-/* Waves are irrotational, and what damps them is the viscous stress at the surface, which the
- * scheme does not have. */
 static void warn_of_viscosity(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
   const double least = SCHEME * sqrt(WAVES_G * pow(s->spacing, 3.0)) * WAVES_DENSITY;
@@ -169,10 +167,6 @@ static void warn_of_viscosity(app *a, const tank_model *m) {
         "--viscosity %.3g Pa s has no effect: that of the scheme is %.2g Pa s with a spacing of "
         "%g m",
         s->viscosity, least, s->spacing);
-  else if (s->kind != TANK_STILL)
-    app_warn(a,
-             "no viscous stress acts at the surface: waves keep their height, of which viscosity "
-             "would take the rate 2 nu k^2");
 }
 
 void tank_warn(app *a, const tank_model *m) {

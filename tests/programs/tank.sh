@@ -123,14 +123,35 @@ has "$work/warned" "warning: the plate bends by"
 "$1/mps-tank" --case plate --spacing 0.1 --duration 0.05 --frames 0 --out "$work/thick" >/dev/null 2>"$work/warned"
 ! grep -q "bends by" "$work/warned" || fail "a stiff plate is warned of: $(cat "$work/warned")"
 
-# Viscosities below that of the scheme, .26 (g l0^3)^1/2, and above: nothing damps waves at their surface.
+# Viscosities below that of the scheme, .26 (g l0^3)^1/2, and above.
 for l0 in 0.05 0.04 0.025; do
   for viscosity in 1 60; do
     "$1/mps-tank" --case sloshing --spacing $l0 --length 0.6 --viscosity $viscosity --duration 0.5 --threads 1 --frames 0 \
       --out "$work/thick" >"$work/log" 2>&1
     case $viscosity in
     1) has "$work/log" "--viscosity 1 Pa s has no effect: that of the scheme is" ;;
-    *) has "$work/log" "no viscous stress acts at the surface" ;;
+    *) ! grep -q "has no effect" "$work/log" || fail "a viscosity that has an effect is warned of" ;;
     esac
   done
+done
+
+# Options of other cases, and a window after the run, would look used.
+for unused in "still --amplitude 0.05" "sloshing --mass 3" "sloshing --period 2" "float --plate-length 2" "plate --length 2" \
+  "drop --gauge 0.1" "resonance --stiffness 1e4 --frequency-ratio 0.8" "piston --draft 0.1"; do
+  if "$1/mps-tank" --case $unused --duration 0.01 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then fail "--case $unused"; fi
+  has "$work/log" "is not used: it needs --case"
+done
+if "$1/mps-tank" --case still --duration 1 --window 2,3 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then
+  fail "a window after the run"
+fi
+has "$work/log" "window must begin before the end of the run"
+for unused in "mps --courant 0.3" "mps --bed fixed" "mpm --disturb 0.1"; do
+  if "$1/mps-dam-break" --method $unused --duration 0.01 --frames 0 --out "$work/unused" >/dev/null 2>"$work/log"; then fail "$unused"; fi
+  has "$work/log" "is not used: it needs --method"
+done
+# A run of too few periods knows no decay, and prints none.
+for case in float spring; do
+  "$1/mps-tank" --case $case --spacing 0.02 --duration $([ $case = float ] && echo 2 || echo 0.2) --frames 0 --threads 1 \
+    --out "$work/few" >"$work/log" 2>/dev/null
+  ! grep -q nan "$work/log" || fail "nan of --case $case: $(cat "$work/log")"
 done

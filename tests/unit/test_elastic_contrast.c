@@ -1,7 +1,7 @@
 /* test_elastic_contrast.c - moduli that differ by many orders in one body: above 1e8 the log is
- * warned; the budget of energies closes to rounding, and what the solutions leave of the equations
- * works at most 1e-14 times the contrast (`scheme`), as mps/elastic.h states.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * warned, as of Poisson's ratios near 0.5 where they lock; the budget of energies closes to
+ * rounding, and what the solutions leave of the equations works at most 1e-14 times the contrast
+ * (`scheme`), as mps/elastic.h states. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_journal.h"
 
 /* A block with its lowest row held and eight particles of another modulus is loaded and set free:
@@ -52,4 +52,23 @@ TEST(the_budget_follows_the_contrast) {
     assert_int_equal(j.count, contrasts[k] > 1.01e8 ? 1 : 0);
     if (j.count) assert_non_null(strstr(j.last, "a contrast of 1e+1"));
   }
+}
+
+static int warnings_with(int32_t state, double poisson) {
+  static const double lo[2] = {0.0, 0.0}, hi[2] = {0.6, 0.4};
+  journal j = {0};
+  scoped_context *own = journal_context(&j, NULL);
+  scoped_particles *set = box_of(own, 0.1, lo, hi);
+  SET_FIELDS(set, {"young", 1e6}, {"poisson", poisson});
+  DEF(elastic, def, .state = state);
+  MAKE(elastic, e, create, own, set, &def);
+  if (j.count) assert_non_null(strstr(j.last, "poisson is up to 0.49"));
+  return (int)j.count;
+}
+
+TEST(a_ratio_of_poisson_near_a_half) {
+  assert_int_equal(warnings_with(MPS_ELASTIC_STATE_PLANE_STRAIN, 0.49), 0);
+  assert_int_equal(warnings_with(MPS_ELASTIC_STATE_PLANE_STRAIN, 0.495), 1);
+  assert_int_equal(warnings_with(MPS_ELASTIC_STATE_PLANE_STRAIN, 0.4999), 1);
+  assert_int_equal(warnings_with(MPS_ELASTIC_STATE_PLANE_STRESS, 0.4999), 0);
 }

@@ -178,6 +178,55 @@ TEST(a_floating_body_at_a_boundary) {
       strstr(mps_context_error(own)->message, "m from boundary 2, less than the spacing"));
 }
 
+/* Two boxes of .1 m in water, `gap` apart along their faces, turned by `angle`; the second one goes
+ * towards the first one with `speed`. Takes `steps`; returns how often the log was warned. */
+static int put_beside(double gap, double angle, double speed, int64_t steps, journal *j) {
+  scoped_context *own = journal_context(j, NULL);
+  scoped_tank t = {NULL, NULL};
+  const double side = 0.1, c = cos(angle), s = sin(angle);
+  mps_body *box[2];
+  for (int n = 0; n < 2; n++) {
+    const double x = 0.4 + n * c * (side + gap), y = 0.3 + n * s * (side + gap);
+    DEF(body, def, .position[0] = x, .position[1] = y, .rotation[2] = angle);
+    OK(mps_body_create_box(own, &def, side, side, &box[n]));
+  }
+  USING(particles, mps_particles_create(own, &given, &t.water), .spacing = L0);
+  for (int k = 0; k < 50 * 30; k++) {
+    const double x[2] = {(k % 50 + 0.5) * L0, (k / 50 + 0.5) * L0};
+    double d[2];
+    for (int n = 0; n < 2; n++) OK(mps_body_distance(box[n], 1, x, &d[n], NULL, NULL, NULL));
+    if (fmin(d[0], d[1]) > 0.4 * L0) OK(mps_particles_append(t.water, 1, x));
+  }
+  USING(fluid, mps_fluid_create(own, t.water, &given, &t.fluid), .level = 0.6);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, 1.0, 0.0, -1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  for (int n = 0; n < 2; n++) (void)tank_body(t.fluid, box[n], MPS_CONTACT_MOVER_SOLVER);
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.position[0] = 0.4 + c * (side + gap), motion.position[1] = 0.3 + s * (side + gap);
+  motion.rotation[2] = angle;
+  motion.velocity[0] = -speed * c, motion.velocity[1] = -speed * s;
+  if (speed > 0.0) OK(mps_body_set_motion(box[1], &motion));
+  OK(mps_fluid_step(t.fluid, steps));
+  for (int n = 0; n < 2; n++) mps_body_destroy(&box[n]);
+  return (int)j->count;
+}
+
+TEST(bodies_that_are_too_near) {
+  const double angle[3] = {0.0, 0.4, -1.1};
+  for (int a = 0; a < 3; a++) {
+    journal j[5] = {{0}};
+    assert_int_equal(put_beside(0.0, angle[a], 0.0, 2, &j[0]), 0); /* one face of two parts */
+    assert_int_equal(put_beside(2.0 * L0, angle[a], 0.0, 2, &j[1]), 0);
+    assert_int_equal(put_beside(0.5 * L0, angle[a], 0.0, 2, &j[2]), 1);
+    assert_non_null(strstr(j[2].last, "bodies 0 and 1 have a gap of 0.01 m"));
+    assert_int_equal(put_beside(-0.03, angle[a], 0.0, 2, &j[3]), 1);
+    assert_non_null(strstr(j[3].last, "bodies 0 and 1 overlap by 0.03 m"));
+    assert_int_equal(put_beside(2.0 * L0, angle[a], 0.5, 20, &j[4]), 1);
+    assert_non_null(strstr(j[4].last, "bodies 1 and 0 have a gap of"));
+  }
+}
+
 /* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
 TEST(a_run_does_not_choose_endless_steps) {
   for (int weightless = 0; weightless < 2; weightless++) {

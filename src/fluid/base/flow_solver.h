@@ -181,6 +181,23 @@ static inline void mpsi_fluid_gradient(const mpsi_fluid_local *local, double *G)
   G[3] = local->divergence - G[0];
 }
 
+/* Share in which G gives the stress across the surface at a particle beside it: 0 in
+ * spray and at the tip of a jet, 1 from the surface row of a lattice on. */
+static inline double mpsi_fluid_stressed(const mps_fluid *f, const mpsi_fluid_local *local) {
+  return local->h > 0.0 ? fmin(fmax((local->n / f->weight.n0 - 0.4) / 0.15, 0.0), 1.0) : 0.0;
+}
+
+/* 2 mu e G e, e the normal of the surface at a particle beside it: the viscous stress (Pa) across
+ * the surface, which its pressure balances. */
+static inline double mpsi_fluid_surface_stress(const mps_fluid *f, const mpsi_fluid_local *local) {
+  const double *m = local->m, square = m[0] * m[0] + m[1] * m[1];
+  if (!(f->def.viscosity > 0.0 && local->h > 0.0 && square > 0.0)) return 0.0;
+  double G[4];
+  mpsi_fluid_gradient(local, G);
+  return 2.0 * f->def.viscosity * mpsi_fluid_stressed(f, local) *
+         (G[0] * m[0] * m[0] + (G[1] + G[2]) * m[0] * m[1] + G[3] * m[1] * m[1]) / square;
+}
+
 /* Heights of the surface above the particles, from their move to the fields: where the pressure's
  * search direction was, which is free then. */
 static inline double *mpsi_fluid_rises(const mps_fluid *f) { return f->system.p; }

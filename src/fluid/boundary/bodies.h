@@ -29,6 +29,7 @@ typedef struct mpsi_fluid_body {
   double rate_before[3], mass_before[9]; /* before the step being made */
   double tried[3], missed[3];    /* accelerations of the last trial, and what was out of balance */
   bool warned, warned_of_ground; /* of its angle with a boundary, and where it goes through one */
+  bool looked, warned_of_bodies; /* for others too near, and of one */
 } mpsi_fluid_body;
 
 #define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */

@@ -18,6 +18,7 @@
 #define TURN 0.5236   /* rad: of a convex corner that counts as one */
 #define STRAIGHT 1e-9 /* rad */
 #define PI 3.141592653589793
+#define TIED 1e-9   /* of a way: no distance between two segments */
 #define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
 
 /* ---- images ---------------------------------------------------------------------------------- */
@@ -175,7 +176,9 @@ static void look_about(const mps_fluid *f, int64_t i, const double *x, vicinity 
   }
 }
 
-/* The first segment that the way from a to b passes; not the one that it comes from. */
+/* The first segment that the way from a to b passes; not the one that it comes from. Of two at a
+ * corner that with the lower number: a particle in a corner of 90 degrees sees its image by both
+ * segments through the corner, once, however numbers are rounded. */
 static int32_t first_mirror(const mps_fluid *f, const vicinity *near, int32_t from, const double *a,
                             const double *b, double *share) {
   int32_t first = -1;
@@ -183,7 +186,9 @@ static int32_t first_mirror(const mps_fluid *f, const vicinity *near, int32_t fr
     double at = 0.0;
     if (near->segment[n] == from) continue;
     if (!crosses(f, mpsi_fluid_segment_of(f, near->segment[n]), a, b, &at)) continue;
-    if (first < 0 || at < *share) first = near->segment[n], *share = at;
+    const bool tied = fabs(at - *share) < TIED;
+    if (first < 0 || (tied ? near->segment[n] < first : at < *share))
+      first = near->segment[n], *share = at;
   }
   return first;
 }

@@ -111,6 +111,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
   local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
   if (f->over) local->qs += f->over[i];
+  local->qs += mpsi_fluid_surface_stress(f, local);
   const double c = mpsi_fluid_surface_weight(local);
   const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
   invert(with, local->inverse);
@@ -224,9 +225,12 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.shift[c] = (float)(s.shift[c] / n0);
       }
       if (f->faces) take_turn(f, i, &local);
+      const double whole = local.divergence;
       if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
         fade_divergence(f, i, I, &local.divergence);
       if (sees_corner(f, i)) fade_faces(f, i, &s, &local.divergence);
+      /* of xx and yy, which is the divergence less xx, half each */
+      if (local.divergence != whole) local.shear[0] += (float)(0.5 * (local.divergence - whole));
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, fill, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
@@ -310,6 +314,7 @@ static void find_depths(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
     if (!(h > LEAST_DEPTH * f->l0 && h < f->weight.re)) continue;
     local->h = h;
     local->qs = mpsi_fluid_head(f, f->x[0][i] + h * e[0], f->x[1][i] + h * e[1]) + over;
+    local->qs += mpsi_fluid_surface_stress(f, local);
   }
 }
 

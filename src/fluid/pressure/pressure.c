@@ -147,9 +147,10 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
     const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;
-    f->pressure[i] = fmax(p, mpsi_fluid_least(f, i));
-    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none
-                                              : fmax(f->system.x[i], none + mpsi_fluid_least(f, i));
+    const double least =
+        mpsi_fluid_least(f, i) + fmin(mpsi_fluid_surface_stress(f, &f->local[i]), 0.0);
+    f->pressure[i] = fmax(p, least);
+    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none : fmax(f->system.x[i], none + least);
   }
 }
 

@@ -41,6 +41,22 @@ static void masses(const mpsi_fluid_body *body, double length, double *mass) {
   mass[2] = body->body->def.inertia[2] / (length * length);
 }
 
+/* What the drag of a surface of no slip opposes to accelerations within a step, kg by component:
+ * half a spacing of water between surface and particles. The drag itself is that of the velocity
+ * before, and turned a light disc to and fro ever faster. */
+static void drag_masses(const mps_fluid *f, const mpsi_fluid_body *own, double length,
+                        double *mass) {
+  const double share = 2.0 * f->def.viscosity / f->def.density * f->dt / (f->l0 * f->l0);
+  double along = 0.0, square = 0.0;
+  for (int k = 0; k < own->faces; k++) {
+    const double *x = own->body->xy + 2 * k;
+    if (f->wall[own->first + k].sticky) along += f->wall[own->first + k].length;
+    square = fmax(x[0] * x[0] + x[1] * x[1], square);
+  }
+  mass[0] = mass[1] = share * f->def.density * f->l0 * f->def.measure * along;
+  mass[2] = mass[0] * square / (length * length);
+}
+
 /* Residual of the forces in a step of dt with these accelerations. Forces of other solvers are
  * their impulses on the body since its last step; collisions with the water are those of the
  * previous step. */
@@ -101,8 +117,10 @@ static void learn(double *E, const double *da, const double *dg) {
  * forces is assigned to the water. */
 static bool judge(const mps_fluid *f, mpsi_fluid_body *own, int repeat) {
   const double length = mpsi_fluid_body_length(own, f);
-  double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
+  double mass[3], drag[3], g[3], step[3], largest = 0.0, change = 0.0;
   masses(own, length, mass);
+  drag_masses(f, own, length, drag);
+  for (int c = 0; c < 3; c++) mass[c] += drag[c];
   mpsi_fluid_load_body(f, own, own->pose.x);
   imbalance(own, mass, length, f->dt, g);
   if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
@@ -121,6 +139,7 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, int repeat) {
   }
   const double g_size = hypot(own->body->def.gravity[0], own->body->def.gravity[1]);
   if (change <= AGREED * largest + FLOOR * fmax(g_size, f->g)) {
+    for (int c = 0; c < 3; c++) g[c] += drag[c] * own->rate[c];
     for (int c = 0; c < 2; c++) own->source->part[0].force.force[c] -= g[c];
     own->source->part[0].force.moment[2] -= length * g[2];
     return true;

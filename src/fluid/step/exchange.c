@@ -82,15 +82,36 @@ void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64
   sum[3] += mass * across * mpsi_fluid_of_wall(w, w->mean, x, y);
 }
 
-void mpsi_fluid_exchange_friction(const mps_fluid *f, int64_t chunk, const mpsi_fluid_wall *w,
-                                  int64_t i, const double *dv, double moves) {
+double mpsi_fluid_moves_along(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i) {
+  if (w->of_body == 0) return 0.0;
+  const mpsi_fluid_pose *p = &f->body[w->of_body - 1].next;
+  const double d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), f->x[0][i], f->x[1][i]);
+  const double x = f->x[0][i] - d * w->normal[0] - p->x[0];
+  const double y = f->x[1][i] - d * w->normal[1] - p->x[1];
+  const double v[2] = {p->v[0] - p->spin * y, p->v[1] + p->spin * x};
+  return v[1] * w->normal[0] - v[0] * w->normal[1];
+}
+
+/* Adds mass dv (N s) at a particle's foot on a wall that moves along itself to four sums. */
+static void add_along(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, const double *dv,
+                      double moves, double *sum) {
   const double d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), f->x[0][i], f->x[1][i]);
   const double x = f->x[0][i] - d * w->normal[0], y = f->x[1][i] - d * w->normal[1];
   const double mass = mass_of(f);
-  double *sum = row_of(f, chunk) + w->first_shear;
   sum[0] += mass * dv[0], sum[1] += mass * dv[1];
   sum[2] += mass * (x * dv[1] - y * dv[0]);
   sum[3] += mass * moves * (dv[1] * w->normal[0] - dv[0] * w->normal[1]);
+}
+
+void mpsi_fluid_exchange_drag(const mps_fluid *f, int64_t chunk, int wall, int64_t i,
+                              const double *dv) {
+  const mpsi_fluid_wall *w = &f->wall[wall];
+  add_along(f, w, i, dv, mpsi_fluid_moves_along(f, w, i), row_of(f, chunk) + w->first_sum);
+}
+
+void mpsi_fluid_exchange_friction(const mps_fluid *f, int64_t chunk, const mpsi_fluid_wall *w,
+                                  int64_t i, const double *dv, double moves) {
+  add_along(f, w, i, dv, moves, row_of(f, chunk) + w->first_shear);
 }
 
 /* Of a pair of i and the image M j, j gets -M^T dv: both together (1 - M^T) dv. */
@@ -134,7 +155,9 @@ void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
     const double *N = w->normal;
     if (!w->sticky) continue;
     const double across = u[0] * N[0] + u[1] * N[1];
-    for (int c = 0; c < 2; c++) u[c] = 2.0 * across * N[c] - u[c];
+    const double moves = mpsi_fluid_moves_along(f, w, f->parent[ghost]);
+    const double along[2] = {-N[1] * moves, N[0] * moves};
+    for (int c = 0; c < 2; c++) u[c] = 2.0 * (across * N[c] + along[c]) - u[c];
   }
   const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
   if (!path || !no_slip(f, path)) return;

@@ -8,6 +8,12 @@
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */
 void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,
                               const double *dv);
+/* Velocity (m/s) along a wall of its point nearest to particle i, at the end of the step: that of a
+ * body. */
+double mpsi_fluid_moves_along(const mps_fluid *fluid, const mpsi_fluid_wall *wall, int64_t i);
+/* Particle i gets dv by viscosity, along the wall. */
+void mpsi_fluid_exchange_drag(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,
+                              const double *dv);
 /* The same by friction, at the particle's foot on a face that moves along itself with `moves`, m/s.
  */
 void mpsi_fluid_exchange_friction(const mps_fluid *fluid, int64_t chunk,

@@ -69,17 +69,6 @@ static void shear_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t chunk
   mpsi_fluid_exchange_friction(f, chunk, w, i, dv, moves);
 }
 
-/* Velocity (m/s) along a face of the body's point nearest to particle i, at the step's end. */
-static double moves_along(const mps_fluid *f, const mpsi_fluid_body *body, const mpsi_fluid_wall *w,
-                          int64_t i) {
-  const mpsi_fluid_pose *p = &body->next;
-  const double d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), f->x[0][i], f->x[1][i]);
-  const double x = f->x[0][i] - d * w->normal[0] - p->x[0];
-  const double y = f->x[1][i] - d * w->normal[1] - p->x[1];
-  const double v[2] = {p->v[0] - p->spin * y, p->v[1] + p->spin * x};
-  return v[1] * w->normal[0] - v[0] * w->normal[1];
-}
-
 static double yield_of(const mps_fluid *f, const mpsi_fluid_body *own) {
   const mps_body *body = own->body;
   double length = 0.0, square = 0.0;
@@ -102,7 +91,7 @@ static void shear_at_bodies(const mps_fluid *f, int64_t chunk, int64_t i, double
     const double yield = yield_of(f, body);
     for (int k = body->first; k < body->first + body->faces; k++) {
       const mpsi_fluid_wall *w = &f->wall[k];
-      if (w->used) shear_at(f, w, chunk, i, moves_along(f, body, w, i), yield, u);
+      if (w->used) shear_at(f, w, chunk, i, mpsi_fluid_moves_along(f, w, i), yield, u);
     }
   }
 }

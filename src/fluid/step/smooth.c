@@ -21,13 +21,16 @@
  * one side it gave bores up to a third of the force of their jump, always ahead.
  *
  * The Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a only what that
- * leaves. SPDX-License-Identifier: BSD-3-Clause */
+ * leaves. Beside the surface the force is that of a stress which is 0 along it (add_surface). To a
+ * wall of no slip goes the part of sum w du that is of its images, as between two particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/access.h"
 #include "fluid/step/smooth.h"
 
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/boundary/turn.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 
@@ -58,8 +61,12 @@ double mpsi_fluid_near_surface(const mps_fluid *f, int64_t i, double least) {
   return fmin(1.0, least + mpsi_fluid_steepness(f, i));
 }
 
+/* Whether the surface ends the particle's neighbourhood. */
+static bool below_surface(const mps_fluid *f, int64_t i) { return f->local[i].h > 0.0; }
+
 static double viscous_share(const mps_fluid *f, int64_t i) {
-  return f->def.viscosity / f->def.density * f->dt * f->local[i].n / (double)f->local[i].S;
+  const double S = below_surface(f, i) ? mpsi_fluid_weight_of(f, i)->square : f->local[i].S;
+  return f->def.viscosity / f->def.density * f->dt * f->local[i].n / S;
 }
 
 /* Parts of smoothing at a particle. */
@@ -183,6 +190,24 @@ static int first_sticky(const mps_fluid *f, int64_t ghost) {
   return -1;
 }
 
+/* Beside the surface the neighbours are on one side, and what a linear field leaves over is not the
+ * viscous force: the part of sum w du that bears a shear along the surface, which there is none of,
+ * is G m of its tangent t, and with -(G + G^T) m along t instead of -G m the stress is 0 there.
+ * Along the normal the surface's pressure balances the stress (mpsi_fluid_surface_stress). Where G
+ * is not known well, sum w du stands alone. */
+static void add_surface(const mps_fluid *f, const mpsi_fluid_local *local, double *v) {
+  double G[4];
+  mpsi_fluid_gradient(local, G);
+  const double *m = local->m, square = m[0] * m[0] + m[1] * m[1];
+  const double part = mpsi_fluid_stressed(f, local);
+  const double shear =
+      part / square *
+      ((G[1] + G[2]) * (m[0] * m[0] - m[1] * m[1]) + 2.0 * (G[3] - G[0]) * m[0] * m[1]);
+  const double alone = 1.0 - part;
+  v[0] += (alone * (G[0] * m[0] + G[1] * m[1]) - shear * m[1]) / local->n;
+  v[1] += (alone * (G[2] * m[0] + G[3] * m[1]) + shear * m[0]) / local->n;
+}
+
 /* v of the velocity field that sticks to the walls of no slip: there an image moves with the
  * opposite velocity. */
 static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
@@ -197,6 +222,7 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
     mpsi_fluid_stick(f, ghost, stuck);
     for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
   }
+  if (below_surface(f, i)) add_surface(f, local, v);
 }
 
 /* ---- at walls -------------------------------------------------------------------------------- */
@@ -214,7 +240,16 @@ static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int
     const double across = along[0] * N[0] + along[1] * N[1];
     for (int c = 0; c < 2; c++) along[c] -= across * N[c];
   }
-  mpsi_fluid_exchange_wall(f, chunk, first, i, along);
+  mpsi_fluid_exchange_drag(f, chunk, first, i, along);
+}
+
+/* Spin (1/s) of the body that the first wall of no slip of an image is a face of. The stress on a
+ * face is mu (G + G^T) N, of which what pairs exchange is G N: along a face that turns G^T N is mu
+ * times the spin, whatever the water does, and adds up to no force on a body under water. */
+static double spin_at(const mps_fluid *f, int64_t ghost) {
+  const int first = first_sticky(f, ghost);
+  const int32_t body = first < 0 ? 0 : f->wall[first].of_body;
+  return body > 0 ? f->body[body - 1].next.spin : 0.0;
 }
 
 /* To walls what particle i, which keeps the part `smooth` of v, exchanges with their images. */
@@ -238,15 +273,18 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
     if (turns) mpsi_fluid_add_turn(f, &turn, i, j, bent);
     for (int c = 0; c < 2; c++) {
       const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy + bent[c];
-      dv[c] = part * (smooth * (f->u[c][j] - linear) + viscous * (stuck[c] - linear));
-      stuck[c] = part * viscous * (stuck[c] - linear);
+      stuck[c] = part * viscous * (stuck[c] - f->u[c][i]);
+      dv[c] = part * (smooth * (f->u[c][j] - linear)) + stuck[c];
       if (!(pair > 0.0)) continue;
       const float *gx = f->flux[1 + 2 * c], *gy = f->flux[2 + 2 * c];
       dv[c] +=
           pair * (f->u[c][j] - f->u[c][i] - 0.5 * ((gx[i] + gx[j]) * dx + (gy[i] + gy[j]) * dy));
     }
     mpsi_fluid_exchange_image(f, chunk, ghost, i, dv);
-    if (viscous > 0.0) exchange_along(f, chunk, ghost, i, stuck);
+    if (!(viscous > 0.0)) continue;
+    const double spin = spin_at(f, ghost);
+    stuck[0] += part * viscous * spin * dy, stuck[1] -= part * viscous * spin * dx;
+    exchange_along(f, chunk, ghost, i, stuck);
   }
 }
 

@@ -16,6 +16,7 @@
 #define FAR_TRAVEL 0.5    /* l0 a step: above, a warning .. */
 #define MOST_TRAVEL 1.5   /* .. and an error */
 #define FAR_BEHIND 0.5    /* l0 of a floating body behind a boundary */
+#define FACE_TO_FACE 0.01 /* l0: bodies that make one face of several parts */
 #define FAR_SLOPE 0.1     /* of a bent wall */
 #define MOST_SLOPE 1.0
 
@@ -94,6 +95,63 @@ void mpsi_fluid_warn_of_ground(mps_fluid *f) {
         "step %lld of the fluid: floating body %d goes through boundary %d, and is %g m behind "
         "it: boundaries hold water alone; what holds a body is the caller's or another solver's",
         (long long)f->steps, number, b, deep);
+  }
+}
+
+/* Distance (m) of two bodies along the normal of a face of the first one, of the face that parts
+ * them best; below 0 where none does. */
+static double apart_by(const mps_fluid *f, const mpsi_fluid_body *one,
+                       const mpsi_fluid_body *other) {
+  double most = -INFINITY;
+  for (int k = one->first; k < one->first + one->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    double least = INFINITY, x[2];
+    for (int c = 0; c < other->faces; c++) {
+      mpsi_fluid_corner(other, false, c, x);
+      least = fmin(least, mpsi_fluid_distance(w, w->now.s, x[0], x[1]));
+    }
+    most = fmax(most, least);
+  }
+  return most;
+}
+
+static bool in_water(const mps_fluid *f, const mpsi_fluid_body *body) {
+  for (int k = body->first; k < body->first + body->faces; k++)
+    if (f->wall[k].images > 0) return true;
+  return false;
+}
+
+static bool boxes_near(const mpsi_fluid_body *one, const mpsi_fluid_body *other, double reach) {
+  for (int c = 0; c < 2; c++)
+    if (!(one->low[c] < other->high[c] + reach && other->low[c] < one->high[c] + reach))
+      return false;
+  return true;
+}
+
+/* Bodies that come nearer than a spacing, or pass into one another, and do not lie face to face:
+ * looked at in the first step of a body and while it moves. */
+void mpsi_fluid_warn_of_bodies(mps_fluid *f) {
+  for (int number = 0; number < f->bodies; number++) {
+    mpsi_fluid_body *body = &f->body[number];
+    const mpsi_fluid_pose *pose = &body->pose;
+    if (!body->body || body->warned_of_bodies) continue;
+    if (body->looked && pose->v[0] == 0.0 && pose->v[1] == 0.0 && pose->spin == 0.0) continue;
+    body->looked = true;
+    for (int n = 0; n < f->bodies && in_water(f, body); n++) {
+      mpsi_fluid_body *other = &f->body[n];
+      if (n == number || !other->body || !boxes_near(body, other, f->l0)) continue;
+      const double gap = fmax(apart_by(f, body, other), apart_by(f, other, body));
+      if (gap >= f->l0 || fabs(gap) <= FACE_TO_FACE * f->l0) continue;
+      body->warned_of_bodies = other->warned_of_bodies = true;
+      mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
+               "step %lld of the fluid: bodies %d and %d %s %g m, %s: what keeps bodies apart is "
+               "the caller's or another solver's",
+               (long long)f->steps, number, n, gap < 0.0 ? "overlap by" : "have a gap of",
+               fabs(gap),
+               gap < 0.0 ? "and forces on them are not to be relied on"
+                         : "less than the spacing, which holds no particles of water");
+      break;
+    }
   }
 }
 

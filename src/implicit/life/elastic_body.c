@@ -164,6 +164,6 @@ mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool mod
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
-  if (status == MPS_OK && !moduli_known) mpsi_elastic_warn_of_contrast(e);
+  if (status == MPS_OK && !moduli_known) mpsi_elastic_warn_of_moduli(e);
   return status;
 }

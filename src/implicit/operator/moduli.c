@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#define MOST_POISSON 0.49 /* in plane strain and space, without a warning */
 #define MOST_CONTRAST 1e8 /* of Young's moduli in a body, without a warning */
 
 static mps_status check_moduli(mps_elastic *e, const char *function, int64_t i, double young,
@@ -47,14 +48,29 @@ mps_status mpsi_elastic_read_material(mps_elastic *e, const char *function) {
   return status;
 }
 
+/* Where the volume is all but kept, the change of volume in each cell is one condition too many for
+ * the particles around it: in plane strain a beam ten cells high lacks 4, 19, 34 % of its
+ * deflection with 0.499, 0.4999, 0.49999. */
+static void warn_of_volume(const mps_elastic *e) {
+  double most = 0.0;
+  if (e->dim == 2 && e->def.state == MPS_ELASTIC_STATE_PLANE_STRESS) return;
+  for (int64_t i = 0; i < e->n; i++) most = fmax(most, e->poisson[i]);
+  if (!(most > MOST_POISSON * (1.0 + 1e-9))) return;
+  mpsi_log(e->context, MPS_CONTEXT_LOG_WARNING,
+           "poisson is up to %g, above %g: the body is too stiff by up to a third where its cells "
+           "are few, and stresses are wrong by factors; take %g where the volume is to be kept",
+           most, MOST_POISSON, MOST_POISSON);
+}
+
 /* The equations of a soft body with hard inclusions are solved to the rounding of the hard ones'
  * forces: the remaining digits of the soft body. The energy that this adds is `scheme`. */
-void mpsi_elastic_warn_of_contrast(const mps_elastic *e) {
+void mpsi_elastic_warn_of_moduli(const mps_elastic *e) {
   double least = INFINITY, most = 0.0;
   for (int64_t i = 0; i < e->n; i++) {
     const double young = 2.0 * e->mu[i] * (1.0 + e->poisson[i]);
     least = fmin(least, young), most = fmax(most, young);
   }
+  warn_of_volume(e);
   if (!(most > MOST_CONTRAST * (1.0 + 1e-9) * least)) return; /* rounding */
   mpsi_log(
       e->context, MPS_CONTEXT_LOG_WARNING,
@@ -75,7 +91,7 @@ mps_status mpsi_elastic_renew_material(mps_elastic *e, const char *function) {
     status = mpsi_fail_of(e->context, mpsi_elastic_read_material(e, function), "e");
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
-  if (status == MPS_OK) mpsi_elastic_warn_of_contrast(e);
+  if (status == MPS_OK) mpsi_elastic_warn_of_moduli(e);
   if (status == MPS_OK) e->unread = false;
   for (int k = 0; k < 3 && status != MPS_OK; k++) memcpy(moduli[k], former + k * e->n, bytes);
   mpsi_free(e->context, former);

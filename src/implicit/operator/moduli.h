@@ -11,4 +11,4 @@ mps_status mpsi_elastic_read_material(mps_elastic *e, const char *function);
 /* The same, with the data derived from them: joints, stiffnesses; the energy of a motion under way
  * is noted before. */
 mps_status mpsi_elastic_renew_material(mps_elastic *e, const char *function);
-void mpsi_elastic_warn_of_contrast(const mps_elastic *e);
+void mpsi_elastic_warn_of_moduli(const mps_elastic *e);
