@@ -178,6 +178,34 @@ TEST(a_floating_body_at_a_boundary) {
       strstr(mps_context_error(own)->message, "m from boundary 2, less than the spacing"));
 }
 
+/* A box that falls onto a floating one, by the side of it, or onto one that is held: it is told
+ * once that it goes through, whatever the spacing. */
+TEST(a_floating_body_at_another) {
+  for (int k = 0; k < 9; k++) {
+    journal j = {0};
+    scoped_context *own = journal_context(&j, NULL);
+    const double l0 = 0.02 / (1 + 0.25 * (k % 3));
+    const bool beside = k / 3 == 1, held = k / 3 == 2;
+    scoped_tank t = tank_make(own, 0.8, 0.2, l0, NULL, NAN);
+    scoped_body *one = NULL, *other = NULL;
+    for (int b = 0; b < 2; b++) {
+      mps_body_def at = mps_body_defaults();
+      at.motion = held && b == 0 ? MPS_BODY_MOTION_DRIVEN : MPS_BODY_MOTION_FREE;
+      at.position[0] = b && beside ? 0.55 : 0.4, at.position[1] = b ? 0.5 : 0.3;
+      if (at.motion == MPS_BODY_MOTION_FREE)
+        at.mass = 2.0, at.inertia[2] = 2.0 * 0.02 / 12.0, at.gravity[1] = -9.81;
+      if (b) at.velocity[1] = -3.0;
+      OK(mps_body_create_box(own, &at, 0.1, 0.1, b ? &other : &one));
+      tank_float(t.fluid, b ? other : one);
+    }
+    OK(mps_fluid_run(t.fluid, 0.03, 1, NULL, NULL));
+    assert_int_equal(j.count, 0);
+    OK(mps_fluid_run(t.fluid, 0.06, 1, NULL, NULL));
+    assert_int_equal(j.count, beside ? 0 : 1);
+    if (!beside) assert_non_null(strstr(j.last, "bodies 0 and 1 overlap by more than"));
+  }
+}
+
 /* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
 TEST(a_run_does_not_choose_endless_steps) {
   for (int weightless = 0; weightless < 2; weightless++) {

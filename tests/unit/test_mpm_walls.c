@@ -255,6 +255,44 @@ TEST(tells_of_bodies) {
   for (int b = 0; b < 4; b++) mps_body_destroy(&bodies[b]);
 }
 
+/* Two boxes, or a ball and a half plane, beside a block of particles: from a step at most 64 after
+ * that in which they overlap by a tenth of a cell, and once; not those that pass beside each
+ * other. */
+TEST(tells_of_bodies_that_meet) {
+  for (int k = 0; k < 9; k++) {
+    heard h = {0};
+    scoped_context *own = listening(&h);
+    scoped_mpm_scene s = mpm_scene_begin(own, 0.01, 0.0, 0.0, pow(30.0, k % 3) * 1e5);
+    scoped_body *a = NULL, *b = NULL;
+    mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
+    DEF(body, at, .position[0] = 0.5, .position[1] = (k < 6 ? 0.03 : -0.03) * (k % 3));
+    const double normal[3] = {0.0, 1.0, 0.0};
+    if (k < 6)
+      OK(mps_body_create_box(own, &at, 0.1, 0.06, &a));
+    else
+      OK(mps_body_create_half_plane(own, &at, normal, &a));
+    at.position[1] += k < 6 ? 0.1 : 0.05;
+    at.position[0] += k >= 3 && k < 6 ? 0.11 : 0.0; /* beside it */
+    if (k < 6)
+      OK(mps_body_create_box(own, &at, 0.1, 0.06, &b));
+    else
+      OK(mps_body_create_disc(own, &at, 0.03, &b));
+    WITH_DEFAULTS(mps_body_motion, down, .velocity[1] = -1.0);
+    OK(mps_body_set_motion(b, &down));
+    mpm_scene_contact(&s, a, 0.0);
+    mpm_scene_contact(&s, b, 0.0);
+    const double met = k >= 3 && k < 6 ? INFINITY : 0.022 + (k < 6 ? 0.02 : 0.0); /* s, at 1 m/s */
+    while (mps_mpm_time(s.mpm) < 0.08) {
+      const double before = mps_mpm_time(s.mpm);
+      OK(mps_mpm_step(s.mpm, 1));
+      if (before < met) assert_int_equal(h.warnings, 0);
+      if (before > met + 64.0 * mps_mpm_dt(s.mpm))
+        expect_warning(&h, 1, "bodies 0 and 1 overlap by more than 0.002 m (0.1 cells)");
+    }
+  }
+}
+
 TEST(tells_of_steps) {
   heard h = {0};
   scoped_context *own = listening(&h);

@@ -28,7 +28,8 @@ typedef struct mpsi_fluid_body {
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
   double tried[3], missed[3];    /* accelerations of the last trial, and what was out of balance */
-  bool warned, warned_of_ground; /* of its angle with a boundary, and where it goes through one */
+  bool warned, warned_of_ground; /* of its angle with a boundary, where it goes through one, */
+  bool warned_of_bodies;         /* and through a body before it */
 } mpsi_fluid_body;
 
 #define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */

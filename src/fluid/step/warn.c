@@ -16,6 +16,8 @@
 #define FAR_TRAVEL 0.5    /* l0 a step: above, a warning .. */
 #define MOST_TRAVEL 1.5   /* .. and an error */
 #define FAR_BEHIND 0.5    /* l0 of a floating body behind a boundary */
+#define OVERLAP 0.1       /* l0 of a floating body and another one, */
+#define BODIES_EVERY 8    /* looked at in so many steps */
 #define FAR_SLOPE 0.1     /* of a bent wall */
 #define MOST_SLOPE 1.0
 
@@ -94,6 +96,25 @@ void mpsi_fluid_warn_of_ground(mps_fluid *f) {
         "step %lld of the fluid: floating body %d goes through boundary %d, and is %g m behind "
         "it: boundaries hold water alone; what holds a body is the caller's or another solver's",
         (long long)f->steps, number, b, deep);
+  }
+}
+
+/* Bodies have no contact with one another: one that floats passes through others. */
+void mpsi_fluid_warn_of_bodies(mps_fluid *f) {
+  for (int b = 1; b < f->bodies && f->steps % BODIES_EVERY == 0; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    for (int a = 0; a < b; a++) {
+      const mpsi_fluid_body *other = &f->body[a];
+      if (body->warned_of_bodies || !body->body || !other->body ||
+          !(body->floats || other->floats) ||
+          !mpsi_body_overlap(other->body, body->body, OVERLAP * f->l0))
+        continue;
+      body->warned_of_bodies = true;
+      mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
+               "step %lld of the fluid: bodies %d and %d overlap by more than %g m (%g l0): bodies "
+               "pass through one another, their contact is with water alone",
+               (long long)f->steps, a, b, OVERLAP * f->l0, OVERLAP);
+    }
   }
 }
 

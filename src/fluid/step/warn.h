@@ -16,3 +16,4 @@ mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
 void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
 void mpsi_fluid_warn_of_ground(mps_fluid *fluid);
+void mpsi_fluid_warn_of_bodies(mps_fluid *fluid);

@@ -5,7 +5,8 @@
 
 #define CHATTER 6.0        /* k dt^2/m above which a penalty contact oscillates */
 #define LARGEST_VOLUME 1.3 /* V/V0 above which ground is warned of, */
-#define VOLUMES_EVERY 16   /* looked at in so many steps */
+#define VOLUMES_EVERY 16   /* looked at in so many steps, */
+#define BODIES_EVERY 64    /* as overlaps of bodies in so many */
 
 static void warn_about_courant(mps_mpm *mpm) {
   const double dt = mpm->run.dt, limit = mpsi_mpm_limit(mpm), courant = mpm->def.courant;
@@ -74,6 +75,11 @@ void mpsi_step_warn_about_volume(mps_mpm *mpm) {
           ? "the dilation of its law has no end; give void_ratio and max_void_ratio, or a "
             "smaller angle of dilation"
           : "no ground does; look for a wall that lets it through, or take smaller cells");
+}
+
+void mpsi_step_warn_about_bodies(mps_mpm *mpm) {
+  if (mpm->run.steps % BODIES_EVERY == 0)
+    mpsi_mpm_warn_about_overlaps(mpm->context, &mpm->grid, &mpm->contact, mpm->run.steps);
 }
 
 void mpsi_step_warn_before(mps_mpm *mpm) {
