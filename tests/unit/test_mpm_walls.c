@@ -293,6 +293,34 @@ TEST(tells_of_bodies_that_meet) {
   }
 }
 
+/* A free box beside a block of particles that goes through each side of the domain, but not one
+ * that is driven, nor one that stays before it. */
+TEST(tells_of_bodies_that_leave) {
+  for (int k = 0; k < 12; k++) {
+    heard h = {0};
+    scoped_context *own = listening(&h);
+    const double cell = 0.02 / (1 + k % 3), way = k % 2 ? 1.0 : -1.0;
+    const int c = k / 2 % 2;
+    const bool driven = k >= 8, far = k < 4 || driven;
+    scoped_mpm_scene s = mpm_scene_begin(own, 0.5 * cell, 0.0, 0.0, 1e6);
+    mpm_scene_box(&s, 0.0, 0.0, 5 * cell, 5 * cell);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = cell, .lower[0] = -20 * cell,
+          .lower[1] = -20 * cell, .upper[0] = 20 * cell, .upper[1] = 20 * cell);
+    DEF(body, at, .motion = driven ? MPS_BODY_MOTION_DRIVEN : MPS_BODY_MOTION_FREE,
+        .position[0] = -10 * cell, .position[1] = -10 * cell);
+    if (!driven) at.mass = 1.0, at.inertia[2] = 1.0;
+    at.position[c] = way * 15 * cell;
+    MAKE(body, box, create_box, own, &at, 4 * cell, 4 * cell);
+    WITH_DEFAULTS(mps_body_motion, off, .velocity[c] = way * 50 * cell);
+    OK(mps_body_set_motion(box, &off));
+    mpm_scene_contact(&s, box, 0.0);
+    OK(mps_mpm_run(s.mpm, far ? 0.2 : 0.09, 1, NULL, NULL)); /* by 10 or 4.5 cells */
+    assert_int_equal(h.warnings, far && !driven ? 1 : 0);
+    if (far && !driven) expect_warning(&h, 1, "free body 0 goes through the side");
+    if (far && !driven) expect_warning(&h, 1, c ? "side y = " : "side x = ");
+  }
+}
+
 TEST(tells_of_steps) {
   heard h = {0};
   scoped_context *own = listening(&h);

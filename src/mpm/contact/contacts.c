@@ -234,7 +234,8 @@ void mpsi_mpm_end_contact(const mpsi_grid *grid, mpsi_contacts *all, mps_contact
   }
   all->bodies = to;
   mpsi_mpm_forget_impulses(all, ended);
-  for (int32_t b = 0; b < to; b++) all->state[b].warned = all->state[b].overlaps = false;
+  for (int32_t b = 0; b < to; b++)
+    all->state[b].warned = all->state[b].overlaps = all->state[b].leaves = false;
   clear_pairs(grid, all);
   mpsi_contact_leave(contact);
 }
