@@ -140,7 +140,7 @@ TEST(follows_signals) {
 }
 
 /* Signals in turn: what continues the motion is silent; what does not, as a signal that counts from
- * 0 again or a pose from elsewhere (a checkpoint), is told once. */
+ * 0 again or a pose from elsewhere (a checkpoint), is warned of once. */
 TEST(tells_of_jumps) {
   for (int n = 0; n < 12; n++) {
     journal j = {0};

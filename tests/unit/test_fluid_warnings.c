@@ -178,8 +178,8 @@ TEST(a_floating_body_at_a_boundary) {
       strstr(mps_context_error(own)->message, "m from boundary 2, less than the spacing"));
 }
 
-/* A box that falls onto a floating one, by the side of it, or onto one that is held: it is told
- * once that it goes through, whatever the spacing. */
+/* A box that falls onto a floating one, by the side of it, or onto one that is held: one warning
+ * that it goes through, whatever the spacing. */
 TEST(a_floating_body_at_another) {
   for (int k = 0; k < 9; k++) {
     journal j = {0};
