@@ -5,6 +5,11 @@
 
 #include <math.h>
 
+/* A wall moves at 0.02 m/s, and one below 1 m at as many (g H)^1/2: else the ground behind a wall
+ * of some centimetres would follow it hardly slower than in free fall. */
+#define RATE 0.02    /* m/s */
+#define SLOW 0.00639 /* of (g H)^1/2 */
+
 /* What depends on other options, and what they exclude. NULL: good. */
 static const char *settle(settings *s, const option *table) {
   const double sine = sin(s->phi * 3.14159265358979323846 / 180.0);
@@ -36,6 +41,7 @@ static const char *settle(settings *s, const option *table) {
   const char *edges = mpm_model_settle_edges(table, MPS_CONTACT_METHOD_IMPULSE, active ? 0.0 : 0.9,
                                              &s->corner, &s->inset);
   if (edges) return edges;
+  if (isnan(s->rate)) s->rate = fmin(RATE, SLOW * sqrt(s->gravity * s->height));
   const char *why = wall_settle_ground(s, table);
   if (why) return why;
   if (s->heaviest * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
@@ -54,7 +60,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("height", &s->height, "of the ground behind the wall", 1.0),
       OPTION_NUMBER("friction", &s->friction, "of its face"),
       OPTION_NUMBER("travel", &s->path, NULL, NAN),
-      OPTION_NUMBER("rate", &s->rate, "of that end", 0.02),
+      OPTION_NUMBER("rate", &s->rate,
+                    "of that end; default 0.02 m/s, of low walls 0.00639 (g H)^1/2", NAN),
       OPTION_NUMBER("corner", &s->corner, "of its toe; with --inset 0", 0.6),
       OPTION_NUMBER("inset", &s->inset, "default passive 0.9, active 0", NAN),
       OPTION_HEADING("Ground (Mohr-Coulomb)"),

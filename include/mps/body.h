@@ -153,8 +153,9 @@ static inline mps_status mps_body_get_def(const mps_body *body, mps_body_def *ou
 /** Drives component `component` of a prescribed body: 0 x, 1 y, 2 z in m, 3 to 5 the components of
  *  the rotation vector in rad (2D: 0, 1 and 5). The coordinate is the definition's value plus
  *  factor * displacement of `signal`; the orientation is the exponential of the whole rotation
- *  vector, the spin its rate. Replaces an earlier signal; NULL holds the component. The signal is
- *  kept alive. From now on the body follows its signals, also after mps_body_set_motion.
+ *  vector, the spin its rate. Replaces an earlier signal; NULL: the definition's value alone. The
+ *  signal is kept alive. From now on the body follows its signals, also after mps_body_set_motion.
+ *  A warning is logged where that does not continue the motion: the body is elsewhere at once.
  *  MPS_ERROR_ARGUMENT: `component` or `factor` out of range, or a place or rate beyond 1e9 m, rad
  *  (per s), which ends a later step too; MPS_ERROR_STATE: a free body, or a
  *  solver's callback is running. */

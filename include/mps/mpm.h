@@ -178,7 +178,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material
  *  or the destruction of the solver. `contact`, which may be NULL, receives the caller's handle.
  *  The body keeps its own time. Each contact is with another body, and bodies may not
  *  overlap by more than 0.1 cells: before the first step that step says so, and of particles
- *  inside the body, as the state may be restored. MPS_ERROR_ARGUMENT also where the body is thinner
+ *  inside the body, as the state may be restored. Bodies have no contact with one another, nor
+ *  with sides of the domain: where they come to overlap, or the reference point of a free one is
+ *  beyond a side, a warning is logged. MPS_ERROR_ARGUMENT also where the body is thinner
  *  than two cells or particles lie inside it, unless `def` allows it, and for a free body in
  *  axisymmetry that has a radial velocity, gravity or load, or a spin: it moves along y alone. A
  *  moving body limits the step: its surface moves at most `courant` cells in one. Edges of a body

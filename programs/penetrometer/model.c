@@ -8,6 +8,8 @@
 
 #define START 4.0   /* diameters */
 #define INDEX 100.0 /* G/su */
+#define RATE 0.25   /* m/s */
+#define SLOW 0.0114 /* of the velocity of shear waves */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -46,6 +48,12 @@ static const char *check_tip(const pen_settings *s) {
   return NULL;
 }
 
+/* The same part of the velocity of shear waves in all softer clay: inertia counts by that. */
+static double rate_of(const pen_settings *s) {
+  const double waves = sqrt(0.5 * s->young / (1.0 + s->poisson) / s->density);
+  return s->law == PEN_CLAY || s->law == PEN_TRESCA ? fmin(RATE, SLOW * waves) : RATE;
+}
+
 /* Where soil flows around the tip, what transfers take from it in each step would be a part of the
  * resistance that grows with the speed and the cell: docs/theory/transfers.md. The steps of ground
  * with undrained water are a quarter as long, so that the same time would keep more noise. */
@@ -81,7 +89,6 @@ static void choose_place(pen_settings *s, const option *table) {
 const char *pen_check(penetrometer *p, const option *table) {
   pen_settings *s = &p->s;
   choose_place(s, table);
-  if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   const char *reason = check_tip(s);
   if (!reason) reason = settle_edges(s, table);
   if (reason) return reason;
@@ -104,6 +111,8 @@ const char *pen_check(penetrometer *p, const option *table) {
   if (s->law == PEN_SAND && s->e0 > s->e_max) return "--emax must be at least --e0";
   reason = pen_check_soil(p, table);
   if (reason) return reason;
+  if (isnan(s->rate)) s->rate = rate_of(s);
+  if (isnan(s->flip_time)) s->flip_time = flip_time_of(s);
   if (s->alpha > 0.0 && s->contact == MPS_CONTACT_METHOD_PENALTY)
     return "--adhesion asks for --contact impulse";
   if (s->alpha > 0.0 && s->cohesion == 0.0) return "--adhesion asks for a --cohesion > 0";

@@ -97,6 +97,7 @@ struct mps_body {
   double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
   mpsi_course ahead;  /* prescribed: at the end of the step being made */
   bool outside;       /* prescribed: moves by mps_body_set_motion, not by the signals */
+  bool jumped;        /* the log has a warning that its signals do not continue its motion */
   bool axial; /* in contact in axisymmetry: a free one moves along y alone, mpsi_body_moves_along */
   mpsi_pose pose;
   /* m/s, rad/s: those of the last advance by which forces do their work; of a free body the means

@@ -9,6 +9,11 @@
 
 #include <string.h>
 
+#define MOST_OF_RATES 2.0 /* way in a step over the larger of its first and last velocities */
+#define ROUNDING 1e-9
+#define JUMP                                                                                       \
+  1e-3 /* of the displacement: that two signals may differ by where one follows another */
+
 /* ---- motion ---------------------------------------------------------------------------------- */
 
 /* 2D: the plane turned by `angle`. */
@@ -48,6 +53,27 @@ static mps_status find_courses(const mps_body *body, mpsi_signal_use use, int be
 
 static mpsi_signal_use used_by(const mps_body *body, const char *function) {
   return (mpsi_signal_use){body->context, function, "body", -1, 0};
+}
+
+/* Logs, once a body, that a component of the motion is elsewhere after dt (s; 0: at once) than its
+ * velocities lead. */
+static void warn_of_jump(mps_body *body, const mpsi_course *course, double dt) {
+  for (int c = 0; c < MPSI_MOTIONS && !body->jumped; c++) {
+    if (body->dim == 2 && c != 0 && c != 1 && c != 5) continue;
+    const double now = c < 3 ? body->pose.x[c] : body->rotation[c - 3], next = course->at[c];
+    const double rate = c < 3 ? body->pose.v[c] : body->pose.spin[c - 3];
+    const double first = c < 3 ? body->def.position[c] : body->def.rotation[c - 3];
+    const double way = MOST_OF_RATES * dt * (fabs(rate) + fabs(course->rate[c]));
+    if (fabs(next - now) <= way + ROUNDING * (fabs(now) + fabs(next)) +
+                                JUMP * fmax(fabs(now - first), fabs(next - first)))
+      continue;
+    body->jumped = true;
+    mpsi_log(body->context, MPS_CONTEXT_LOG_WARNING,
+             "body: component %d jumps from %g to %g (m, rad) at t = %g s: the displacement of a "
+             "signal counts from time 0, and from the place of the body's definition, where one "
+             "without a signal is",
+             c, now, next, body->time);
+  }
 }
 
 /* Sets the body to the pose of its signals. */
@@ -190,7 +216,9 @@ mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t nu
   mpsi_signal_use use = used_by(body, function);
   use.number = number;
   if (body->def.motion != MPS_BODY_MOTION_DRIVEN || body->outside) return MPS_OK;
-  return find_courses(body, use, -1, body->time + dt, &body->ahead);
+  MPSI_TRY(find_courses(body, use, -1, body->time + dt, &body->ahead));
+  warn_of_jump(body, &body->ahead, dt);
+  return MPS_OK;
 }
 
 void mpsi_body_advance(mps_body *body, double dt) {
@@ -278,6 +306,7 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   body->signal[component] = signal ? mpsi_signal_retain(signal) : NULL;
   body->factor[component] = factor;
   mps_signal_destroy(&old);
+  if (body->time > 0.0) warn_of_jump(body, &course, 0.0);
   follow(body, &course);
   return MPS_OK;
 }

@@ -75,6 +75,15 @@ for ir in 50 200; do
 done
 in_range "$work/200/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/50/summary.json")" 100
 
+# Soft clay has the same N_kt: by default the cone is as slow in terms of the velocity of shear waves.
+for su in 10kPa 1kPa 100Pa; do
+  "$1/mps-penetrometer" --cell 0.025 --cohesion $su --threads 1 --out "$work/$su" >/dev/null
+done
+stiff=$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/10kPa/summary.json")
+for su in 1kPa 100Pa; do
+  in_range "$work/$su/summary.json" n_kt "$(awk "BEGIN { print 0.98 * $stiff }")" "$(awk "BEGIN { print 1.02 * $stiff }")"
+done
+
 # Ground under 10 su, the same in all directions, presses the tip by as much before that moves.
 "$1/mps-penetrometer" $deep --soil 0.6x0.6x0.45 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
 in_range "$work/s/summary.json" q_at_rest 96e3 104e3

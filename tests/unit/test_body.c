@@ -3,6 +3,7 @@
 #include "body/body_internal.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 static const double square[] = {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0};
 
@@ -136,6 +137,36 @@ TEST(follows_signals) {
   NEAR(n[0], cos(0.8), 1e-12);
   NEAR(foot[1], -2.0 + 2.0 * sin(0.8), 1e-12);
   assert_int_equal(edge, 1);
+}
+
+/* Signals in turn: what continues the motion is silent; what does not, as a signal that counts from
+ * 0 again or a pose from elsewhere (a checkpoint), is warned of once. */
+TEST(tells_of_jumps) {
+  for (int n = 0; n < 12; n++) {
+    journal j = {0};
+    scoped_context *own = journal_context(&j, NULL);
+    const int component = n % 2 ? 5 : 1, how = n / 2 % 4;
+    const double size = pow(100.0, n % 3 - 1); /* m; rad */
+    scoped_signal *fast = NULL, *slow = NULL;
+    const double t[] = {0.0, 1.0, 2.0}, v[] = {size, size, size}, u[] = {0.0, size, 1.5 * size};
+    OK(mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &fast));
+    OK(mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3, t, u, &slow));
+    DEF(body, def, .position[1] = -3.0 * size);
+    MAKE(body, body, create_box, own, &def, 4.0, 2.0);
+    OK(mps_body_drive(body, component, fast, 1.0));
+    for (int k = 0; k < 100; k++) OK(mps_body_advance(body, 0.01));
+    OK(mps_body_drive(body, component, slow, 1.0));
+    for (int k = 0; k < 50; k++) OK(mps_body_advance(body, 0.01));
+    assert_int_equal(j.count, 0);
+    if (how == 1) OK(mps_body_drive(body, component, fast, 1.0));
+    if (how == 2) OK(mps_body_drive(body, component, NULL, 0.0));
+    if (how == 3) body->pose.x[0] += 1e-3;
+    for (int k = 0; k < 20; k++) OK(mps_body_advance(body, 0.01));
+    assert_int_equal(j.count, how ? 1 : 0);
+    char text[40];
+    snprintf(text, sizeof text, "component %d jumps from", how == 3 ? 0 : component);
+    if (how && !strstr(j.last, text)) fail_msg("%s", j.last);
+  }
 }
 
 /* Free fall with a load: the discrete sums of symplectic Euler, exactly. */

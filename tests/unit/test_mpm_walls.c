@@ -255,6 +255,72 @@ TEST(tells_of_bodies) {
   for (int b = 0; b < 4; b++) mps_body_destroy(&bodies[b]);
 }
 
+/* Two boxes, or a ball and a half plane, beside a block of particles: from a step at most 64 after
+ * that in which they overlap by a tenth of a cell, and once; not those that pass beside each
+ * other. */
+TEST(tells_of_bodies_that_meet) {
+  for (int k = 0; k < 9; k++) {
+    heard h = {0};
+    scoped_context *own = listening(&h);
+    scoped_mpm_scene s = mpm_scene_begin(own, 0.01, 0.0, 0.0, pow(30.0, k % 3) * 1e5);
+    scoped_body *a = NULL, *b = NULL;
+    mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = 0.02);
+    DEF(body, at, .position[0] = 0.5, .position[1] = (k < 6 ? 0.03 : -0.03) * (k % 3));
+    const double normal[3] = {0.0, 1.0, 0.0};
+    if (k < 6)
+      OK(mps_body_create_box(own, &at, 0.1, 0.06, &a));
+    else
+      OK(mps_body_create_half_plane(own, &at, normal, &a));
+    at.position[1] += k < 6 ? 0.1 : 0.05;
+    at.position[0] += k >= 3 && k < 6 ? 0.11 : 0.0; /* beside it */
+    if (k < 6)
+      OK(mps_body_create_box(own, &at, 0.1, 0.06, &b));
+    else
+      OK(mps_body_create_disc(own, &at, 0.03, &b));
+    WITH_DEFAULTS(mps_body_motion, down, .velocity[1] = -1.0);
+    OK(mps_body_set_motion(b, &down));
+    mpm_scene_contact(&s, a, 0.0);
+    mpm_scene_contact(&s, b, 0.0);
+    const double met = k >= 3 && k < 6 ? INFINITY : 0.022 + (k < 6 ? 0.02 : 0.0); /* s, at 1 m/s */
+    while (mps_mpm_time(s.mpm) < 0.08) {
+      const double before = mps_mpm_time(s.mpm);
+      OK(mps_mpm_step(s.mpm, 1));
+      if (before < met) assert_int_equal(h.warnings, 0);
+      if (before > met + 64.0 * mps_mpm_dt(s.mpm))
+        expect_warning(&h, 1, "bodies 0 and 1 overlap by more than 0.002 m (0.1 cells)");
+    }
+  }
+}
+
+/* A free box beside a block of particles that goes through each side of the domain, but not one
+ * that is driven, nor one that stays before it. */
+TEST(tells_of_bodies_that_leave) {
+  for (int k = 0; k < 12; k++) {
+    heard h = {0};
+    scoped_context *own = listening(&h);
+    const double cell = 0.02 / (1 + k % 3), way = k % 2 ? 1.0 : -1.0;
+    const int c = k / 2 % 2;
+    const bool driven = k >= 8, far = k < 4 || driven;
+    scoped_mpm_scene s = mpm_scene_begin(own, 0.5 * cell, 0.0, 0.0, 1e6);
+    mpm_scene_box(&s, 0.0, 0.0, 5 * cell, 5 * cell);
+    USING(mpm, mpm_scene_solve(&s, &given), .cell = cell, .lower[0] = -20 * cell,
+          .lower[1] = -20 * cell, .upper[0] = 20 * cell, .upper[1] = 20 * cell);
+    DEF(body, at, .motion = driven ? MPS_BODY_MOTION_DRIVEN : MPS_BODY_MOTION_FREE,
+        .position[0] = -10 * cell, .position[1] = -10 * cell);
+    if (!driven) at.mass = 1.0, at.inertia[2] = 1.0;
+    at.position[c] = way * 15 * cell;
+    MAKE(body, box, create_box, own, &at, 4 * cell, 4 * cell);
+    WITH_DEFAULTS(mps_body_motion, off, .velocity[c] = way * 50 * cell);
+    OK(mps_body_set_motion(box, &off));
+    mpm_scene_contact(&s, box, 0.0);
+    OK(mps_mpm_run(s.mpm, far ? 0.2 : 0.09, 1, NULL, NULL)); /* by 10 or 4.5 cells */
+    assert_int_equal(h.warnings, far && !driven ? 1 : 0);
+    if (far && !driven) expect_warning(&h, 1, "free body 0 goes through the side");
+    if (far && !driven) expect_warning(&h, 1, c ? "side y = " : "side x = ");
+  }
+}
+
 TEST(tells_of_steps) {
   heard h = {0};
   scoped_context *own = listening(&h);

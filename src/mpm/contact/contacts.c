@@ -49,19 +49,45 @@ static mps_status check_geometry(mps_context *context, const mpsi_grid *grid, co
   return mpsi_body_check_axial(context, function, body->pose.v, body->pose.spin, body->def.gravity);
 }
 
-/* Refuses overlapping bodies. Half spaces may overlap, as a floor and a wall do. */
+/* Half spaces may overlap, as a floor and a wall do. */
+static bool overlap(const mpsi_grid *grid, const mps_body *a, const mps_body *b) {
+  return (a->shape != MPSI_HALF || b->shape != MPSI_HALF) &&
+         mpsi_body_overlap(a, b, OVERLAP * grid->cell);
+}
+
+/* Refuses overlapping bodies. */
 static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
                                 const mpsi_contacts *contacts, const char *function,
                                 const mps_body *body) {
-  const double depth = OVERLAP * grid->cell;
   for (int32_t b = 0; b < contacts->bodies && contacts->body[b] != body; b++) {
-    const bool halves = body->shape == MPSI_HALF && contacts->body[b]->shape == MPSI_HALF;
-    if (halves || !mpsi_body_overlap(contacts->body[b], body, depth)) continue;
+    if (!overlap(grid, contacts->body[b], body)) continue;
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "body: it overlaps body %d of the solver by more than %g m (%g cells)", b,
-                     depth, OVERLAP);
+                     OVERLAP * grid->cell, OVERLAP);
   }
   return MPS_OK;
+}
+
+static bool moves(const mps_body *body) {
+  return mpsi_dot3(body->pose.v, body->pose.v) > 0.0 ||
+         mpsi_dot3(body->pose.spin, body->pose.spin) > 0.0;
+}
+
+void mpsi_mpm_warn_about_overlaps(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_contacts *contacts, int64_t steps) {
+  for (int32_t b = 1; b < contacts->bodies; b++) {
+    for (int32_t a = 0; a < b; a++) {
+      const mps_body *one = contacts->body[a], *other = contacts->body[b];
+      if (contacts->state[b].overlaps || !(moves(one) || moves(other)) ||
+          !overlap(grid, one, other))
+        continue;
+      contacts->state[b].overlaps = true;
+      mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
+               "step %lld: bodies %d and %d overlap by more than %g m (%g cells): bodies pass "
+               "through one another, their contact is with particles alone",
+               (long long)steps, a, b, OVERLAP * grid->cell, OVERLAP);
+    }
+  }
 }
 
 mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
@@ -208,7 +234,8 @@ void mpsi_mpm_end_contact(const mpsi_grid *grid, mpsi_contacts *all, mps_contact
   }
   all->bodies = to;
   mpsi_mpm_forget_impulses(all, ended);
-  for (int32_t b = 0; b < to; b++) all->state[b].warned = false;
+  for (int32_t b = 0; b < to; b++)
+    all->state[b].warned = all->state[b].overlaps = all->state[b].leaves = false;
   clear_pairs(grid, all);
   mpsi_contact_leave(contact);
 }

@@ -48,7 +48,9 @@ typedef struct mpsi_penalty_node {
 typedef struct mpsi_contact_state {
   double mass;        /* kg, sum over the nodes in contact with the body */
   bool parts;         /* the body makes nodes two-sided in this step (thin_bodies.h) */
-  bool warned;        /* the log has a warning that the penalty is too stiff for dt */
+  bool warned;        /* the log has a warning that the penalty is too stiff for dt, */
+  bool overlaps;      /* one that it overlaps a body before it, */
+  bool leaves;        /* and one that it goes through a side of the domain */
   int64_t first_step; /* of the contact: number of steps before it */
   double v[3],
       spin[3]; /* m/s, rad/s: velocity of the body outside mps_mpm_settle, which keeps it at rest */
@@ -136,6 +138,9 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
 /* contacts.c: MPS_ERROR_ARGUMENT where two bodies of the solver overlap. */
 mps_status mpsi_mpm_check_overlaps(mps_context *context, const mpsi_grid *grid,
                                    const mpsi_contacts *contacts, const char *function);
+/* contacts.c: logs, once a body, that it has come to overlap another one. */
+void mpsi_mpm_warn_about_overlaps(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_contacts *contacts, int64_t steps);
 /* removal.c, bodies that remove particles from their inside: whether there is any; before a step,
  * removal by all (`cleared`: some rank has removed particles; `status`: of the step so far on this
  * rank); removal by one when its contact is made. The latter two are collective. */

@@ -435,6 +435,7 @@ static mps_status complete(step *s) {
   mpm->run.time += mpm->run.dt;
   mpm->run.steps++;
   mpsi_step_warn_about_volume(mpm);
+  mpsi_step_warn_about_bodies(mpm);
   return MPS_OK;
 }
 

@@ -5,7 +5,9 @@
 
 #define CHATTER 6.0        /* k dt^2/m above which a penalty contact oscillates */
 #define LARGEST_VOLUME 1.3 /* V/V0 above which ground is warned of, */
-#define VOLUMES_EVERY 16   /* looked at in so many steps */
+#define VOLUMES_EVERY 16   /* looked at in so many steps, */
+#define BODIES_EVERY 64    /* as overlaps of bodies in so many */
+#define BEYOND 0.1         /* cells of a free body's reference point beyond a side */
 
 static void warn_about_courant(mps_mpm *mpm) {
   const double dt = mpm->run.dt, limit = mpsi_mpm_limit(mpm), courant = mpm->def.courant;
@@ -74,6 +76,35 @@ void mpsi_step_warn_about_volume(mps_mpm *mpm) {
           ? "the dilation of its law has no end; give void_ratio and max_void_ratio, or a "
             "smaller angle of dilation"
           : "no ground does; look for a wall that lets it through, or take smaller cells");
+}
+
+/* Sides are those of the ground: a body that falls beside it, or drifts to a side, continues
+ * through it, as a wall that is to reach beyond the ground does. */
+static void warn_about_sides(mps_mpm *mpm) {
+  static const char axis[] = "xyz";
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_body *body = mpm->contact.body[b];
+    bool *warned = &mpm->contact.state[b].leaves;
+    if (body->def.motion != MPS_BODY_MOTION_FREE || *warned) continue;
+    for (int side = 0; side < 2 * mpm->grid.dim && !*warned; side++) {
+      const int c = side / 2;
+      const double sign = side % 2 ? 1.0 : -1.0;
+      const double at = side % 2 ? mpm->def.upper[c] : mpm->def.lower[c];
+      const double beyond = sign * (body->pose.x[c] - at);
+      if (!(beyond > BEYOND * mpm->grid.cell && sign * body->pose.v[c] > 0.0)) continue;
+      *warned = true;
+      mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+               "step %lld: free body %d goes through the side %c = %g m of the domain, and its "
+               "reference point is %g m beyond it: sides hold particles alone",
+               (long long)mpm->run.steps, b, axis[c], at, beyond);
+    }
+  }
+}
+
+void mpsi_step_warn_about_bodies(mps_mpm *mpm) {
+  if (mpm->run.steps % BODIES_EVERY != 0) return;
+  mpsi_mpm_warn_about_overlaps(mpm->context, &mpm->grid, &mpm->contact, mpm->run.steps);
+  warn_about_sides(mpm);
 }
 
 void mpsi_step_warn_before(mps_mpm *mpm) {

@@ -7,3 +7,5 @@
 void mpsi_step_warn_before(mps_mpm *mpm);
 /* After it: of ground that has grown to more than the loosest sand. */
 void mpsi_step_warn_about_volume(mps_mpm *mpm);
+/* After it: of bodies that have come to overlap, or beyond a side of the domain. */
+void mpsi_step_warn_about_bodies(mps_mpm *mpm);
