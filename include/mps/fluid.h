@@ -406,10 +406,10 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
  *  gravity and load (mps_body_set_load), and the impulses of other solvers since its last step are
  *  in balance, however light it is. No boundary and no other body acts on it, and it goes through
  *  one with a warning in the log: keep it off the ground. A driven body with the mover SOLVER
- * follows its signals, or the velocity of mps_body_set_motion. With OTHER the caller
- * (mps_body_advance, mps_body_set_motion) or another solver moves the body: its pose and velocity
- * when a step is made, or solved for in parts, are those of the end of that step. By the forces of
- * the last step that is unstable where a free body is lighter than the water that it accelerates.
+ *  follows its signals, or the velocity of mps_body_set_motion. With OTHER the caller
+ *  (mps_body_advance, mps_body_set_motion) or another solver moves the body: its pose and velocity
+ *  when a step is made, or solved for in parts, are those of the end of that step. By the forces of
+ *  the last step that is unstable where a free body is lighter than the water that it accelerates.
  *
  *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
  *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the

@@ -11,8 +11,7 @@
 
 #define MOST_OF_RATES 2.0 /* way in a step over the larger of its first and last velocities */
 #define ROUNDING 1e-9
-#define JUMP                                                                                       \
-  1e-3 /* of the displacement: that two signals may differ by where one follows another */
+#define JUMP 1e-3 /* of the displacement: by which a signal may differ from the one it replaces */
 
 /* ---- motion ---------------------------------------------------------------------------------- */
 
