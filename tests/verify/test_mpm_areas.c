@@ -106,7 +106,7 @@ TEST(cylinders_turn) {
     clay c = {.spline = 2 + k % 2, .along = 2 + k / 2 % 2, .shift = k / 4 % 2 ? 0.3 : 0.0};
     c.radius = CELL * (k < 8 ? 4.0 : k < 16 ? 8.0 : 16.0);
     if (test_quick() && k != 5) continue;
-    const double part = turn(&c, 0.5 * COHESION, 0.2, 200);
+    const double part = turn(&c, 0.5 * COHESION, 0.2, 400); /* overlaps have come out */
     print_message("R/h %g, degree %d, %d a cell, shifted by %g: moment %.4f\n", c.radius / CELL,
                   c.spline, c.along * c.along, c.shift, part);
     farthest = farther(part, farthest);
