@@ -25,8 +25,11 @@ int main(int argc, char **argv) {
                     "a cone in clay, without --start and --soil too, from 4 to 5.7",
                     NAN),
       OPTION_NUMBER("start", &s->start, NULL),
-      OPTION_NUMBER("rate", &s->rate,
-                    "default 0.25 m/s, in soft clay 0.0114 of the velocity of shear waves", NAN),
+      OPTION_NUMBER(
+          "rate", &s->rate,
+          "default 0.25 m/s, in soft clay 0.0114 of the velocity of shear waves, in sand at "
+          "most 0.253 (g D)^1/2",
+          NAN),
       OPTION_HEADING("Soil"),
       OPTION_CHOICE_OF("law", "clay|sand|elastic|tresca|mcc", &s->law,
                        "von Mises, Drucker-Prager (inscribed cone), linear elastic, Tresca, "

@@ -9,7 +9,8 @@
 #define START 4.0   /* diameters */
 #define INDEX 100.0 /* G/su */
 #define RATE 0.25   /* m/s */
-#define SLOW 0.0114 /* of the velocity of shear waves */
+#define SLOW 0.0114 /* of the velocity of shear waves, */
+#define FALLS 0.253 /* of (g D)^1/2 */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -48,10 +49,13 @@ static const char *check_tip(const pen_settings *s) {
   return NULL;
 }
 
-/* The same part of the velocity of shear waves in all softer clay: inertia counts by that. */
+/* The same part of the velocity of shear waves in all softer clay, and of (g D)^1/2 in sand around
+ * thinner tips: inertia counts by that. */
 static double rate_of(const pen_settings *s) {
   const double waves = sqrt(0.5 * s->young / (1.0 + s->poisson) / s->density);
-  return s->law == PEN_CLAY || s->law == PEN_TRESCA ? fmin(RATE, SLOW * waves) : RATE;
+  if (s->law == PEN_CLAY || s->law == PEN_TRESCA) return fmin(RATE, SLOW * waves);
+  const bool heavy = s->law == PEN_SAND && s->gravity > 0.0;
+  return heavy ? fmin(RATE, FALLS * sqrt(s->gravity * s->diameter)) : RATE;
 }
 
 /* Where soil flows around the tip, what transfers take from it in each step would be a part of the

@@ -84,6 +84,14 @@ for su in 1kPa 100Pa; do
   in_range "$work/$su/summary.json" n_kt "$(awk "BEGIN { print 0.98 * $stiff }")" "$(awk "BEGIN { print 1.02 * $stiff }")"
 done
 
+# Sand of a tenth of the diameter and stiffness bears a tenth of the pressure.
+for d in 0.1 0.01; do
+  "$1/mps-penetrometer" --law sand --diameter $d --cell "$(awk "BEGIN { print $d / 4 }")" --young "$(awk "BEGIN { print $d * 28e6 }")" \
+    --threads 1 --out "$work/sand$d" >/dev/null
+done
+wide=$(sed -n 's/^ *"q": \([^,]*\),*$/\1/p' "$work/sand0.1/summary.json")
+in_range "$work/sand0.01/summary.json" q "$(awk "BEGIN { print 0.097 * $wide }")" "$(awk "BEGIN { print 0.103 * $wide }")"
+
 # Ground under 10 su, the same in all directions, presses the tip by as much before that moves.
 "$1/mps-penetrometer" $deep --soil 0.6x0.6x0.45 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
 in_range "$work/s/summary.json" q_at_rest 96e3 104e3
