@@ -83,7 +83,7 @@ static void run(const scene *t, double degrees, double *force, double (*velocity
   DEF(body, given, .rotation[2] = degrees * TANK_PI / 180.0);
   turn(m, t->box[0], t->box[1], given.position);
   MAKE(body, box, create_box, context, &given, 0.16, 0.12);
-  mps_contact *contact = t->bed ? NULL : tank_body(fluid, box, MPS_CONTACT_MOVER_SOLVER);
+  scoped_contact *contact = t->bed ? NULL : tank_body(fluid, box, MPS_CONTACT_MOVER_SOLVER);
   OK(mps_fluid_step(fluid, 3));
   mps_reaction by;
   if (contact)

@@ -201,7 +201,7 @@ static int put_beside(double gap, double angle, double speed, int64_t steps, jou
   tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(t.fluid, 1.0, 0.0, -1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  for (int n = 0; n < 2; n++) (void)tank_body(t.fluid, box[n], MPS_CONTACT_MOVER_SOLVER);
+  for (int n = 0; n < 2; n++) tank_float(t.fluid, box[n]);
   mps_body_motion motion = mps_body_motion_defaults();
   motion.position[0] = 0.4 + c * (side + gap), motion.position[1] = 0.3 + s * (side + gap);
   motion.rotation[2] = angle;

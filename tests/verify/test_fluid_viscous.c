@@ -311,7 +311,7 @@ static void lid(int rows, double side, double *error, double *momentum, double *
   MAKE(signal, motion, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, at_speed, &speed,
        NULL);
   OK(mps_body_drive(body, 0, motion, 1.0));
-  mps_contact *contact = NULL;
+  scoped_contact *contact = NULL;
   OK(mps_fluid_add_contact(fluid, body, NULL, &contact)); /* no slip */
   OK(mps_fluid_run(fluid, t, 1000, NULL, NULL));
   const mps_view x = view_field(water, "position"), u = view_field(water, "velocity");
@@ -380,7 +380,7 @@ static void turn_disc(const disc_run *run, double *moment, double *spin) {
   MAKE(signal, motion, create_user, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, at_speed, &speed,
        NULL);
   if (!(mass > 0.0)) OK(mps_body_drive(body, 5, motion, 1.0));
-  mps_contact *contact = NULL;
+  scoped_contact *contact = NULL;
   OK(mps_fluid_add_contact(fluid, body, NULL, &contact));
   for (int k = 0; k < 2; k++) {
     mps_reaction by;
