@@ -282,12 +282,13 @@ TEST(tells_of_bodies_that_meet) {
     OK(mps_body_set_motion(b, &down));
     mpm_scene_contact(&s, a, 0.0);
     mpm_scene_contact(&s, b, 0.0);
-    const double met = k >= 3 && k < 6 ? INFINITY : 0.022 + (k < 6 ? 0.02 : 0.0); /* s, at 1 m/s */
+    const double overlap_at =
+        k >= 3 && k < 6 ? INFINITY : 0.022 + (k < 6 ? 0.02 : 0.0); /* s, at 1 m/s */
     while (mps_mpm_time(s.mpm) < 0.08) {
       const double before = mps_mpm_time(s.mpm);
       OK(mps_mpm_step(s.mpm, 1));
-      if (before < met) assert_int_equal(h.warnings, 0);
-      if (before > met + 64.0 * mps_mpm_dt(s.mpm))
+      if (before < overlap_at) assert_int_equal(h.warnings, 0);
+      if (before > overlap_at + 64.0 * mps_mpm_dt(s.mpm))
         expect_warning(&h, 1, "bodies 0 and 1 overlap by more than 0.002 m (0.1 cells)");
     }
   }
