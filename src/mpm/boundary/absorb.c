@@ -116,15 +116,6 @@ static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-/* Part of a particle that counts to the layer of cells at the side, or lies on the side or beyond:
- * it ends over a fifth of a cell. So no rounding decides where a particle is that stays on a
- * border, and none that lies on the side is left out. */
-static double part_at_side(const mpsi_grid *grid, int32_t number, double X) {
-  const int c = number / 2;
-  const double depth = number % 2 ? (double)grid->high[c] - X : X - (double)grid->low[c];
-  return fmin(1.0, fmax(0.0, 0.5 + 5.0 * (1.0 - depth)));
-}
-
 bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                            int32_t number, double (*tile)[2]) {
@@ -135,7 +126,7 @@ bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    const double part = part_at_side(grid, number, mpsi_grid_at(grid, c, p->x[c][k]));
+    const double part = mpsi_mpm_part_at_side(grid, number, mpsi_grid_at(grid, c, p->x[c][k]));
     if (part > 0.0) add_particle(grid, p, boundaries, cells, number, k, part, tile);
   }
   return true;

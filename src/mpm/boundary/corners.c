@@ -131,9 +131,12 @@ double mpsi_mpm_edge_friction(int32_t count, double m, double v, const double *v
 
 /* ---- particles at a side --------------------------------------------------------------------- */
 
+/* 1 behind a border, 0 before it: over a fiftieth of a cell, so that no rounding decides on which
+ * side of it a particle is that stays there. */
+static double behind(double way) { return fmin(1.0, fmax(0.0, 0.5 + 50.0 * way)); }
+
 double mpsi_mpm_part_at_side(const mpsi_grid *grid, int32_t number, double X) {
   const int c = number / 2;
   const double depth = number % 2 ? (double)grid->high[c] - X : X - (double)grid->low[c];
-  if (depth < 0.0) return 0.0;
-  return depth < 1.0 - MPSI_ON_BORDER ? 1.0 : depth > 1.0 + MPSI_ON_BORDER ? 0.0 : 0.5;
+  return behind(depth) * behind(1.0 - depth);
 }

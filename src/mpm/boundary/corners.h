@@ -23,5 +23,5 @@ double mpsi_mpm_edge_friction(int32_t count, double m, double v, const double *v
                               const double *most, double *impulse);
 
 /* Part of a particle at grid coordinate X that lies in the layer of cells at side `number`: 1, 0,
- * or half where it is on the layer's border, as in a mirror image. */
+ * or half where it is on one of its borders, as in a mirror image. */
 double mpsi_mpm_part_at_side(const mpsi_grid *grid, int32_t number, double X);

@@ -134,7 +134,9 @@ static int compare(const void *left, const void *right) {
 }
 
 static bool is_at_side(const mpsi_grid *grid, const mpsi_columns *p, int32_t number, int64_t k) {
-  return mpsi_mpm_part_at_side(grid, number, mpsi_grid_at(grid, 0, p->x[0][k])) == 1.0;
+  const double X = mpsi_grid_at(grid, 0, p->x[0][k]);
+  const double depth = number % 2 ? (double)grid->high[0] - X : X - (double)grid->low[0];
+  return depth > -MPSI_ON_BORDER && depth < 1.0 - MPSI_ON_BORDER;
 }
 
 /* The particles at the side; `out` NULL: counts them. */
