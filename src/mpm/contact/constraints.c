@@ -49,7 +49,8 @@ static double longest_reach(const mpsi_grid *grid, const mpsi_columns *p,
                             const mpsi_kernels *kernels, double dt, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
   const double fastest = kernels->fastest(grid, p, cells->begin, cells->end);
-  return (1.4 * contact->def.offset + dt * (mpsi_contact_speed(contact) + fastest)) * (1.0 + 1e-9);
+  const double most = contact->inset ? 1.2 * (1.0 + MPSI_EDGE_REACH) : 1.4; /* half spacings */
+  return (most * contact->def.offset + dt * (mpsi_contact_speed(contact) + fastest)) * (1.0 + 1e-9);
 }
 
 /* Bounds from the foot of x, which exclude other particles without a search: the distance from a
@@ -65,6 +66,14 @@ static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const 
   return out;
 }
 
+/* Whether the particle may take over an inset edge that bears (step/inset_edges.c). */
+static bool may_bear_at_edge(const mps_contact *contact, const mpsi_foot *foot, double half) {
+  if (!contact->inset || foot->distance > (1.0 + MPSI_EDGE_REACH) * half) return false;
+  const mpsi_inset_edge edge =
+      mpsi_edge_find(contact->body, (const double(*)[2])contact->inset, foot);
+  return fabs(edge.inside) <= MPSI_EDGE_WINDOW * half;
+}
+
 static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, double dt,
                               const mps_contact *contact, int64_t k, const double *x,
                               const mpsi_foot *foot) {
@@ -72,7 +81,8 @@ static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, doub
   double surface[3], closing = 0.0;
   mpsi_body_velocity(&contact->body->pose, foot->at, surface);
   for (int c = 0; c < grid->dim; c++) closing += (surface[c] - p->v[c][k]) * foot->normal[c];
-  return mpsi_impulse_near(foot->distance - half, half, closing, dt);
+  return mpsi_impulse_near(foot->distance - half, half, closing, dt) ||
+         may_bear_at_edge(contact, foot, contact->def.offset);
 }
 
 /* Whether the box around all particles of the block (mpsi_cell_block.left) lies farther than

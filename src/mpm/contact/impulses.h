@@ -36,6 +36,12 @@ typedef struct mpsi_constraint {
   int32_t areas; /* number of nodes, in around[], whose areas it has a part of (area.c) */
 } mpsi_constraint;
 
+/* Half spacings along and across the face within which a particle may take over an inset edge that
+ * bears. Ground that flows out under a smooth face is stretched: its columns come 1.5 spacings
+ * apart, and the next one has moved off the face while the edge bore for it. */
+#define MPSI_EDGE_WINDOW 4.0
+#define MPSI_EDGE_REACH 1.0
+
 /* Constraints of a block of cells, consecutive in the list: contacts, then groups of listed
  * particles (prescribed.h). Of the latter `particle` is the number of the group, the body is -1 -
  * list, `carried` is less the prescribed velocity, `impulse.normal` has the inverses of the

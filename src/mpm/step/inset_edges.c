@@ -22,7 +22,8 @@
 #include "core/particles/particles_internal.h"
 #include "domain/domain_internal.h"
 
-#define WINDOW 1.5  /* half spacings: how far a bearer may be off the edge */
+#define WINDOW 1.5  /* half spacings: how far a bearer may be off the edge, and */
+#define NEAR 1.2    /* off the body, unless the edge bears and none is so near (impulses.h) */
 #define KEEPS 0.1   /* half spacings: by which another must be nearer than the present bearer */
 #define BEYOND 1e-6 /* half spacings: for of two alike the one within the edge bears */
 #define LOWER 1e-3  /* of the distance from the face: of two in a column the upper one bears */
@@ -52,8 +53,12 @@ static void consider(const mpsi_contact_stage *stage, mps_contact *contact, int6
   const mpsi_inset_edge edge =
       mpsi_edge_find(contact->body, (const double(*)[2])contact->inset, &foot);
   mpsi_edge_bearer *at = mpsi_edge_bearer_of(contact, edge.point);
-  if (!at || !(fabs(edge.inside) <= WINDOW * half)) return;
+  if (!at || !(fabs(edge.inside) <= MPSI_EDGE_WINDOW * half)) return;
   double apart = fabs(edge.inside) + LOWER * fmax(foot.distance, 0.0);
+  if (fabs(edge.inside) > WINDOW * half || foot.distance > NEAR * half) {
+    if (at->warm < 0) return;
+    apart += WINDOW * half;
+  }
   if (edge.inside < 0.0) apart += BEYOND * half;
   if (at->warm >= 0 && stage->contact->impulses.warm[at->warm].id == id) apart -= KEEPS * half;
   if (apart < at->apart || (apart == at->apart && id < at->id)) at->apart = apart, at->id = id;
