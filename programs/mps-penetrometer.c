@@ -19,7 +19,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("adhesion", &s->alpha, "no bound if not given", NAN),
       MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("corner", &s->corner, "with --inset 0", 0.6),
-      OPTION_NUMBER("inset", &s->inset, "--symmetry axial; default 0.6, sand 0.75, elastic 0", NAN),
+      OPTION_NUMBER("inset", &s->inset, "--symmetry axial; default 0.75, elastic 0", NAN),
       OPTION_NUMBER("depth", &s->depth,
                     "of the lowest point, where the run ends; default 1.5 diameters; "
                     "a cone in clay, without --start and --soil too, from 4 to 5.7",
