@@ -109,7 +109,8 @@ static inline void plain_forces(plain_body *b) {
     for (int64_t k = b->first[i]; k < b->first[i + 1]; k++) {
       const int64_t j = b->neighbour[k];
       const plain_pair q = plain_deform(b, i, j);
-      const double mu = 0.5 * (b->mu[i] + b->mu[j]), p = 0.5 * (b->p[i] + b->p[j]);
+      const double mu = 2.0 * b->mu[i] * b->mu[j] / (b->mu[i] + b->mu[j]),
+                   p = 0.5 * (b->p[i] + b->p[j]);
       const double unx = q.cn * q.ex, uny = q.cn * q.ey;
       const double usx = q.ux - unx, usy = q.uy - uny; /* (A2) */
       const double stiff = mu * q.w / (q.r0 * q.r0), bx = stiff * usx, by = stiff * usy;

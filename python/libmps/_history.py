@@ -130,6 +130,19 @@ def _at_particle(particles, field, at):
     return ask, particles.fields[name].unit
 
 
+def lag(solver, what, at):
+    """How many steps before the solver's time the quantity holds. Explicit dynamics has accelerations, pressures and reactions of
+    the beginning of the last step, velocities of its middle (mps/dynamics.h)."""
+    if solver._kind != "dynamics" or callable(what):
+        return 0.0
+    name = what[0] if isinstance(what, tuple) else what
+    if at is None:
+        return 0.0 if isinstance(what, str) else 1.0
+    if name in ("velocity", "spin"):
+        return 0.0 if solver.definition.integrator.name == "EULER" else 0.5
+    return 1.0 if name in ("acceleration", "pressure", "reaction") else 0.0
+
+
 def source(solver, what, at):
     """(function of the solver, unit) of the quantity that record() is given. None keeps the solver, which keeps them."""
     if at is not None:
@@ -170,14 +183,17 @@ class Recording:
                ("totals.kinetic"; None: `name`); with at= the name of a field ("velocity", or ("stress", 1)); the number of
                a boundary, or a body or contact, for its reaction (N)
         every  s between rows, or a text with a unit; None: each step. A row is of the first step at or after its time;
-               the first is of now, where a force is 0 before the first step. step(n) looks once, after its steps
+               the first is of now, where a force is 0 before the first step. step(n) looks once, after its steps. Explicit
+               dynamics has accelerations, pressures and reactions a step late, velocities half of one: rows of these by
+               name or number have the time at which they hold; of what a function returns, that of the solver
         at     place (m): of the particle that is nearest to it now, wherever it moves
         unit   of the numbers, for files and axes
         path   a CSV file that follows the history
 
         The rows belong to the state of the solver: rollback and restore leave those of the restored state, where the solver
         has recorded a history of that name. What the function raises ends the run."""
-        ask, known = source(self, name if what is None else what, at)
+        what = name if what is None else what
+        ask, known = source(self, what, at)
         every = 0.0 if every is None else number(every, "s", "every")
         if not (every >= 0 and math.isfinite(every)):
             raise ArgumentError(f"record(): 'every' is {every!r}, must be a time above 0 s")
@@ -189,13 +205,13 @@ class Recording:
         if path is not None:
             history.open(path, 10)
         history.record(math.nan, first)
-        self._records = [*self._records, _Record(history, word, columns, ask, every)]
+        self._records = [*self._records, _Record(history, word, columns, ask, every, lag(self, what, at))]
         return history
 
-    def _look(self):
-        """Adds the rows that are due now."""
+    def _look(self, step=None):
+        """Adds the rows that are due now; `step` is the size of the last step (s), where it is not dt."""
         for record in self._records:
-            record.look(self)
+            record.look(self, step)
 
     def _pace(self):
         """Steps between looks: explicit dynamics and implicit elasticity, whose steps are equal, need not stop at each."""
@@ -209,13 +225,13 @@ class Recording:
         callback, every = given.get("callback"), given.get("every", 1)
         if not (isinstance(every, int) and every >= 1) or (callback is not None and not callable(callback)):
             return invoke(function, values, keywords)  # which says what is wrong
-        pace, begun = self._pace(), self.steps
+        pace, begun, start = self._pace(), self.steps, self.time
         pace = math.gcd(pace, every) if callback is not None else pace
         end = number(given["t_end"], "s", "t_end") if "t_end" in given else math.nan
 
         def seen(solver):
-            self._look()
             done = self.steps - begun
+            self._look((self.time - start) / done if done and self._kind == "dynamics" else None)  # steps of a run are equal there
             if callback is not None and (done % every == 0 or self.time >= end):
                 return callback(solver)
             return None
@@ -235,8 +251,8 @@ def _made(solver, word, columns, units):
 class _Record:
     """A history with its source."""
 
-    def __init__(self, history, word, columns, ask, every):
-        self.history, self.word, self.columns, self.ask, self.every = history, word, columns, ask, every
+    def __init__(self, history, word, columns, ask, every, lag):
+        self.history, self.word, self.columns, self.ask, self.every, self.lag = history, word, columns, ask, every, lag
         self.start = self.last()
 
     def last(self):
@@ -246,10 +262,12 @@ class _Record:
         rows = seen.shape[0]
         return ffi.cast("double *", seen.data)[(rows - 1) * seen.stride[0]] if rows else -math.inf
 
-    def look(self, solver):
+    def look(self, solver, step=None):
         if self.history._pointer is None:  # closed by its user
             return
         last, now = self.last(), solver.time
+        if self.lag:
+            now -= self.lag * (solver.dt if step is None else step)
         if now <= last:
             return
         if self.every > 0 and math.isfinite(last):
@@ -259,4 +277,4 @@ class _Record:
         columns, values = _named(self.word, self.ask(solver))
         if columns != self.columns:
             raise TypeError(f"the source of the history {self.word!r} gives {', '.join(columns)}, and gave {', '.join(self.columns)}")
-        self.history.record(math.nan, values)
+        self.history.record(now if self.lag else math.nan, values)

@@ -12,6 +12,7 @@ Lengths and other quantities are numbers in SI or texts with a unit.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
@@ -20,8 +21,8 @@ import numpy
 import libmps as mps
 
 from . import theory
-from ._errors import ArgumentError
-from .theory import _si
+from ._errors import ArgumentError, Warning
+from .theory import _layers, _positive, _si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -39,6 +40,11 @@ class Layer(NamedTuple):
     law: Material
     thickness: Value = numpy.inf
     k0: float = 0.5
+
+
+def _off_rows(depths: Array, row: float) -> list[str]:
+    """Depths (m) that do not lie on faces of rows of particles."""
+    return [f"{depth:g}" for depth in depths if numpy.isfinite(depth) and abs(depth / row - round(depth / row)) > 1e-6]
 
 
 class Model:
@@ -62,7 +68,8 @@ class Ground(Model):
 
     size       (length, height), m
     cell       of the grid, m; particles are half a cell apart
-    layers     from the surface down: Layer(density, law, thickness, k0)
+    layers     from the surface down: Layer(density, law, thickness, k0), each at least a cell thick; they end at faces of
+               particles, half a spacing off at most, with a warning
     surcharge  Pa, on the surface, which it follows
     gravity    m/s2; 0: without weight, as in the theory of bearing capacity
     base       "roller": smooth; "held": rough
@@ -75,7 +82,14 @@ class Ground(Model):
                  base: str = "roller", room: Value = 0.0, context: Context | None = None, **more: Any) -> None:
         self.length, self.height = (_si(side, "m", "size") for side in size)
         self.cell, g, q = _si(cell, "m", "cell"), _si(gravity, "m/s2", "gravity"), _si(surcharge, "Pa", "surcharge")
-        thickness = [_si(layer.thickness, "m", "thickness") for layer in layers]
+        thickness = [_positive(layer.thickness, "m", "thickness") for layer in layers]
+        for k, thick in enumerate(thickness[:-1]):
+            if thick < self.cell * (1 - 1e-9):
+                raise ArgumentError(f"layer {k + 1} is {thick:g} m thick, must be at least a cell, {self.cell:g} m")
+        off = _off_rows(numpy.cumsum(thickness)[:-1], self.cell / 2)
+        if off:
+            warnings.warn(f"layers end at depths of {', '.join(off)} m, between rows of particles {self.cell / 2:g} m thick: a row is of the "
+                          "layer at its middle", Warning, stacklevel=2)
         self.particles = mps.Particles(spacing=self.cell / 2, context=context or layers[0].law.context)
         self.particles.fill_box([0, 0], [self.length, self.height])
         bottoms = numpy.cumsum(thickness)
@@ -114,16 +128,17 @@ class Ground(Model):
     def footing(self, width: Value, speed: Value, *, ramp: Value = 0.01, **contact: Any) -> Body:
         """Half of a rigid strip `width` (m) wide on the surface, whose middle is at x = 0, a plane of symmetry; it sinks at
         `speed` (m/s). friction=0 is smooth, 10 rough. Returns the body: its reaction in y is that of half of the strip."""
-        b = _si(width, "m", "width")
+        b = _positive(width, "m", "width")
         body = mps.Box(b, b / 2, position=[0, self.height + b / 4], context=self.particles.context)
-        return self._moving(body, 1, _si(speed, "m/s", "speed"), _si(ramp, "s", "ramp"), -1.0, contact)
+        return self._moving(body, 1, _positive(speed, "m/s", "speed"), _si(ramp, "s", "ramp"), -1.0, contact)
 
 
 class Site(Model):
     """Level layers on a half space of rock, a column of explicit dynamics that repeats itself across: shear waves rise
     through it as through endless layers. The surface is y = 0.
 
-    layers   from the surface down: thickness (m), vs (m/s), density (kg/m3), damping (ratio; default 0), vp (default 2 vs)
+    layers   from the surface down: thickness (m), vs (m/s), density (kg/m3), damping (ratio; default 0), vp (default 2 vs). A row of
+             particles in which layers meet has their mean mass and compliance, with a warning
     rock     vs, density (vp)
     spacing  of the particles, m: at most a tenth of the shortest wave
     f1, f2   Hz, at which Rayleigh damping has the ratios given"""
@@ -132,22 +147,40 @@ class Site(Model):
 
     def __init__(self, layers: Sequence[Mapping[str, Any]], rock: Mapping[str, Any], spacing: Value, *, f1: float = 1.0, f2: float = 8.0,
                  context: Context | None = None, **more: Any) -> None:
-        self.layers, self.rock, self.f1, self.f2 = [dict(layer) for layer in layers], dict(rock), f1, f2
-        d, depths = _si(spacing, "m", "spacing"), numpy.cumsum([_si(layer["thickness"], "m", "thickness") for layer in layers])
+        self.layers, self.rock, self.f1, self.f2 = _layers([*layers, rock], ("vp",))[:-1], dict(rock), f1, f2
+        d, depths = _positive(spacing, "m", "spacing"), numpy.cumsum([layer["thickness"] for layer in self.layers])
         self.depth = float(depths[-1])
         if abs(self.depth / d - round(self.depth / d)) > 1e-6:
             raise ArgumentError(f"spacing is {d:g} m, must divide the depth of the layers, {self.depth:g} m")
+        off = _off_rows(depths[:-1], d)
+        if off:
+            warnings.warn(f"layers end at depths of {', '.join(off)} m, within rows of particles {d:g} m thick: these have the mean mass and "
+                          "compliance of both layers", Warning, stacklevel=2)
         self.particles = mps.Particles(spacing=d, context=context)
-        self.particles.fill_box([0, -self.depth - d], [3 * d, 0])  # with a row of rock, at whose lower side the dashpots are
-        which = numpy.searchsorted(depths, -numpy.array(self.particles["position", 1]))
-        ground = [*self.layers, self.rock]
-        for field, values in (("density", [_si(layer["density"], "kg/m3", "density") for layer in ground]),
-                              ("shear_velocity", [_si(layer["vs"], "m/s", "vs") for layer in ground]),
-                              ("pressure_velocity", [self._vp(layer) for layer in ground]),
-                              ("damping", [layer.get("damping", 0.0) for layer in ground])):
+        self.particles.fill_box([0, -self.depth - d], [3 * d, 0])  # with a row of rock, in whose middle the dashpots are
+        row = numpy.rint(-numpy.array(self.particles["position", 1]) / d - 0.5).astype(int)
+        for field, values in self._rows(d, depths).items():
             self.particles.add_field(field)
-            self.particles[field] = numpy.array(values)[which]
+            self.particles[field] = values[row]
         self.solver = mps.Dynamics(self.particles, period_x=3 * d, f1=f1, f2=f2, **more)
+
+    def _rows(self, d: float, depths: Array) -> dict[str, Array]:
+        """Fields of the rows of particles from the surface down; the last is the upper half of a row of rock, as its dashpots are in
+        its middle: half of the mass with the same moduli."""
+        rows = int(round(self.depth / d))
+        edges = d * numpy.arange(rows + 1)
+        tops = numpy.concatenate(([0.0], depths[:-1]))
+        inside = numpy.minimum(edges[1:, None], depths) - numpy.maximum(edges[:-1, None], tops)
+        share = numpy.maximum(inside, 0.0) / d  # of each layer in each row
+        rho, vs, h = (numpy.array([layer[name] for layer in self.layers]) for name in ("density", "vs", "damping"))
+        shear, wave = rho * vs**2, rho * numpy.array([self._vp(layer) for layer in self.layers]) ** 2
+        density = share @ rho
+        damping = (share @ (h / shear)) / (share @ (1 / shear))
+        speeds = [numpy.sqrt(1 / (share @ (1 / modulus)) / density) for modulus in (shear, wave)]
+        rock = [_si(self.rock["density"], "kg/m3", "density") / 2, 2**0.5 * _si(self.rock["vs"], "m/s", "vs"), 2**0.5 * self._vp(self.rock),
+                self.rock.get("damping", 0.0)]
+        names = ("density", "shear_velocity", "pressure_velocity", "damping")
+        return {name: numpy.append(values, last) for name, values, last in zip(names, (density, *speeds, damping), rock)}
 
     @staticmethod
     def _vp(layer: Mapping[str, Any]) -> float:
@@ -172,13 +205,20 @@ class Site(Model):
         return theory.layers_transfer(frequency, [*rayleigh, self.rock])
 
     def expected(self, t: ArrayLike, outcrop: ArrayLike, t_end: float) -> tuple[Array, Array]:
-        """(times, acceleration) of the surface by theory, up to t_end (s): the outcrop's Fourier transform times transfer()."""
+        """(times, acceleration) of the surface by theory, up to t_end (s): the outcrop's Fourier transform times transfer(), over
+        so long a time that the ringing has died out, which would come back at the beginning."""
         times = numpy.asarray(t, float)
         step = float(numpy.diff(times).min()) / 2
-        grid = step * numpy.arange(int(numpy.ceil(2 * t_end / step)))
-        moved = numpy.fft.rfft(numpy.interp(grid, times, numpy.asarray(outcrop, float), left=0, right=0))
-        found = numpy.fft.irfft(moved * self.transfer(numpy.fft.rfftfreq(len(grid), step)), len(grid))
-        return grid[grid <= t_end], found[grid <= t_end]
+        shown = numpy.arange(int(numpy.floor(t_end / step * (1 + 1e-12))) + 1)
+        before = None
+        for doubled in range(1, 13):
+            grid = step * numpy.arange(int(numpy.ceil(2**doubled * t_end / step)))
+            moved = numpy.fft.rfft(numpy.interp(grid, times, numpy.asarray(outcrop, float), left=0, right=0))
+            found = numpy.fft.irfft(moved * self.transfer(numpy.fft.rfftfreq(len(grid), step)), len(grid))[shown]
+            if before is not None and abs(found - before).max() <= 1e-4 * abs(found).max():
+                break
+            before = found
+        return step * shown, found
 
 
 class Tank(Model):

@@ -34,6 +34,22 @@ def _si(value: Any, unit: str, word: str) -> Any:
     return float(found) if numpy.ndim(found) == 0 else numpy.asarray(found, float)
 
 
+def _checked(value: Any, unit: str, word: str, wrong: Any, must: str) -> Any:
+    """A number or text as a float of SI, refused where `wrong` of it is true or it is not a number."""
+    found = _si(value, unit, word)
+    if numpy.any(wrong(found) | numpy.isnan(found)):
+        raise ValueError(f"{word} is {value!r}, must be {must}{' ' + unit if unit else ''}")
+    return found
+
+
+def _positive(value: Any, unit: str, word: str) -> Any:
+    return _checked(value, unit, word, lambda found: found <= 0, "above 0")
+
+
+def _not_negative(value: Any, unit: str, word: str) -> Any:
+    return _checked(value, unit, word, lambda found: found < 0, "at least 0")
+
+
 def _angle(value: Any, word: str, highest: float = numpy.pi / 2) -> Any:
     found = _si(value, "rad", word)
     if not numpy.all((found >= 0) & (found < highest)):
@@ -61,16 +77,23 @@ def rankine(friction: Value, side: str = "active") -> float:
 def coulomb(friction: Value, wall_friction: Value = 0.0, *, slope: Value = 0.0, batter: Value = 0.0, side: str = "active") -> float:
     """Coulomb's coefficient, of the force along the wall's friction angle: P = K rho g H^2/2 by a plane wedge.
 
-    wall_friction, slope of the ground behind the wall, batter of its back from the vertical (towards the ground: positive):
-    rad or texts. The passive one is too high for rough walls (plane wedge): above a third of `friction` take a curved one.
+    wall_friction, at most `friction`; slope of the ground behind the wall; batter of its back from the vertical, positive where
+    the ground lies on the back, as on a gravity wall that is widest at its foot: rad or texts. The passive one is too high for
+    rough walls (plane wedge): above a third of `friction` take a curved one; where no plane wedge is pushed up, ValueError.
     H. Mueller-Breslau (1906); Das, Principles of Foundation Engineering, eq. (7.26)."""
     phi, delta = _angle(friction, "friction"), _angle(wall_friction, "wall_friction")
     alpha, beta = _si(slope, "rad", "slope"), numpy.pi / 2 - _si(batter, "rad", "batter")
     sign = _side(side)
-    if alpha > phi:
-        raise ValueError(f"slope is {slope!r}, must be at most the angle of friction")
+    if delta > phi:
+        raise ValueError(f"wall_friction is {wall_friction!r}, must be at most the angle of friction")
+    if not -phi <= alpha <= phi:
+        raise ValueError(f"slope is {slope!r}, must be between minus and plus the angle of friction")
+    if not abs(beta - numpy.pi / 2) + max(delta, alpha, -alpha) < numpy.pi / 2:
+        raise ValueError(f"batter is {batter!r}, must leave less than 90 deg with the wall's friction and the slope (numbers are in rad)")
     root = numpy.sqrt(numpy.sin(phi + delta) * numpy.sin(phi + sign * alpha) /
                       (numpy.sin(beta + sign * delta) * numpy.sin(alpha + beta)))
+    if sign > 0 and root >= 1:
+        raise ValueError(f"wall_friction is {wall_friction!r} and slope {slope!r}: with friction {friction!r} no plane wedge is pushed up")
     return float(numpy.sin(beta - sign * phi) ** 2 /
                  (numpy.sin(beta) ** 2 * numpy.sin(beta + sign * delta) * (1 - sign * root) ** 2))
 
@@ -81,17 +104,18 @@ def earth_pressure(depth: Any, density: Value, friction: Value, *, surcharge: Va
 
     A. L. Bell, Min. Proc. ICE 199 (1915) 233-272, for the cohesion."""
     k = rankine(friction, side)
-    vertical = _si(density, "kg/m3", "density") * _si(gravity, "m/s2", "gravity") * _si(depth, "m", "depth") + _si(surcharge, "Pa", "surcharge")
-    return numpy.maximum(0.0, k * vertical + _side(side) * 2 * _si(cohesion, "Pa", "cohesion") * numpy.sqrt(k))
+    weight = _not_negative(density, "kg/m3", "density") * _not_negative(gravity, "m/s2", "gravity")
+    vertical = weight * _not_negative(depth, "m", "depth") + _si(surcharge, "Pa", "surcharge")
+    return numpy.maximum(0.0, k * vertical + _side(side) * 2 * _not_negative(cohesion, "Pa", "cohesion") * numpy.sqrt(k))
 
 
 def earth_force(height: Value, density: Value, friction: Value, *, surcharge: Value = 0.0, cohesion: Value = 0.0,
                 side: str = "active", gravity: Value = G) -> float:
     """Rankine's force (N per metre of wall): `earth_pressure` over `height` (m), without tension."""
-    h, k = _si(height, "m", "height"), rankine(friction, side)
-    rise = k * _si(density, "kg/m3", "density") * _si(gravity, "m/s2", "gravity")
-    top = k * _si(surcharge, "Pa", "surcharge") + _side(side) * 2 * _si(cohesion, "Pa", "cohesion") * numpy.sqrt(k)
-    start = min(h, max(0.0, -top / rise))  # above, a crack
+    h, k = _positive(height, "m", "height"), rankine(friction, side)
+    rise = k * _not_negative(density, "kg/m3", "density") * _not_negative(gravity, "m/s2", "gravity")
+    top = k * _si(surcharge, "Pa", "surcharge") + _side(side) * 2 * _not_negative(cohesion, "Pa", "cohesion") * numpy.sqrt(k)
+    start = 0.0 if top >= 0 else h if rise * h <= -top else -top / rise  # above, a crack
     return float((top + 0.5 * rise * (h + start)) * (h - start))
 
 
@@ -124,14 +148,16 @@ def n_gamma(friction: Value, by: str = "vesic") -> float:
              "meyerhof": (q - 1) * numpy.tan(1.4 * phi)}
     if by not in forms:
         raise ValueError(f"by is {by!r}, must be one of {', '.join(forms)}")
+    if by == "meyerhof" and phi >= numpy.pi / 2.8:
+        raise ValueError(f"friction is {friction!r}, must be below 64.3 deg for Meyerhof's tan 1.4 phi")
     return float(forms[by])
 
 
 def bearing_capacity(width: Value, density: Value, friction: Value, *, cohesion: Value = 0.0, surcharge: Value = 0.0,
                      by: str = "vesic", gravity: Value = G) -> float:
     """Pressure (Pa) under a strip `width` (m) wide at failure: c N_c + q N_q + rho g B N_gamma/2 (K. Terzaghi 1943)."""
-    weight = _si(density, "kg/m3", "density") * _si(gravity, "m/s2", "gravity") * _si(width, "m", "width")
-    return (_si(cohesion, "Pa", "cohesion") * n_c(friction) + _si(surcharge, "Pa", "surcharge") * n_q(friction) +
+    weight = _not_negative(density, "kg/m3", "density") * _not_negative(gravity, "m/s2", "gravity") * _positive(width, "m", "width")
+    return (_not_negative(cohesion, "Pa", "cohesion") * n_c(friction) + _not_negative(surcharge, "Pa", "surcharge") * n_q(friction) +
             0.5 * weight * n_gamma(friction, by))
 
 
@@ -140,15 +166,15 @@ def soft_over_stiff(width: Value, thickness: Value) -> float:
     pi + 1 + B/(2 H) for H < B/2, Prandtl's 2 + pi else.
 
     G. G. Meyerhof and T. K. Chaplin, Brit. J. Appl. Phys. 4 (1953) 20-26."""
-    return max(prandtl(), float(numpy.pi) + 1 + _si(width, "m", "width") / (2 * _si(thickness, "m", "thickness")))
+    return max(prandtl(), float(numpy.pi) + 1 + _positive(width, "m", "width") / (2 * _positive(thickness, "m", "thickness")))
 
 
 def stiff_over_soft(width: Value, thickness: Value, upper: Value, lower: Value) -> float:
     """q/c_upper of a strip that punches through a layer into softer clay: 1.5 H/B + 5.14 c_lower/c_upper, at most 5.14.
 
     J. D. Brown and G. G. Meyerhof, Proc. 7th Int. Conf. Soil Mech. Found. Eng. 2 (1969) 45-51: fitted to model tests."""
-    ratio = _si(lower, "Pa", "lower") / _si(upper, "Pa", "upper")
-    return min(5.14, 1.5 * _si(thickness, "m", "thickness") / _si(width, "m", "width") + 5.14 * ratio)
+    ratio = _not_negative(lower, "Pa", "lower") / _positive(upper, "Pa", "upper")
+    return min(5.14, 1.5 * _not_negative(thickness, "m", "thickness") / _positive(width, "m", "width") + 5.14 * ratio)
 
 
 def button(width: Value, thickness: Value, upper: Value, lower: Value) -> float:
@@ -156,8 +182,8 @@ def button(width: Value, thickness: Value, upper: Value, lower: Value) -> float:
     least over circles through one edge of the strip; an upper bound, on even ground 5.52 (exact 5.14).
 
     S. J. Button, Proc. 3rd Int. Conf. Soil Mech. Found. Eng. 1 (1953) 332-335."""
-    h = _si(thickness, "m", "thickness") / _si(width, "m", "width")
-    ratio = _si(lower, "Pa", "lower") / _si(upper, "Pa", "upper")
+    h = _not_negative(thickness, "m", "thickness") / _positive(width, "m", "width")
+    ratio = _not_negative(lower, "Pa", "lower") / _positive(upper, "Pa", "upper")
     x, y = numpy.meshgrid(numpy.linspace(0.51, 4.0, 700), numpy.linspace(0.0, 4.0, 801))  # of the centre, from the edge, over B
     r = numpy.hypot(x, y)
     low = numpy.arccos(numpy.minimum(1.0, (y + h) / r))
@@ -171,8 +197,11 @@ def infinite_slope(angle: Value, friction: Value, *, cohesion: Value = 0.0, dept
                    gravity: Value = G) -> float:
     """Factor of safety of a long, dry slope against sliding at `depth` (m): tan phi/tan beta + c/(rho g z sin beta cos beta)."""
     beta, phi = _angle(angle, "angle"), _angle(friction, "friction")
-    weight = _si(density, "kg/m3", "density") * _si(gravity, "m/s2", "gravity") * _si(depth, "m", "depth")
-    return float(numpy.tan(phi) / numpy.tan(beta) + _si(cohesion, "Pa", "cohesion") / (weight * numpy.sin(beta) * numpy.cos(beta)))
+    weight = _positive(density, "kg/m3", "density") * _positive(gravity, "m/s2", "gravity") * _positive(depth, "m", "depth")
+    cohesive = _not_negative(cohesion, "Pa", "cohesion")
+    if beta == 0:
+        return float("inf")  # nothing drives level ground
+    return float(numpy.tan(phi) / numpy.tan(beta) + cohesive / (weight * numpy.sin(beta) * numpy.cos(beta)))
 
 
 def _bodies(line: Any, centre: Sequence[float], r: float) -> list[tuple[float, float]]:
@@ -200,8 +229,11 @@ def bishop(surface: ArrayLike, centre: Sequence[float], radius: Value, density: 
     pore_ratio  r_u: pore pressure over the weight above, one number
 
     A. W. Bishop, Geotechnique 5 (1955) 7-17."""
-    r, phi = _si(radius, "m", "radius"), _angle(friction, "friction")
-    weight_of = _si(density, "kg/m3", "density") * _si(gravity, "m/s2", "gravity")
+    r, phi = _positive(radius, "m", "radius"), _angle(friction, "friction")
+    weight_of = _positive(density, "kg/m3", "density") * _positive(gravity, "m/s2", "gravity")
+    _checked(pore_ratio, "", "pore_ratio", lambda found: (found < 0) | (found > 1), "from 0 to 1")
+    if not (numpy.diff(numpy.asarray(surface, float)[:, 0]) > 0).all():
+        raise ValueError("surface must have its points from left to right, x growing from each to the next")
     driving, weight, sine, wide = 0.0, numpy.zeros(0), numpy.zeros(0), 0.0
     for left, right in _bodies(numpy.asarray(surface, float), centre, r):  # the one that is driven most
         x = left + (right - left) * (numpy.arange(slices) + 0.5) / slices
@@ -214,7 +246,7 @@ def bishop(surface: ArrayLike, centre: Sequence[float], radius: Value, density: 
         return float("inf")
     sine = numpy.sign(driving) * sine
     cosine = numpy.sqrt(1 - sine**2)
-    resisting = _si(cohesion, "Pa", "cohesion") * wide + weight * (1 - pore_ratio) * numpy.tan(phi)
+    resisting = _not_negative(cohesion, "Pa", "cohesion") * wide + weight * (1 - pore_ratio) * numpy.tan(phi)
     factor = 1.0
     for _ in range(100):
         found = float((resisting / (cosine + sine * numpy.tan(phi) / factor)).sum()) / abs(driving)
@@ -232,7 +264,9 @@ def terzaghi(time_factor: Any, depth: Any) -> Any:
     `time_factor` T = c_v t/H^2, `depth` z/H; one of them may be an array, or both of shapes that broadcast.
 
     K. Terzaghi and O. K. Froehlich (1936): the Fourier series, for T above 1e-4."""
-    t, z = numpy.broadcast_arrays(numpy.asarray(time_factor, float)[..., None], numpy.asarray(depth, float)[..., None])
+    _checked(depth, "", "depth", lambda found: (found < 0) | (found > 1), "from 0 to 1")
+    factors, places = _not_negative(time_factor, "", "time_factor"), numpy.asarray(depth, float)
+    t, z = numpy.broadcast_arrays(numpy.asarray(factors)[..., None], places[..., None])
     m = numpy.pi * (numpy.arange(200) + 0.5)
     found = (2 / m * numpy.sin(m * z) * numpy.exp(-(m**2) * t)).sum(axis=-1)
     return float(found) if found.ndim == 0 else found
@@ -240,7 +274,7 @@ def terzaghi(time_factor: Any, depth: Any) -> Any:
 
 def consolidation_degree(time_factor: Any) -> Any:
     """Settlement over the final one of Terzaghi's layer at T = c_v t/H^2: .5 at T = .197, .9 at .848."""
-    t = numpy.asarray(time_factor, float)[..., None]
+    t = numpy.asarray(_not_negative(time_factor, "", "time_factor"))[..., None]
     m = numpy.pi * (numpy.arange(2000) + 0.5)
     found = 1 - (2 / m**2 * numpy.exp(-(m**2) * t)).sum(axis=-1)
     return float(found) if found.ndim == 0 else found
@@ -253,8 +287,9 @@ def hertz(depth: Any, radius: Value, young: Value, poisson: float) -> Any:
     """Force (N) that presses a rigid sphere `depth` (m) into a half space: 4/3 E/(1 - nu^2) R^1/2 depth^3/2.
 
     H. Hertz, J. reine angew. Math. 92 (1882) 156-171. Two bodies: put 1/R = 1/R1 + 1/R2, 1/E* = sum (1 - nu^2)/E."""
-    modulus = _si(young, "Pa", "young") / (1 - poisson**2)
-    return 4 / 3 * modulus * numpy.sqrt(_si(radius, "m", "radius")) * _si(depth, "m", "depth") ** 1.5
+    nu = _checked(poisson, "", "poisson", lambda found: (found <= -1) | (found > 0.5), "from above -1 to 0.5")
+    modulus = _positive(young, "Pa", "young") / (1 - nu**2)
+    return 4 / 3 * modulus * numpy.sqrt(_positive(radius, "m", "radius")) * _not_negative(depth, "m", "depth") ** 1.5
 
 
 class Stress(NamedTuple):
@@ -270,7 +305,8 @@ def kirsch(r: Any, angle: Any, radius: Value, across: Value, along: Value = 0.0)
     (m) from its middle and `angle` (rad) from the x axis: three times `across` less `along` at the hole's top.
 
     G. Kirsch, Z. VDI 42 (1898) 797-807."""
-    a2 = (_si(radius, "m", "radius") / _si(r, "m", "r")) ** 2
+    a = _positive(radius, "m", "radius")
+    a2 = (a / _checked(r, "m", "r", lambda found: found < a * (1 - 1e-12), f"outside the hole, at least {a:g}")) ** 2
     sx, sy, twice = _si(across, "Pa", "across"), _si(along, "Pa", "along"), 2 * _si(angle, "rad", "angle")
     mean, half = 0.5 * (sx + sy), 0.5 * (sx - sy)
     return Stress(mean * (1 - a2) + half * (1 - 4 * a2 + 3 * a2**2) * numpy.cos(twice),
@@ -279,6 +315,30 @@ def kirsch(r: Any, angle: Any, radius: Value, across: Value, along: Value = 0.0)
 
 
 # ---- waves ---------------------------------------------------------------------------------------
+
+
+def _layers(layers: Sequence[Mapping[str, Any]], also: tuple[str, ...] = ()) -> list[dict[str, Any]]:
+    """Layers with numbers of SI, the last being a half space; a key besides those known and `also`, or a value out of range, is an
+    error that names the layer."""
+    if len(layers) < 2:
+        raise ValueError(f"there are {len(layers)} layers, must be one at least above the half space")
+    known = ("thickness", "vs", "density", "damping", *also)
+    made = []
+    for k, layer in enumerate(layers):
+        which = f"of layer {k + 1}" if k + 1 < len(layers) else "of the half space"
+        for key in layer:
+            if key not in known:
+                raise ValueError(f"{key!r} {which} is unknown, must be one of {', '.join(known)}")
+        for key in ("thickness", "vs", "density")[k + 1 == len(layers):]:
+            if key not in layer:
+                raise ValueError(f"the {key} {which} is missing")
+        found = {**layer, **{key: _positive(layer[key], unit, f"{key} {which}")
+                             for key, unit in (("vs", "m/s"), ("density", "kg/m3"), ("vp", "m/s")) if key in layer}}
+        if k + 1 < len(layers):
+            found["thickness"] = _positive(layer["thickness"], "m", f"thickness {which}")
+        found["damping"] = _checked(layer.get("damping", 0.0), "", f"damping {which}", lambda h: (h < 0) | (h >= 1), "a ratio from 0 to below 1")
+        made.append(found)
+    return made
 
 
 def layers_transfer(frequency: Any, layers: Sequence[Mapping[str, Any]], *, over: str = "outcrop") -> Any:
@@ -293,26 +353,25 @@ def layers_transfer(frequency: Any, layers: Sequence[Mapping[str, Any]], *, over
     N. A. Haskell, Bull. Seism. Soc. Am. 43 (1953) 17-34; S. L. Kramer, Geotechnical Earthquake Engineering (1996) 7.2.1.4."""
     if over not in ("outcrop", "within"):
         raise ValueError(f"over is {over!r}, must be 'outcrop' or 'within'")
-    f = numpy.asarray(frequency, float)
+    f = _not_negative(frequency, "Hz", "frequency")
     w = 2 * numpy.pi * numpy.where(f == 0, 1e-9, f)
-    up = down = numpy.ones(f.shape, complex)
+    up = down = numpy.ones(numpy.shape(f), complex)
     made = []
-    for layer in layers:
-        vs, rho = _si(layer["vs"], "m/s", "vs"), _si(layer["density"], "kg/m3", "density")
-        heavy = rho * (1 - 1j * layer.get("mass", 0.0) / w)
-        stiff = rho * vs**2 * (1 + 2j * layer.get("damping", 0.0) + 1j * layer.get("stiffness", 0.0) * w)
-        made.append((_si(layer.get("thickness", 0.0), "m", "thickness"), w * numpy.sqrt(heavy / stiff), numpy.sqrt(heavy * stiff)))
+    for layer in _layers(layers, ("mass", "stiffness", "vp")):
+        heavy = layer["density"] * (1 - 1j * layer.get("mass", 0.0) / w)
+        stiff = layer["density"] * layer["vs"] ** 2 * (1 + 2j * layer["damping"] + 1j * layer.get("stiffness", 0.0) * w)
+        made.append((layer.get("thickness", 0.0), w * numpy.sqrt(heavy / stiff), numpy.sqrt(heavy * stiff)))
     for (thick, k, z), (_, _, below) in zip(made, made[1:]):
         e, ratio = numpy.exp(1j * k * thick), z / below
         up, down = (0.5 * (up * (1 + ratio) * e + down * (1 - ratio) / e), 0.5 * (up * (1 - ratio) * e + down * (1 + ratio) / e))
     found = 1 / up if over == "outcrop" else 2 / (up + down)
-    return complex(found) if f.ndim == 0 else found
+    return complex(found) if numpy.ndim(f) == 0 else found
 
 
 def wave_number(period: Value, depth: Value, *, gravity: Value = G) -> float:
     """Wave number k (rad/m) of linear waves of `period` (s) in water of `depth` (m; "inf" for deep water):
     w^2 = g k tanh(k h)."""
-    w, h, g = 2 * numpy.pi / _si(period, "s", "period"), _si(depth, "m", "depth"), _si(gravity, "m/s2", "gravity")
+    w, h, g = 2 * numpy.pi / _positive(period, "s", "period"), _positive(depth, "m", "depth"), _positive(gravity, "m/s2", "gravity")
     k = w * w / g
     if numpy.isinf(h):
         return float(k)
@@ -342,7 +401,7 @@ def jet_force(density: Value, speed: Value, thickness: Value, angle: Value = "90
     """Force (N per metre) of a steady sheet of fluid that a body turns by `angle` from its way: rho v^2 b (1 - cos angle),
     the momentum that it loses each second; a plate much wider than the sheet turns it by 90 deg."""
     turned = _si(angle, "rad", "angle")
-    return float(_si(density, "kg/m3", "density") * _si(speed, "m/s", "speed") ** 2 * _si(thickness, "m", "thickness") *
+    return float(_positive(density, "kg/m3", "density") * _si(speed, "m/s", "speed") ** 2 * _positive(thickness, "m", "thickness") *
                  (1 - numpy.cos(turned)))
 
 
@@ -350,6 +409,6 @@ def dam_break(x: Any, t: Value, depth: Value, *, gravity: Value = G) -> Any:
     """Depth (m) at x (m, the dam at 0, water of `depth` at x < 0) a time t (s) after the dam has gone, on a dry bed.
 
     A. Ritter, Z. VDI 36 (1892) 947-954: shallow water, no friction."""
-    h, g, at = _si(depth, "m", "depth"), _si(gravity, "m/s2", "gravity"), _si(x, "m", "x")
+    h, g, at = _positive(depth, "m", "depth"), _positive(gravity, "m/s2", "gravity"), _si(x, "m", "x")
     celerity = numpy.sqrt(g * h)
-    return numpy.clip(2 * celerity - at / _si(t, "s", "t"), 0.0, 3 * celerity) ** 2 / (9 * g)
+    return numpy.clip(2 * celerity - at / _positive(t, "s", "t"), 0.0, 3 * celerity) ** 2 / (9 * g)

@@ -5,6 +5,7 @@
 #include "soil_column.h"
 #include "core/particles/particles_internal.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 static mps_particles *block(double width, double height) {
   return soil_particles(context, 1.0, width, height, 1, &soil_plain);
@@ -29,6 +30,27 @@ TEST(bad_definitions_are_refused) {
   scoped_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   FAILS_ON(other, mps_dynamics_create(other, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
            "another context");
+}
+
+/* A period that leaves a gap of re or more beside the body is warned of: nothing is periodic. */
+TEST(a_period_that_joins_nothing_is_warned_of) {
+  static const double periods[] = {4.0, 5.0, 5.4, 5.6, 8.0, 4000.0};
+  for (int k = 0; k < (int)(sizeof periods / sizeof *periods); k++)
+    for (double spacing = 0.5; spacing <= 2.0; spacing *= 2.0) {
+      journal log = {0};
+      scoped_context *own = journal_context(&log, NULL);
+      scoped_particles *set =
+          soil_particles(own, spacing, 5.0 * spacing, 3.0 * spacing, 1, &soil_plain);
+      DEF(dynamics, def, .period_x = periods[k] * spacing);
+      mps_dynamics *dynamics = NULL;
+      const mps_status status = mps_dynamics_create(own, set, &def, &dynamics);
+      assert_int_equal(status, k == 0 ? MPS_ERROR_ARGUMENT : MPS_OK); /* 0: the width itself */
+      assert_int_equal(log.count, periods[k] > 5.5);
+      char text[64];
+      snprintf(text, sizeof text, "ground without end has a period_x of %g m", 5.0 * spacing);
+      if (log.count > 0) assert_non_null(strstr(log.last, text));
+      mps_dynamics_destroy(&dynamics);
+    }
 }
 
 /* Writes one coordinate of a particle, found by its id: the set may have been sorted. */

@@ -284,6 +284,40 @@ TEST(faces_of_undrained_ground_are_warned_of) {
   }
 }
 
+/* A seam of clay of one row or two lets water through where it shares cells with sand: such a cell
+ * has the mean of both. Faces of the seam that are faces of cells are right. */
+TEST(permeabilities_that_differ_within_a_cell_are_warned_of) {
+  static const struct {
+    double low, high, ratio; /* m, of the seam in a column of cells of 0.25 m; sand over clay */
+    int warnings;
+  } seams[] = {{0.25, 0.5, 1000.0, 0},
+               {0.25, 0.75, 10.0, 0},
+               {0.375, 0.625, 1000.0, 1},
+               {0.5, 0.625, 10.0, 1},
+               {0.5, 0.625, 2.0, 0}};
+  for (int geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++)
+    for (int k = 0; k < (int)(sizeof seams / sizeof *seams); k++) {
+      journal log = {0};
+      char text[64];
+      scoped_context *own = journal_context(&log, NULL);
+      pore_column c = pore_column_begin(own, geometry, 4.0, 10.0, 0.0);
+      OK(mps_particles_add_field(c.s.particles, "permeability", 0));
+      const mps_view x = mpm_scene_view(&c.s, "position");
+      EDIT(k_of, c.s.particles, "permeability")
+        for (int64_t i = 0; i < x.shape[0]; i++) {
+          const double y = *mps_view_f64(&x, i, 1);
+          const bool clay = y > seams[k].low && y < seams[k].high;
+          *mps_edit_f64(&k_of, i, 0) = clay ? 1e-4 / seams[k].ratio : 1e-4;
+        }
+      DEF(pore_water, def, .porosity = 0.4);
+      OK(mps_mpm_add_pore_water(c.s.mpm, &def));
+      assert_int_equal(log.count, seams[k].warnings);
+      snprintf(text, sizeof text, "differs by %g times within a cell, at (", seams[k].ratio);
+      if (log.count > 0) assert_non_null(strstr(log.last, text));
+      mpm_scene_end(&c.s);
+    }
+}
+
 /* ---- what is refused ------------------------------------------------------------------------- */
 
 /* Implicit pressures beside a body thinner than two cells. */

@@ -56,6 +56,61 @@ TEST(stepping_is_stable_at_4_10_ms_and_not_at_4_11_ms) {
   }
 }
 
+/* A soft layer of `rows` rows on stiff ground whose lowest row, the 1.5 times as many, is held in
+ * its middle: the time (s) in which the first mode, released, passes its middle, and that by
+ * theory: tan(w h1/V1) tan(w h2/V2) = rho2 V2/(rho1 V1). */
+static double quarter_period(int rows, double vs, double *theory) {
+  const double spacing = 8.0 / rows, height = 20.0, h2 = 12.0 - 0.5 * spacing;
+  const soil_layer ground[2] = {{8.0, 1700.0, 100.0, 200.0, 0.0},
+                                {12.0, 2000.0, vs, 2.0 * vs, 0.0}};
+  const double ratio = 2000.0 * vs / (1700.0 * 100.0);
+  double low = 0.0, high = 0.5 * PI * fmin(100.0 / 8.0, vs / h2);
+  for (int k = 0; k < 60; k++) {
+    const double w = 0.5 * (low + high);
+    if (tan(w * 0.08) * tan(w * h2 / vs) < ratio)
+      low = w;
+    else
+      high = w;
+  }
+  *theory = 0.5 * PI / low;
+  scoped_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scoped_particles *particles = soil_particles(context, spacing, 3.0 * spacing, height, 2, ground);
+  mps_edit u;
+  OK(mps_particles_set(particles, "displacement", 0, 0.0));
+  const mps_view x = view_field(particles, "position");
+  OK(mps_particles_edit(particles, "displacement", &u));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double up = *mps_view_f64(&x, k, 1), below = up - (height - 8.0 - h2);
+    *mps_edit_f64(&u, k, 0) =
+        1e-4 * (up > height - 8.0 ? cos(low * (height - up) * 0.01)
+                                  : cos(low * 0.08) * sin(low * below / vs) / sin(low * h2 / vs));
+  }
+  OK(mps_particles_commit(particles, &u));
+  DEF(dynamics, def, .period_x = 3.0 * spacing, .courant = 0.3);
+  MAKE(dynamics, dynamics, create, context, particles, &def);
+  soil_hold(particles, dynamics, MPS_DOF_X | MPS_DOF_Y, -1.0, -1.0, height, spacing);
+  const double top[2] = {1.5 * spacing, height};
+  const int64_t id = mps_particles_nearest(particles, top);
+  double before = 1.0, now = 1.0;
+  while (now > 0.0 && mps_dynamics_time(dynamics) < 2.0 * *theory) {
+    OK(mps_dynamics_step(dynamics, 1));
+    before = now, now = soil_value(particles, "displacement", id, 0);
+  }
+  return mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics) * now / (now - before);
+}
+
+/* With the arithmetic mean of both moduli in the pairs across, the layer lacks up to half a row. */
+TEST(a_soft_layer_on_stiff_ground_has_its_whole_thickness) {
+  for (int rows = 4; rows <= 16; rows *= 2)
+    for (double vs = 200.0; vs < 4000.0; vs *= 4.0) {
+      double theory;
+      const double measured = quarter_period(rows, vs, &theory);
+      print_message("%d rows, Vs %g on %g m/s: %.5f s, theory %.5f s (%+.2f %%)\n", rows, 100.0, vs,
+                    measured, theory, 100.0 * (measured / theory - 1.0));
+      NEAR(measured / theory, 1.0, 0.024 / rows);
+    }
+}
+
 /* Peaks of |acceleration| and their times at the middle and the edge of the surface. */
 typedef struct response {
   mps_context *context;

@@ -253,6 +253,18 @@ static void describe(mps_dynamics *dynamics, mps_context *context, mps_particles
   dynamics->lead = true;
 }
 
+/* A period of which the body fills a part has free ends there, and repeats nothing. */
+static void warn_of_gap(const mps_dynamics *dynamics, double width) {
+  const double re = dynamics->def.radius_ratio * dynamics->spacing;
+  const double gap = dynamics->def.period_x - width; /* NaN without a period */
+  if (gap >= re * (1.0 - 1e-12))
+    mpsi_log(dynamics->context, MPS_CONTEXT_LOG_WARNING,
+             "period_x is %g m, and the body %g m wide between outer particle centres: its ends "
+             "have no neighbours in the next period, %g m away where re is %g m; ground without "
+             "end has a period_x of %g m",
+             dynamics->def.period_x, width, gap, re, width + dynamics->spacing);
+}
+
 mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                                const mps_dynamics_def *user_def, mps_dynamics **out) {
   if (!context) return mpsi_null(__func__, "context");
@@ -300,6 +312,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   }
   mpsi_backup_drop(particles, &backup);
   mpsi_storage_drop(particles, &former);
+  warn_of_gap(dynamics, hi[0] - lo[0]);
   *out = dynamics;
   return MPS_OK;
 }

@@ -35,7 +35,7 @@ static inline void shear_pair(const tangent *t, pair q, sums *s) {
   const double dx = x[j] - x[i], dy = x[n + j] - x[n + i];
   const double mean = 0.5 * (x[2 * n + i] + x[2 * n + j]);
   const double weight = t->weight ? 0.5 * (t->weight[i] + t->weight[j]) : 1.0;
-  const double stiff = weight * q.kf * (mu[i] + mu[j]);
+  const double stiff = weight * q.kf * mpsi_dynamics_pair_shear(mu[i], mu[j]);
   const double fx = stiff * (dx + mean * q.r0y), fy = stiff * (dy - mean * q.r0x);
   const double moment = 0.5 * (q.r0x * fy - q.r0y * fx);
   const double div = q.kc * (q.r0x * dx + q.r0y * dy) / sqrt(q.r0x * q.r0x + q.r0y * q.r0y);

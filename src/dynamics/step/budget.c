@@ -54,7 +54,7 @@ static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_bloc
       if (run->own_i) fx[i - begin] -= x, fy[i - begin] -= y;
       if (run->own_j) fx[j - begin] += x, fy[j - begin] += y;
       if (run->own_i && i < dynamics->body)
-        shear += 0.5 * run->kf * (s->mu[i] + s->mu[j]) *
+        shear += 0.5 * run->kf * mpsi_dynamics_pair_shear(s->mu[i], s->mu[j]) *
                  deformation2(dynamics, i, j, run->r0x, run->r0y);
     }
   }
@@ -64,7 +64,7 @@ static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_bloc
     if (list->ti[k] >= 0) fx[list->ti[k] - begin] -= x, fy[list->ti[k] - begin] -= y;
     if (list->tj[k] >= 0) fx[list->tj[k] - begin] += x, fy[list->tj[k] - begin] += y;
     if (list->ti[k] == i && i < dynamics->body)
-      shear += 0.5 * list->kf[k] * (s->mu[i] + s->mu[j]) *
+      shear += 0.5 * list->kf[k] * mpsi_dynamics_pair_shear(s->mu[i], s->mu[j]) *
                deformation2(dynamics, i, j, list->r0x[k], list->r0y[k]);
   }
   return shear;

@@ -88,7 +88,7 @@ MPSI_INLINE void pair_chunk(const int removal, const int want, const int PER, in
     const double rx = r0x[k] + ddx, ry = r0y[k] + ddy;
     const double kinv = kc[k] / sqrt(rx * rx + ry * ry);
     const double kex = kinv * rx, key = kinv * ry;
-    const double stiff = kf[k] * (e.mi[t] + e.mj[t]);
+    const double stiff = kf[k] * mpsi_dynamics_pair_shear(e.mi[t], e.mj[t]);
     const double px = stiff * ux, py = stiff * uy; /* normal and shear together: un + us = u */
     div[t] = kex * ux + key * uy;
     if (want >= FORCES) {

@@ -24,6 +24,15 @@ typedef struct mpsi_dynamics_state {
   double *ex, *ey;       /* a slot a pair: kc e, from the first pass to the second */
 } mpsi_dynamics_state;
 
+/* Twice the shear modulus of a pair. Half of its length lies in either material, and both halves
+ * bear the same stress, so it is the harmonic mean: with the arithmetic one of (A6) a soft layer on
+ * stiff ground lacks half a spacing of its thickness. Where both are the same it is their sum, to
+ * the last bit. */
+static inline double mpsi_dynamics_pair_shear(double a, double b) {
+  const double least = a < b ? a : b, most = a < b ? b : a;
+  return 4.0 * least * (most / (least + most));
+}
+
 /* Which stiffness-proportional damping a body needs. One ratio for all: by particles is the same as
  * by pairs, and cheaper. */
 typedef enum mpsi_dynamics_damping {

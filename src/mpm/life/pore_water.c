@@ -10,6 +10,8 @@
 #define STIFF 50.0 /* K_w/n over the wave modulus at rest: settlements are 2 % too large */
 #define SLOW 1e-3  /* m/s, permeability above which the inertia of the water matters */
 #define LARGE 1e15 /* Pa */
+#define REACH (MPSI_SIDE + 1) /* cells along an axis that particles of a block lie in */
+#define CONTRAST 3.0          /* of permeabilities within a cell, above which a warning is logged */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -109,6 +111,50 @@ static void warn(mps_context *context, const mpsi_columns *p) {
              most, SLOW);
 }
 
+static int64_t cell_of(const mpsi_grid *grid, const mpsi_columns *p, int c, int64_t k) {
+  return mpsi_own_cell(grid, c, mpsi_grid_at(grid, c, p->x[c][k]));
+}
+
+/* Largest ratio of the permeabilities of two particles in one cell of a block, and a place in that
+ * cell (m) if it is above `most`. */
+static double contrast(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_cell_block *cells,
+                       double most, double *place) {
+  double low[REACH * REACH * REACH], high[REACH * REACH * REACH] = {0.0};
+  int64_t first[3] = {INT64_MAX, INT64_MAX, INT64_MAX};
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    for (int c = 0; c < grid->dim; c++)
+      first[c] = cell_of(grid, p, c, k) < first[c] ? cell_of(grid, p, c, k) : first[c];
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    int64_t at = 0, farthest = 0;
+    for (int c = 0; c < grid->dim; c++) {
+      const int64_t i = cell_of(grid, p, c, k) - first[c];
+      farthest = i > farthest ? i : farthest;
+      at = REACH * at + i;
+    }
+    if (farthest >= REACH) continue;
+    low[at] = high[at] > 0.0 ? fmin(low[at], p->k[k]) : p->k[k];
+    high[at] = fmax(high[at], p->k[k]);
+    if (high[at] <= most * low[at]) continue;
+    most = high[at] / low[at];
+    for (int c = 0; c < grid->dim; c++) place[c] = p->x[c][k];
+  }
+  return most;
+}
+
+/* A cell has one permeability, the mean of its particles: that along layers which share it. Across
+ * them it is too high, and a seam of clay in cells of sand holds no water. */
+static void warn_of_contrast(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p) {
+  double most = CONTRAST, place[3] = {0.0};
+  for (int64_t b = 0; p->k && b < grid->cell_count; b++)
+    most = contrast(grid, p, &grid->cells[b], most, place);
+  if (most > CONTRAST)
+    mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
+             "permeability differs by %g times within a cell, at (%g, %g, %g) m: a cell has the "
+             "mean of its particles, so that layers that end within cells leak, and thinner ones "
+             "do not hold water at all; let layers end at faces of cells",
+             most, place[0], place[1], place[2]);
+}
+
 /* Copies of the columns that `fill` writes, to restore after an error. */
 typedef struct kept {
   double *values;
@@ -176,6 +222,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   if (status == MPS_OK) {
     if (!mpsi_pore_predicts(mpm)) mpsi_mpm_soak_laws(&mpm->p, &mpm->def);
     warn(mpm->context, &mpm->p);
+    warn_of_contrast(mpm->context, &mpm->grid, &mpm->p);
     mpm->boundaries.renew = true; /* dashpots */
   } else if (kept_values) {
     restore(mpm, &before);
