@@ -156,20 +156,25 @@ static void fade_divergence(const mps_fluid *f, int64_t i, const double *I, doub
 /* Divergence without what images in faces of bodies add whose line of sight passes the face within
  * a spacing of a corner: all of it at the corner, where such an image appears or vanishes. A moving
  * body's images differ by twice its velocity, and one that came at once was a blow of pressure:
- * white noise of 40 N rms on a box of 785 N in heave, 1.7 N with all of them faded. */
+ * white noise of 40 N rms on a box of 785 N in heave, 1.7 N with all of them faded. A particle's
+ * own image stays where water rushes past the body. One that it does not hold has neighbours on one
+ * side alone: the faster it goes towards them the more the pressure rises between them, and drives
+ * it on. So particles below a wedge's tip ran away from it. */
 static void fade_faces(const mps_fluid *f, int64_t i, const mpsi_fluid_sums *all,
                        double *divergence) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   double M[3] = {all->M[0], all->M[1], all->M[2]}, I[3];
   double G[4] = {all->G[0], all->G[1], all->G[2], all->G[3]};
+  const double rush = mpsi_fluid_rush(f, i, f->reach);
   bool any = false;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k];
     if (j < f->count) continue;
     const double past = mpsi_fluid_past_corner(f, i, j - f->count);
-    const double part = 1.0 - fmax(past, 0.0) / (FADE_FACE * f->l0);
+    double part = 1.0 - fmax(past, 0.0) / (FADE_FACE * f->l0);
     if (!(part > 0.0)) continue;
+    if (f->parent[j - f->count] == i) part *= 1.0 - rush;
     const double d[2] = {f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]};
     const double du[2] = {f->u[0][j] - f->u[0][i], f->u[1][j] - f->u[1][i]};
     const double r2 = fmax(d[0] * d[0] + d[1] * d[1], 0.0025 * f->l0 * f->l0);
