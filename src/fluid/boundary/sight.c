@@ -61,6 +61,12 @@ bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
   return false;
 }
 
+bool mpsi_fluid_point_near_wedge(const mps_fluid *f, const double *x) {
+  for (int k = 0; k < f->wedges; k++)
+    if (hypot(f->wedge[k][0] - x[0], f->wedge[k][1] - x[1]) < WEDGE * f->l0) return true;
+  return false;
+}
+
 static bool joins_another(const mps_fluid *f, int b) {
   for (int k = 0; k < f->boundaries; k++)
     if (k != b && f->wall[k].used && join_at_an_angle(&f->wall[b], &f->wall[k])) return true;

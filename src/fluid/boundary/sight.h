@@ -22,5 +22,7 @@ double mpsi_fluid_past_corner(const mps_fluid *fluid, int64_t i, int64_t ghost);
 /* Whether an acute corner of the water is within 3.1 l0 of particle i, and within 60 degrees of the
  * direction e, unless that is NULL. */
 bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
+/* Whether an acute corner of the water is within 3.1 l0 of a point. */
+bool mpsi_fluid_point_near_wedge(const mps_fluid *fluid, const double *x);
 /* Whether a face other than `wall` (-1: none) is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
