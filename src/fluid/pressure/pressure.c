@@ -30,6 +30,8 @@
 #define LOOSE 0.03          /* of n/n0: missing around bodies in any flow */
 #define CLOSING 4.0         /* |G|: rate at which more than that closes where water rushes past */
 #define MOST_CLOSED 0.5     /* of it, in a step */
+#define HELD 5.0            /* n: of a particle in a gap, to its last pressure, .. */
+#define FEW 9               /* .. with at most so many neighbours, images of three */
 #define IN_ROCK 0.1         /* of k, in rock and beside it */
 #define CORNER 1.5          /* l0 */
 #define PAST_CORNER 6.0     /* l0: where water that passes a corner expands */
@@ -155,6 +157,14 @@ static void find_datum(mps_fluid *f) {
   if (sum_of(f, sum_squares, &none) > weight * mean * mean / (FAR * FAR)) f->system.datum = 0.0;
 }
 
+/* Weight with which a particle in a gap of less than a spacing is held to its pressure of the step
+ * before, where few others are near. One, two or three there see one another alone, with no
+ * surface: their pressure had no datum, and the water pressed on a box .5 l0 above the bed with
+ * 2e11 N. */
+static double hold_of(const mps_fluid *f, int64_t i) {
+  return f->faces && f->near[i] <= FEW && mpsi_fluid_is_squeezed(f, i) ? HELD * f->local[i].n : 0.0;
+}
+
 /* The diagonal, and a start vector by extrapolation of q over the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const bool by_pairs = f->any_apart || mpsi_fluid_near_rock(f, chunk);
@@ -172,7 +182,7 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
       const int64_t j = index[k], ghost = j - f->count;
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
     }
-    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
+    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12 + hold_of(f, i);
     s->x[i] = f->q[i] + ahead * (f->q[i] - old[i]);
   }
 }
@@ -180,6 +190,7 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 /* The right side, with the walls' accelerations. */
 static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double rho = f->def.density, dt = f->dt, share = step_share(f);
+  const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
   for (int64_t i = begin; i < end; i++) {
     f->system.right[i] = 0.0;
     f->system.x[i] -= f->system.datum;
@@ -192,6 +203,7 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     const float *w = f->w + mpsi_fluid_pairs(f, i);
     const factors part = factors_of(f, i);
     double right = part.surface * mpsi_fluid_surface_weight(local) * (local->qs - f->system.datum);
+    right += hold_of(f, i) * (old[i] - f->system.datum);
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
     for (int32_t k = 0; k < near; k++) {
       const int64_t ghost = index[k] - f->count;
