@@ -69,12 +69,12 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   mps_fluid_report report;
   const double slope = 1.0 / tan(s->angle * TANK_PI / 180.0);
   const double foot = 2.0 * TOE_DEPTH + fmax(slope, 0.0) * TOE_DEPTH;
-  const double volume = toe_fill(s, foot, &t, &body), depth = toe_depth(s, foot, volume);
+  const double volume = toe_fill(s, foot, &t, &body);
   USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = TOE_DEPTH);
   const int32_t bed = tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
-  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  const int32_t left = tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   scoped_contact *contact = tank_body(t.fluid, body, MPS_CONTACT_MOVER_OTHER);
-  double mean[3] = {0.0, 0.0, 0.0}, square = 0.0;
+  double mean[3] = {0.0, 0.0, 0.0}, square = 0.0, opposite = 0.0;
   int samples = 0;
   while (mps_fluid_time(t.fluid) < duration) {
     OK(mps_fluid_step(t.fluid, 1));
@@ -84,10 +84,16 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
     square += r.force[0] * r.force[0];
     OK(mps_fluid_get_reaction(t.fluid, bed, &r));
     mean[2] += r.force[1];
+    OK(mps_fluid_get_reaction(t.fluid, left, &r));
+    opposite += r.force[0];
     samples++;
   }
   for (int c = 0; c < 3; c++) mean[c] /= samples;
-  const double weight = 1000.0 * TANK_G, above = depth - s->vertical;
+  const double weight = 1000.0 * TANK_G;
+  /* an acute corner holds no particles, so that the water stands higher: as on the wall opposite */
+  const double depth =
+      s->angle < 90.0 ? sqrt(2.0 * opposite / (samples * weight)) : toe_depth(s, foot, volume);
+  const double above = depth - s->vertical;
   const double exact[3] = {0.5 * weight * depth * depth, 0.5 * weight * above * above * slope,
                            weight * depth * foot};
   const double deviation = sqrt(fmax(square / samples - mean[0] * mean[0], 0.0));

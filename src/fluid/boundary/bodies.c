@@ -16,7 +16,6 @@
 #include <string.h>
 
 #define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
-#define FLUSH 0.1      /* l0: distance at which a corner stands on a boundary */
 
 static mpsi_fluid_pose pose_of(const mps_body *body) {
   const mpsi_pose *p = &body->pose;
@@ -37,7 +36,7 @@ static void velocity_at(const mpsi_fluid_pose *pose, const double *x, double *v)
 bool mpsi_fluid_stands_on(const mps_fluid *f, const mpsi_fluid_wall *face, int end, int b) {
   const mpsi_fluid_wall *w = &f->wall[b];
   const double *x = end ? face->tip : face->at;
-  return w->used && mpsi_fluid_distance(w, w->now.s, x[0], x[1]) < FLUSH * f->l0;
+  return w->used && mpsi_fluid_distance(w, w->now.s, x[0], x[1]) < MPSI_FLUID_FLUSH * f->l0;
 }
 
 /* Where an end stands on a boundary the face extends behind it; one that stands there with both

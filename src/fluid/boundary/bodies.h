@@ -30,6 +30,7 @@ typedef struct mpsi_fluid_body {
   double tried[3], missed[3];    /* accelerations of the last trial, and what was out of balance */
   bool warned, warned_of_ground; /* of its angle with a boundary, and where it goes through one */
   bool looked, warned_of_bodies; /* for others too near, and of one */
+  bool warned_of_gap;            /* to a boundary */
 } mpsi_fluid_body;
 
 #define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */
@@ -47,6 +48,7 @@ void mpsi_fluid_drop_leaving(mps_fluid *fluid); /* once no step is open */
 /* Of the body that a contact is with; -1: none of this fluid's, or it has ended. */
 int32_t mpsi_fluid_body_number(const mps_fluid *fluid, const mps_contact *contact);
 
+#define MPSI_FLUID_FLUSH 0.1        /* l0: distance at which a corner stands on a boundary */
 #define MPSI_FLUID_LEAST_ANGLE 15.0 /* degrees of fluid between a face and what it stands on */
 
 /* Whether the beginning (0) or the end (1) of a face stands on boundary number b. */

@@ -19,6 +19,8 @@
 #define CORNER 1.5 /* l0 */
 #define WEDGE 3.1  /* l0: to the edge of an acute corner */
 #define TOWARDS 0.5
+#define RUSH 2.5  /* (g l0)^1/2: from there on l0/|u| limits the step */
+#define SLOW 0.25 /* of its square: below, water is slow */
 
 static bool join_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
@@ -56,6 +58,12 @@ bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
     if (!(r2 < WEDGE * WEDGE * f->l0 * f->l0)) continue;
     if (!e || dx * e[0] + dy * e[1] > TOWARDS * sqrt(r2)) return true;
   }
+  return false;
+}
+
+bool mpsi_fluid_point_near_wedge(const mps_fluid *f, const double *x) {
+  for (int k = 0; k < f->wedges; k++)
+    if (hypot(f->wedge[k][0] - x[0], f->wedge[k][1] - x[1]) < WEDGE * f->l0) return true;
   return false;
 }
 
@@ -202,6 +210,20 @@ bool mpsi_fluid_within(const mps_fluid *f, int64_t i, double reach) {
     }
   }
   return false;
+}
+
+double mpsi_fluid_rush(const mps_fluid *f, int64_t i, double reach) {
+  const double x[2] = {f->x[0][i], f->x[1][i]}, fast2 = RUSH * RUSH * f->g * f->l0;
+  double most2 = 0.0;
+  for (int n = 0; n < f->bodies; n++) {
+    if (!mpsi_fluid_beside(&f->body[n], x, reach)) continue;
+    const mpsi_fluid_pose *p = &f->body[n].pose;
+    const double v[2] = {f->u[0][i] - p->v[0] + p->spin * (x[1] - p->x[1]),
+                         f->u[1][i] - p->v[1] - p->spin * (x[0] - p->x[0])};
+    most2 = fmax(most2, v[0] * v[0] + v[1] * v[1]);
+  }
+  if (most2 >= fast2) return most2 > 0.0 ? 1.0 : 0.0;
+  return fmax((most2 / fast2 - SLOW) / (1.0 - SLOW), 0.0);
 }
 
 bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {

@@ -41,6 +41,8 @@
 #define ZONE 1.6        /* l0 */
 #define FADE 0.5        /* l0, along a segment from a corner around which the water turns */
 #define FADE_FACE 1.0   /* l0, the same along a face of a body, of all images */
+#define OPPOSITE -0.9   /* product of the normals of walls with a gap in between */
+#define SQUEEZED 0.9    /* l0, width of a gap that holds no particle */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -156,20 +158,25 @@ static void fade_divergence(const mps_fluid *f, int64_t i, const double *I, doub
 /* Divergence without what images in faces of bodies add whose line of sight passes the face within
  * a spacing of a corner: all of it at the corner, where such an image appears or vanishes. A moving
  * body's images differ by twice its velocity, and one that came at once was a blow of pressure:
- * white noise of 40 N rms on a box of 785 N in heave, 1.7 N with all of them faded. */
+ * white noise of 40 N rms on a box of 785 N in heave, 1.7 N with all of them faded. A particle's
+ * own image stays where water rushes past the body. One that it does not hold has neighbours on one
+ * side alone: the faster it goes towards them the more the pressure rises between them, and drives
+ * it on. So particles below a wedge's tip ran away from it. */
 static void fade_faces(const mps_fluid *f, int64_t i, const mpsi_fluid_sums *all,
                        double *divergence) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   double M[3] = {all->M[0], all->M[1], all->M[2]}, I[3];
   double G[4] = {all->G[0], all->G[1], all->G[2], all->G[3]};
+  const double rush = mpsi_fluid_rush(f, i, f->reach);
   bool any = false;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k];
     if (j < f->count) continue;
     const double past = mpsi_fluid_past_corner(f, i, j - f->count);
-    const double part = 1.0 - fmax(past, 0.0) / (FADE_FACE * f->l0);
+    double part = 1.0 - fmax(past, 0.0) / (FADE_FACE * f->l0);
     if (!(part > 0.0)) continue;
+    if (f->parent[j - f->count] == i) part *= 1.0 - rush;
     const double d[2] = {f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]};
     const double du[2] = {f->u[0][j] - f->u[0][i], f->u[1][j] - f->u[1][i]};
     const double r2 = fmax(d[0] * d[0] + d[1] * d[1], 0.0025 * f->l0 * f->l0);
@@ -195,6 +202,32 @@ static void take_turn(mps_fluid *f, int64_t i, mpsi_fluid_local *local) {
   mpsi_fluid_turn turn;
   if (!mpsi_fluid_fit_turn(f, i, &turn)) return;
   for (int c = 0; c < 2; c++) local->rest[c] -= (float)turn.rest[c];
+}
+
+bool mpsi_fluid_is_squeezed(const mps_fluid *f, int64_t i) {
+  if (!(f->company[i] & MPSI_FLUID_NEAR_IMAGES) || (f->company[i] & MPSI_FLUID_NEAR_WEDGE))
+    return false;
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const double x[2] = {f->x[0][i], f->x[1][i]};
+  const mpsi_fluid_wall *seen[8];
+  int count = 0;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t ghost = index[k] - f->count;
+    if (ghost < 0 || f->parent[ghost] != i) continue;
+    const mpsi_fluid_flips *flips = &f->flips[ghost];
+    if (flips->wall[0] == MPSI_FLUID_NO_WALL || flips->wall[1] != MPSI_FLUID_NO_WALL) continue;
+    const mpsi_fluid_wall *w = &f->wall[flips->wall[0]];
+    const double d = mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+    for (int n = 0; n < count; n++) {
+      const mpsi_fluid_wall *o = seen[n];
+      const double across = w->normal[0] * o->normal[0] + w->normal[1] * o->normal[1];
+      if ((w->of_body || o->of_body) && across < OPPOSITE &&
+          d + mpsi_fluid_distance(o, o->now.s, x[0], x[1]) < SQUEEZED * f->l0)
+        return true;
+    }
+    if (count < 8) seen[count++] = w;
+  }
+  return false;
 }
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {

@@ -4,6 +4,8 @@
 
 #include <mps/fluid.h>
 
+#include <stdbool.h>
+
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
 typedef struct mpsi_fluid_weight {
   double re, inverse; /* m, 1/m */
@@ -33,3 +35,5 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
 double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
+/* Whether a particle is between a body's face and a wall that are less than a spacing apart. */
+bool mpsi_fluid_is_squeezed(const mps_fluid *fluid, int64_t i);

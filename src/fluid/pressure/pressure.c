@@ -26,6 +26,12 @@
 #define STEEP 0.05          /* g/l0: |G|^2 as in breakers */
 #define FULL_STEP 0.05      /* (l0/g)^1/2: with shorter steps k is less */
 #define LEAST_DENSITY -3e-4 /* k */
+#define FAR 4.0             /* times the differences along the surface: its mean */
+#define LOOSE 0.03          /* of n/n0: missing around bodies in any flow */
+#define CLOSING 4.0         /* |G|: rate at which more than that closes where water rushes past */
+#define MOST_CLOSED 0.5     /* of it, in a step */
+#define HELD 5.0            /* n: of a particle in a gap, to its last pressure, .. */
+#define FEW 9               /* .. with at most so many neighbours, images of three */
 #define IN_ROCK 0.1         /* of k, in rock and beside it */
 #define CORNER 1.5          /* l0 */
 #define PAST_CORNER 6.0     /* l0: where water that passes a corner expands */
@@ -54,6 +60,18 @@ static double share_at_corner(const mps_fluid *f, int64_t i, double excess) {
   return 1.0 + EXPANDED * fmin(squared_gradient(f, i) / (PASSES * rate * rate + 1e-300), 1.0);
 }
 
+/* Water that rushes along a convex body turns with it, and a step leaves half of that turn out: n
+ * falls by u^2 dt/(2 R l0), dt a quarter of l0/u, by an eighth on the way of a radius. Below .72 it
+ * would pass for a free surface, in the middle of the water: bodies that rose at 3 (g l0)^1/2 got
+ * blows of their own buoyancy there. Such gaps close in the time 1/|G| in which the flow makes
+ * them. */
+static double gap_source(const mps_fluid *f, int64_t i, double excess) {
+  const double rush = mpsi_fluid_rush(f, i, PAST_CORNER * f->l0);
+  if (!(rush > 0.0)) return 0.0;
+  const double part = fmin(CLOSING * f->dt * sqrt(squared_gradient(f, i)), MOST_CLOSED);
+  return rush * part * (excess + LOOSE);
+}
+
 /* The particles of rock go 1/e of the way of those of water, so gaps of up to half a spacing open
  * and close at a face as water flows through it. They are no error of the density, and a source for
  * them makes the rock's discharge lag: with resistance up to a fifth more inertia of the rock,
@@ -64,7 +82,8 @@ static double density_source(const mps_fluid *f, int64_t i, double share) {
   if (f->rocks && (mpsi_fluid_is_mixed(f, i) || mpsi_fluid_pore_of(f, i)->porosity < 1.0))
     k *= IN_ROCK;
   if (f->faces) k *= share_at_corner(f, i, excess);
-  return share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
+  k = share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
+  return f->faces && excess < -LOOSE && !f->zone[i] ? k + gap_source(f, i, excess) : k;
 }
 
 /* Divergence (1/s) with which a step keeps volumes: they change by det(1 + dt G) = 1 + dt D + dt^2
@@ -91,6 +110,61 @@ static factors factors_of(const mps_fluid *f, int64_t i) {
   return (factors){pore->ease / square, 1.0 / square, pore->porosity};
 }
 
+/* Sums over the surface of c (q_s - datum) and c. */
+static void sum_surface(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  double sum = 0.0, weight = 0.0;
+  for (int64_t i = begin; i < end; i++) {
+    if (f->state[i] != MPSI_FLUID_SURFACE) continue;
+    const double c = mpsi_fluid_surface_weight(&f->local[i]);
+    sum += c * (f->local[i].qs - f->system.datum), weight += c;
+  }
+  f->system.sums[2 * chunk] = sum, f->system.sums[2 * chunk + 1] = weight;
+}
+
+static void sum_squares(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  double sum = 0.0;
+  for (int64_t i = begin; i < end; i++) {
+    if (f->state[i] != MPSI_FLUID_SURFACE) continue;
+    const double off = f->local[i].qs - f->system.datum;
+    sum += mpsi_fluid_surface_weight(&f->local[i]) * off * off;
+  }
+  f->system.sums[2 * chunk] = sum, f->system.sums[2 * chunk + 1] = 0.0;
+}
+
+static double sum_of(mps_fluid *f, mpsi_fluid_task over, double *second) {
+  double sum = 0.0;
+  *second = 0.0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, over);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
+  for (int64_t k = 0; k * MPSI_FLUID_CHUNK < f->count; k++)
+    sum += f->system.sums[2 * k], *second += f->system.sums[2 * k + 1];
+  return sum;
+}
+
+/* The surface's mean q_s, where that is far more than its differences: 100 kPa of air on it, or a
+ * `level` of another datum. The equation is solved for q - datum. A constant changes nothing but
+ * the size of the right side, and the tolerance is a part of that: with the air's pressure some Pa
+ * were left, and bodies afloat did not agree with the water; with a level 100 m off the force of
+ * still water on a wall was off by 4 %. */
+static void find_datum(mps_fluid *f) {
+  double weight, none;
+  f->system.datum = 0.0;
+  const double sum = sum_of(f, sum_surface, &weight);
+  if (!(weight > 0.0)) return;
+  const double mean = sum / weight;
+  if (!(fabs(mean) > f->def.density * f->g * f->l0)) return;
+  f->system.datum = mean;
+  if (sum_of(f, sum_squares, &none) > weight * mean * mean / (FAR * FAR)) f->system.datum = 0.0;
+}
+
+/* Weight with which a particle in a gap of less than a spacing is held to its pressure of the step
+ * before, where few others are near. One, two or three there see one another alone, with no
+ * surface: their pressure had no datum, and the water pressed on a box .5 l0 above the bed with
+ * 2e11 N. */
+static double hold_of(const mps_fluid *f, int64_t i) {
+  return f->faces && f->near[i] <= FEW && mpsi_fluid_is_squeezed(f, i) ? HELD * f->local[i].n : 0.0;
+}
+
 /* The diagonal, and a start vector by extrapolation of q over the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const bool by_pairs = f->any_apart || mpsi_fluid_near_rock(f, chunk);
@@ -108,7 +182,7 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
       const int64_t j = index[k], ghost = j - f->count;
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
     }
-    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
+    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12 + hold_of(f, i);
     s->x[i] = f->q[i] + ahead * (f->q[i] - old[i]);
   }
 }
@@ -116,8 +190,10 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 /* The right side, with the walls' accelerations. */
 static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double rho = f->def.density, dt = f->dt, share = step_share(f);
+  const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
   for (int64_t i = begin; i < end; i++) {
     f->system.right[i] = 0.0;
+    f->system.x[i] -= f->system.datum;
     if (f->state[i] == MPSI_FLUID_APART) {
       f->system.x[i] = 0.0; /* q of the solution before */
       continue;
@@ -126,7 +202,8 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     const float *w = f->w + mpsi_fluid_pairs(f, i);
     const factors part = factors_of(f, i);
-    double right = part.surface * mpsi_fluid_surface_weight(local) * local->qs;
+    double right = part.surface * mpsi_fluid_surface_weight(local) * (local->qs - f->system.datum);
+    right += hold_of(f, i) * (old[i] - f->system.datum);
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
     for (int32_t k = 0; k < near; k++) {
       const int64_t ghost = index[k] - f->count;
@@ -146,11 +223,14 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
-    const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;
+    const double p =
+        f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] + f->system.datum - none;
     const double least =
         mpsi_fluid_least(f, i) + fmin(mpsi_fluid_surface_stress(f, &f->local[i]), 0.0);
     f->pressure[i] = fmax(p, least);
-    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none : fmax(f->system.x[i], none + least);
+    f->q[i] = f->state[i] == MPSI_FLUID_APART
+                  ? none
+                  : fmax(f->system.x[i] + f->system.datum, none + least);
   }
 }
 
@@ -158,6 +238,7 @@ mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
   MPSI_TRY(mpsi_fluid_weigh_flow(f, function));
   mpsi_fluid_use_flow(f, true);
+  if (!classical) find_datum(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
   const bool outside = mpsi_fluid_solved_outside(f);
   mps_status status =

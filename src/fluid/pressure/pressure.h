@@ -15,6 +15,7 @@ typedef struct mpsi_fluid_system {
   float *inverse;           /* of D, which is what this rounded reciprocal says */
   double *sums;             /* by chunk or block, two values each */
   double mean;              /* of the right side, or the shift of the solution; see closed.c */
+  double datum;             /* Pa: x is q less this */
 } mpsi_fluid_system;
 
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);

@@ -188,6 +188,44 @@ static bool sees_point(const mps_fluid *f, const mpsi_fluid_wall *w, double alon
   return f->segments == 0 || !mpsi_fluid_behind_line(f, own, x, at);
 }
 
+#define GAP_POINTS 3 /* from a point in the gap of an acute corner to the next with particles */
+
+/* Whether a point of a wall lies in an acute corner between a body and a boundary, in the water. */
+static bool in_acute_corner(const mps_fluid *f, const double *x) {
+  if (!mpsi_fluid_point_near_wedge(f, x)) return false;
+  for (int b = 0; b < f->bodies; b++) { /* not below a body, whose lower face is no wall */
+    double most = -INFINITY;
+    for (int k = f->body[b].first; k < f->body[b].first + f->body[b].faces; k++)
+      if (f->wall[k].used)
+        most = fmax(
+            most, mpsi_fluid_distance(&f->wall[k], mpsi_fluid_places(f, &f->wall[k]), x[0], x[1]));
+    if (most > -INFINITY && most < -ON_LINE * f->l0) return false;
+  }
+  return true;
+}
+
+/* Whether the water at one point of a wall reaches another one: no body stands between them. */
+static bool reaches(const mps_fluid *f, const mpsi_fluid_wall *w, double from, double to) {
+  double a[2], b[2];
+  place(f, w, from, a), place(f, w, to, b);
+  return !mpsi_fluid_hidden(f, (int)(w - f->wall), a, b);
+}
+
+/* The point whose sums give the pressure at point k of `count`: itself; in an acute corner, where
+ * the water's last two spacings hold no particle, the nearest one that has some; -1: it is dry. */
+static int64_t wet_point(const mps_fluid *f, const mpsi_fluid_wall *w, const fit *sum, int64_t low,
+                         int64_t count, int64_t k, const double *x) {
+  if (sum[k].water > LEAST_SUM) return k;
+  if (w->of_line || f->wedges == 0 || !in_acute_corner(f, x)) return -1;
+  const double step = pitch(f, w), at = ((double)(low + k) + 0.5) * step;
+  for (int64_t n = 1; n <= GAP_POINTS; n++)
+    for (int64_t other = k - n; other <= k + n; other += 2 * n)
+      if (other >= 0 && other < count && sum[other].water > LEAST_SUM &&
+          reaches(f, w, at, at + (double)(other - k) * step))
+        return other;
+  return -1;
+}
+
 /* Calls `point` for each wetted point of a wall with its position and pressure. */
 typedef void (*point_fn)(void *user, const double *x, double p);
 
@@ -219,9 +257,10 @@ static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char 
   for (int64_t k = low; k < high; k++) {
     double x[2];
     place(f, w, ((double)k + 0.5) * step, x);
-    if (sum[k - low].water <= LEAST_SUM || !among_walls(f, w, x)) continue;
-    const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
-    if (p > driest(&sum[k - low])) point(user, x, p);
+    const int64_t of = wet_point(f, w, sum, low, high - low, k - low, x);
+    if (of < 0 || !among_walls(f, w, x)) continue;
+    const double p = fit_value(f, &sum[of]) - mpsi_fluid_head(f, x[0], x[1]);
+    if (p > driest(&sum[of])) point(user, x, p);
   }
   return MPS_OK;
 }
@@ -417,19 +456,38 @@ static mps_status check_points(mps_fluid *f, const char *function, const place_o
   return MPS_OK;
 }
 
-/* Pressure at a point of a wall near which `near` particles have been gathered. */
-static double pressure_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near,
-                          const double *x) {
-  const double at = mpsi_fluid_along(w, x[0], x[1]);
+static fit fit_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near, double at) {
   const neighbour *list = f->near_wall_room.item;
-  double to[2];
   fit sum = no_fit;
   for (int64_t i = 0; i < near; i++) {
     const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
     if (weight > 0.0 && (!(w->of_line || w->of_body) || sees_point(f, w, at, list[i].i)))
       fit_add(f, &sum, weight, at, &list[i]);
   }
+  return sum;
+}
+
+/* The same; in an acute corner without particles that of the nearest point with some. */
+static fit wet_fit(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near, double at,
+                   const double *x) {
+  const fit own = fit_at(f, w, near, at);
+  if (own.water > LEAST_SUM || w->of_line || f->wedges == 0 || !in_acute_corner(f, x)) return own;
+  for (int n = 1; n <= GAP_POINTS; n++)
+    for (int side = -1; side <= 1; side += 2) {
+      const double to = at + side * n * f->l0;
+      const fit other = fit_at(f, w, near, to);
+      if (other.water > LEAST_SUM && reaches(f, w, at, to)) return other;
+    }
+  return own;
+}
+
+/* Pressure at a point of a wall near which `near` particles have been gathered. */
+static double pressure_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near,
+                          const double *x) {
+  const double at = mpsi_fluid_along(w, x[0], x[1]);
+  double to[2];
   place(f, w, at, to);
+  const fit sum = wet_fit(f, w, near, at, to);
   const double head = mpsi_fluid_head(f, to[0], to[1]);
   const double p = sum.water > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
   return p > driest(&sum) ? p : 0.0;

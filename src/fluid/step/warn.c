@@ -128,16 +128,45 @@ static bool boxes_near(const mpsi_fluid_body *one, const mpsi_fluid_body *other,
   return true;
 }
 
+/* Gap (m) between the body's nearest corner and a plane boundary, of less than a spacing and more
+ * than what closes; 0: none. */
+static double gap_to(const mps_fluid *f, const mpsi_fluid_body *body, int b) {
+  const mpsi_fluid_wall *w = &f->wall[b];
+  double least = INFINITY, x[2];
+  if (!w->used || w->line || w->open) return 0.0;
+  for (int k = 0; k < body->faces; k++) {
+    mpsi_fluid_corner(body, false, k, x);
+    least = fmin(least, mpsi_fluid_distance(w, w->now.s, x[0], x[1]));
+  }
+  return least > MPSI_FLUID_FLUSH * f->l0 && least < (1.0 - FACE_TO_FACE) * f->l0 ? least : 0.0;
+}
+
+/* A body so near to a boundary, without standing on it, has no water in between: the uplift of a
+ * box a quarter of a spacing above the bed is missing, as if it stood there. */
+static void warn_of_gaps(mps_fluid *f, int number) {
+  mpsi_fluid_body *body = &f->body[number];
+  for (int b = 0; b < f->boundaries && !body->warned_of_gap; b++) {
+    const double gap = gap_to(f, body, b);
+    if (!(gap > 0.0)) continue;
+    body->warned_of_gap = true;
+    mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
+             "step %lld of the fluid: body %d has a gap of %g m to boundary %d, less than the "
+             "spacing of %g m: no water is in it, and none presses there; below %g m it closes",
+             (long long)f->steps, number, gap, b, f->l0, MPSI_FLUID_FLUSH * f->l0);
+  }
+}
+
 /* Bodies that come nearer than a spacing, or pass into one another, and do not lie face to face:
  * looked at in the first step of a body and while it moves. */
 void mpsi_fluid_warn_of_bodies(mps_fluid *f) {
   for (int number = 0; number < f->bodies; number++) {
     mpsi_fluid_body *body = &f->body[number];
     const mpsi_fluid_pose *pose = &body->pose;
-    if (!body->body || body->warned_of_bodies) continue;
+    if (!body->body) continue;
     if (body->looked && pose->v[0] == 0.0 && pose->v[1] == 0.0 && pose->spin == 0.0) continue;
     body->looked = true;
-    for (int n = 0; n < f->bodies && in_water(f, body); n++) {
+    if (in_water(f, body)) warn_of_gaps(f, number);
+    for (int n = 0; n < f->bodies && !body->warned_of_bodies && in_water(f, body); n++) {
       mpsi_fluid_body *other = &f->body[n];
       if (n == number || !other->body || !boxes_near(body, other, f->l0)) continue;
       const double gap = fmax(apart_by(f, body, other), apart_by(f, other, body));
