@@ -48,6 +48,7 @@ static bool build_ground(app *a, const settings *s, simulation *sim) {
                           .ground = &s->ground,
                           .sloped = s->sloped,
                           .slope = {s->slope[0], s->slope[1], s->slope[2]},
+                          .open = s->base == BASE_VISCOUS,
                           .domain = s->sides == SIDES_FREEFIELD ? NULL : a->domain};
   if (!app_check(a, column_create(a->context, &def, &sim->ground))) return false;
   if (!receivers_create(a, &sim->ground, settings_wave(s), s->receivers, &sim->record))

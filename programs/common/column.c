@@ -18,6 +18,36 @@ static mps_status fill(const column *c) {
   return mps_particles_fill_polygon(c->particles, 6, corners, NULL);
 }
 
+/* The ground of the row of particles at height y: a layer that lies within it counts too. */
+static layer ground_of(const column *c, double y) {
+  const double depth = c->height - y, half = 0.5 * c->spacing;
+  return layers_mean(c->def.ground, depth - half, depth + half);
+}
+
+/* Dashpots are at the centres of the lowest row, and the half space begins half a spacing below, at
+ * its face. Above an open base that row stands for the face, 1.5 D below the second one. Of its own
+ * mass it keeps 2/3, which has the same first moment about the face, and the second row takes the
+ * rest. Its mu (SOFT) and lambda, with 4/5 of lambda in the second row, are such that a uniform
+ * stress strains the two spans above it as 1.5 D and D of ground, on the lattice of re = 1.5 D. */
+static layer open_ground(const column *c, double y) {
+  const double SOFT = 0.3839154; /* with the row's spins, which have neighbours on one side */
+  layer l = ground_of(c, y);
+  const double s2 = l.vs * l.vs, lambda = l.vp * l.vp - 2.0 * s2; /* over the density */
+  if (y < c->spacing) {
+    const double pair = 2.0 * SOFT / (1.0 + SOFT);
+    const double below = 4.0 / 3.0 * lambda + 16.0 / 3.0 * (1.0 - 1.5 * pair) * s2;
+    l.unit_weight *= 2.0 / 3.0;
+    l.vs = sqrt(1.5 * SOFT * s2);
+    l.vp = sqrt(1.5 * (below + 2.0 * SOFT * s2));
+  } else if (y < 2.0 * c->spacing) {
+    const double own = l.unit_weight;
+    l.unit_weight += ground_of(c, y - c->spacing).unit_weight / 3.0;
+    l.vs = sqrt(own / l.unit_weight * s2);
+    l.vp = sqrt(own / l.unit_weight * (0.8 * lambda + 2.0 * s2));
+  }
+  return l;
+}
+
 static mps_status set_materials(const column *c) {
   static const char *const names[] = {"density", "shear_velocity", "pressure_velocity", "damping"};
   mps_view position;
@@ -30,9 +60,8 @@ static mps_status set_materials(const column *c) {
   for (int k = 0; k < 4 && status == MPS_OK; k++)
     status = mps_particles_edit(c->particles, names[k], &field[k]);
   for (int64_t i = 0; i < position.shape[0] && status == MPS_OK; i++) {
-    /* of the row of particles: a layer that lies within it counts too */
-    const double depth = c->height - *mps_view_f64(&position, i, 1), half = 0.5 * c->spacing;
-    const layer l = layers_mean(c->def.ground, depth - half, depth + half);
+    const double y = *mps_view_f64(&position, i, 1);
+    const layer l = c->def.open ? open_ground(c, y) : ground_of(c, y);
     *mps_edit_f64(&field[0], i, 0) = layers_density(&l);
     *mps_edit_f64(&field[1], i, 0) = l.vs;
     *mps_edit_f64(&field[2], i, 0) = l.vp;
@@ -67,6 +96,8 @@ double column_surface(const column *c, double x) {
   if (x >= s[1]) return s[2];
   return c->height + (s[2] - c->height) * (x - s[0]) / (s[1] - s[0]);
 }
+
+double column_level(const column *c, double y) { return c->def.open && y < c->spacing ? 0.0 : y; }
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 

@@ -14,6 +14,7 @@ typedef struct column_def {
   const layers *ground;
   bool sloped;
   double slope[3];    /* m: the surface falls from `height` at slope[0] to slope[2] at slope[1] */
+  bool open;          /* the base is to be that of column_viscous_base: the ground ends at y = 0 */
   mps_domain *domain; /* each of its ranks makes a part of the particles; NULL: all of them */
 } column_def;
 
@@ -33,6 +34,9 @@ void column_destroy(column *c);
 
 /* Height (m) of the ground surface at x. */
 double column_surface(const column *c, double x);
+/* Height (m) of the ground whose motion a particle at height y has: on an open base the lowest row
+ * has that of the base. */
+double column_level(const column *c, double y);
 
 /* The component of motion of a wave 'S' or 'P': 0 x, 1 y. */
 int32_t column_component(char wave);

@@ -38,7 +38,7 @@ static void add_all(receivers *r, const column *c, char wave, double *places) {
 static void name(const receivers *r, const column *c, int64_t k, const double *position) {
   static const char *const beside[] = {"_edge", "_crest", "_toe", "_crest", "_toe"};
   receiver *q = &r->list[k];
-  q->depth = column_surface(c, position[0]) - position[1];
+  q->depth = column_surface(c, position[0]) - column_level(c, position[1]);
   snprintf(q->label, sizeof q->label, "a%c_m_s2_GL-%.4gm%s", q->component == 0 ? 'x' : 'y',
            q->depth, k < r->column ? "" : beside[k - r->column]);
 }

@@ -106,9 +106,10 @@ static comparison compare_travel(const settings *s, const results *x) {
 bool results_find(app *a, const settings *s, const column *c, const receivers *r,
                   const mps_signal *signal, results *x) {
   const receiver *base = &r->list[r->column - 1];
-  /* The surface is the face of its particles, the base the centre of its row. */
-  x->travel_exact = layers_travel_time(&s->ground, settings_wave(s), c->height - 0.5 * c->spacing,
-                                       c->height - 0.5 * c->spacing - base->depth);
+  /* The surface is the face of its particles; so is a viscous base, a rigid one the centre of its
+   * row. */
+  const double bottom = c->height - column_level(c, 0.5 * c->spacing);
+  x->travel_exact = layers_travel_time(&s->ground, settings_wave(s), bottom, bottom - base->depth);
   x->surface_peak = x->surface_peak_edge = x->travel_time = x->energy_drift = NAN;
   bool ok = true;
   if (x->end != OUTCOME_DIVERGED && r->rows > 0) {

@@ -77,6 +77,26 @@ static peaks find_peaks(const double *amplitude) {
   return p;
 }
 
+/* The half space is to begin at the face of the lowest row, in whose middle the dashpots are: the
+ * factors of docs/dynamics.md for the two lowest rows, both of the lowest layer. */
+static void open_base(mps_particles *particles, double spacing) {
+  const soil_layer l = layers[2];
+  const double s2 = l.vs * l.vs, p2 = l.vp * l.vp;
+  const double row[2][3] = {{2.0 / 3.0 * l.density, 0.7589 * l.vs, sqrt(2.0 * p2 - 1.506 * s2)},
+                            {4.0 / 3.0 * l.density, 0.866 * l.vs, sqrt(0.6 * p2 + 0.3 * s2)}};
+  const char *const names[3] = {"density", "shear_velocity", "pressure_velocity"};
+  const mps_view x = view_field(particles, "position");
+  for (int f = 0; f < 3; f++) {
+    mps_edit field;
+    OK(mps_particles_edit(particles, names[f], &field));
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const int m = (int)(*mps_view_f64(&x, k, 1) / spacing);
+      if (m < 2) *mps_edit_f64(&field, k, 0) = row[m][f];
+    }
+    OK(mps_particles_commit(particles, &field));
+  }
+}
+
 /* The layered column with periodic sides, its base condition set. */
 static mps_dynamics *build(mps_context *context, bool viscous, double spacing, mps_signal *input,
                            mps_particles **particles) {
@@ -84,6 +104,7 @@ static mps_dynamics *build(mps_context *context, bool viscous, double spacing, m
   def.courant = 0.5; /* damping is one-sided in time: its error is of the order of dt */
   def.period_x = 4.0 * spacing;
   *particles = soil_particles(context, spacing, 4.0 * spacing, height, 3, layers);
+  if (viscous) open_base(*particles, spacing);
   MAKE_KEPT(dynamics, dynamics, create, context, *particles, &def);
   int64_t count;
   int64_t *base = soil_select(*particles, -1.0, -1.0, 100.0, spacing, &count);
@@ -131,8 +152,8 @@ static void compare(bool viscous, double spacing, double duration) {
                   viscous ? "viscous" : "rigid", spacing, k + 1, e.f[k], e.amplitude[k], m.f[k],
                   m.amplitude[k], 100.0 * (m.f[k] / e.f[k] - 1.0),
                   100.0 * (m.amplitude[k] / e.amplitude[k] - 1.0));
-    NEAR(m.amplitude[k] / e.amplitude[k], 1.0, 0.03);
-    NEAR(m.f[k] / e.f[k], 1.0, 0.02);
+    NEAR(m.amplitude[k] / e.amplitude[k], 1.0, viscous ? 0.015 * spacing * spacing : 0.03);
+    NEAR(m.f[k] / e.f[k], 1.0, viscous ? 0.003 : 0.02);
   }
   free(t.surface);
   free(t.bottom);
@@ -140,4 +161,7 @@ static void compare(bool viscous, double spacing, double duration) {
 
 TEST(rigid_base) { compare(false, 0.5, 40.0); }
 
-TEST(viscous_base) { compare(true, 0.5, 12.0); }
+TEST(viscous_base) {
+  compare(true, 1.0, 12.0);
+  compare(true, 0.5, 12.0);
+}
