@@ -19,6 +19,10 @@
 
 #include <string.h>
 
+#define LINK 0.02       /* see link_between; filled parts of cells that pass */
+#define NEARLY_FULL 0.9 /* nothing to those beside them, */
+#define IN_PART 0.6     /* and all of it */
+
 /* Slope (Pa/m) of p along the axis of a face, on the cell's side of it, at a distance (m, from the
  * cell's centre); flux (m3/s) into the cell. */
 typedef struct face_flow {
@@ -513,6 +517,30 @@ void mpsi_pore_update_columns(mps_mpm *mpm) {
 
 /* ---- implicit pressures ---------------------------------------------------------------------- */
 
+static double filled_part(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell) {
+  double part = 1.0;
+  for (int c = 0; c < grid->dim; c++) part *= mpsi_pore_faces_of(water, cell)->fill[c];
+  return part;
+}
+
+/* What a cell that is filled in part, and one beside it, pass to one another in dt for a difference
+ * of their changes of pressure, m3/Pa. The few particles of such a cell beside a body move with
+ * nodes that contacts hold: their pressure moves nothing, only the water's storage bounds it, and
+ * at the rim of a cone it rose to twice that around, for some hundred steps. Ground of the modulus
+ * rho c^2 as large as the cells would take LINK of that volume. What stays as it is passes nothing.
+ */
+static double link_between(const mps_mpm *mpm, const mpsi_pore_cell *cell,
+                           const mpsi_pore_cell *beside) {
+  mpsi_water *water = mpm->water;
+  if (!beside || cell->thin || beside->thin) return 0.0;
+  const double filled =
+      fmin(filled_part(&mpm->grid, water, cell), filled_part(&mpm->grid, water, beside));
+  const double share = fmin(1.0, (NEARLY_FULL - filled) / (NEARLY_FULL - IN_PART));
+  if (!(share > 0.0)) return 0.0;
+  const double modulus = water->def.density * mpm->run.speed * mpm->run.speed;
+  return share * LINK * fmin(cell->volume, beside->volume) / mpm->grid.measure / modulus;
+}
+
 /* Storage and fluxes of a cell, and the right-hand side, for implicit.c. */
 static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
   mpsi_water *water = mpm->water;
@@ -525,7 +553,8 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
   s->space[at] = V;
   s->diagonal[at] = V * cell->n / water->def.bulk;
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
-    s->conductance[at][d] = 0.0;
+    s->conductance[at][d] =
+        link_between(mpm, cell, mpsi_pore_beside(&mpm->grid, water, g, k, d)) / dt;
     if (!water->flows) continue;
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (!f.known) continue;
@@ -533,7 +562,7 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
     if (behind)
       s->diagonal[at] += dt * f.conductance;
     else
-      s->conductance[at][d] = f.conductance;
+      s->conductance[at][d] += f.conductance;
   }
   s->residual[at] = dt * flux;
 }
