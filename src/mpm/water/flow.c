@@ -528,9 +528,10 @@ static double filled_part(const mpsi_grid *grid, mpsi_water *water, const mpsi_p
  * nodes that contacts hold: their pressure moves nothing, only the water's storage bounds it, and
  * at the rim of a cone it rose to twice that around, for some hundred steps. Ground of the modulus
  * rho c^2 as large as the cells would take LINK of that volume. What stays as it is passes nothing.
+ * Of their filled parts, which other ranks know too; radius (m): of the face, 1 but in axisymmetry.
  */
 static double link_between(const mps_mpm *mpm, const mpsi_pore_cell *cell,
-                           const mpsi_pore_cell *beside) {
+                           const mpsi_pore_cell *beside, double radius) {
   mpsi_water *water = mpm->water;
   if (!beside || cell->thin || beside->thin) return 0.0;
   const double filled =
@@ -538,7 +539,8 @@ static double link_between(const mps_mpm *mpm, const mpsi_pore_cell *cell,
   const double share = fmin(1.0, (NEARLY_FULL - filled) / (NEARLY_FULL - IN_PART));
   if (!(share > 0.0)) return 0.0;
   const double modulus = water->def.density * mpm->run.speed * mpm->run.speed;
-  return share * LINK * fmin(cell->volume, beside->volume) / mpm->grid.measure / modulus;
+  const double volume = filled * pow(mpm->grid.cell, mpm->grid.dim) * radius;
+  return share * LINK * volume / modulus;
 }
 
 /* Storage and fluxes of a cell, and the right-hand side, for implicit.c. */
@@ -553,8 +555,9 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
   s->space[at] = V;
   s->diagonal[at] = V * cell->n / water->def.bulk;
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
-    s->conductance[at][d] =
-        link_between(mpm, cell, mpsi_pore_beside(&mpm->grid, water, g, k, d)) / dt;
+    s->conductance[at][d] = link_between(mpm, cell, mpsi_pore_beside(&mpm->grid, water, g, k, d),
+                                         radius_of(&mpm->grid, d, X)) /
+                            dt;
     if (!water->flows) continue;
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (!f.known) continue;
