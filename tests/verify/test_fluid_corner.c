@@ -116,3 +116,62 @@ TEST(a_gap_below_a_spacing_is_warned_of) {
   assert_int_equal(warnings, 1);
   assert_true(most < 5000.0);
 }
+
+/* Largest force on a box of 10 spacings that is driven from 3.2 + .2 `place` spacings to .3 before
+ * a wall (0), the bed (1) or another box (2), over rho g times its side and the depth. */
+static double squeeze(int towards, int place, double l0, double speed) {
+  const double side = 10.0 * l0, depth = 20.0 * l0, from = (3.2 + 0.2 * place) * l0;
+  const double beside = 0.125 * place * l0, way = from - 0.3 * l0, whole = 1.875 * way / speed;
+  double at[2][2] = {{55.0 * l0 - from, side + beside}, {30.0 * l0 + from, side + beside}};
+  if (towards == 1) at[0][0] = 30.0 * l0 + beside, at[0][1] = 0.5 * side + from;
+  if (towards == 2) at[0][0] = 20.0 * l0;
+  const int bodies = towards == 2 ? 2 : 1;
+  mps_body *made[2] = {NULL, NULL};
+  MAKE(signal, ramp, create_ramp, context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 0.0, whole,
+       towards == 1 ? -way : way);
+  for (int b = 0; b < bodies; b++)
+    USING(body, mps_body_create_box(context, &given, side, side, &made[b]), .position[0] = at[b][0],
+          .position[1] = at[b][1]);
+  scoped_body *box = made[0], *other = made[1];
+  OK(mps_body_drive(box, towards == 1 ? 1 : 0, ramp, 1.0));
+  scoped_tank t = {NULL, NULL};
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = l0);
+  for (int k = 0; k < 1200; k++) {
+    const double x[2] = {(k % 60 + 0.5) * l0, (k / 60 + 0.5) * l0};
+    double d = INFINITY;
+    for (int b = 0; b < bodies; b++)
+      d = fmin(d, fmax(fabs(x[0] - at[b][0]), fabs(x[1] - at[b][1])) - 0.5 * side);
+    if (d > 0.45 * l0) OK(mps_particles_append(t.water, 1, x));
+  }
+  USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = depth);
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, 60.0 * l0, 0.0, -1.0, 0.0, NULL);
+  scoped_contact *contact = tank_body(t.fluid, box, MPS_CONTACT_MOVER_SOLVER);
+  scoped_contact *second = other ? tank_body(t.fluid, other, MPS_CONTACT_MOVER_SOLVER) : NULL;
+  double most = 0.0;
+  while (mps_fluid_time(t.fluid) < whole) {
+    mps_reaction r;
+    const mps_status status = mps_fluid_step(t.fluid, 1);
+    if (status == MPS_ERROR_DIVERGED) break; /* a particle leaves the gap by too long a way */
+    OK(status);
+    OK(mps_contact_get_reaction(contact, -1, &r));
+    most = fmax(most, hypot(r.force[0], r.force[1]));
+  }
+  return most / (1000.0 * TANK_G * depth * side);
+}
+
+/* Particles in a closing gap part from one another along it. Some, or a row, saw no others and no
+ * surface: with no datum for their pressure the box had 1e2 to 1e11 times rho g depth side. */
+TEST(closing_gaps_have_bounded_pressures) {
+  for (int towards = 0; towards < 3; towards++)
+    for (int n = 0; n < (test_quick() ? 1 : 3); n++) {
+      const double l0 = (double[]){0.02, 0.01, 0.03}[n], unit = sqrt(TANK_G * l0);
+      double most = 0.0;
+      for (int place = n; place < 5; place += 2)
+        most = fmax(most, squeeze(towards, place, l0, (n == 1 ? 1.0 : 3.0) * unit));
+      print_message("towards %d, l0 %g m: force at most %.3g of rho g depth side\n", towards, l0,
+                    most);
+      assert_true(most < 100.0);
+    }
+}
