@@ -1,6 +1,7 @@
-/* test_fluid_corner.c - an inclined plate on the bed between two depths of still water: the last
- * two spacings of the acute corner below it may hold no particle, and bear the water's pressure all
- * the same. SPDX-License-Identifier: BSD-3-Clause */
+/* test_fluid_corner.c - narrow places at bodies. The last two spacings of the acute corner below an
+ * inclined plate may hold no particle, and bear the water's pressure all the same; gaps to a wall
+ * that close have bounded pressures; water oscillates through one as in a tube.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_tank.h"
@@ -174,4 +175,48 @@ TEST(closing_gaps_have_bounded_pressures) {
                     most);
       assert_true(most < 100.0);
     }
+}
+
+/* Two legs of .1 m, joined below a wall .2 m thick that ends .1 m above the bed, .4 m of water: the
+ * first period from zero to zero of the levels, which begin `rows` above and below rest, over 2 pi
+ * (N .1 m/(2 g))^1/2. N is the tube's length over its width; a corner of 90 degrees counts .559 in
+ * potential flow. */
+static double time_tube(double l0, int rows) {
+  const double leg = 0.1, wall = 0.2, depth = 0.4, N = 2.0 * 3.0 + 2.0 + 2.0 * 0.559;
+  const double period = 2.0 * TANK_PI * sqrt(N * leg / (2.0 * TANK_G));
+  const int columns = (int)lround(0.4 / l0), layers = (int)lround(depth / l0);
+  DEF(body, at, .position[0] = 0.2, .position[1] = 0.4);
+  MAKE(body, box, create_box, context, &at, wall, 0.6);
+  scoped_tank t = {NULL, NULL};
+  USING(particles, mps_particles_create(context, &given, &t.water), .spacing = l0);
+  for (int i = 0; i < columns; i++)
+    for (int j = 0; j < layers + (2 * i < columns ? rows : -rows); j++) {
+      const double x[2] = {(i + 0.5) * l0, (j + 0.5) * l0};
+      if (fabs(x[0] - 0.2) > 0.1 || x[1] < 0.1) OK(mps_particles_append(t.water, 1, x));
+    }
+  USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .level = depth);
+  tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(t.fluid, 0.4, 0.0, -1.0, 0.0, NULL);
+  scoped_contact *contact = tank_body(t.fluid, box, MPS_CONTACT_MOVER_OTHER);
+  double zero[3] = {0.0}, last = 1.0, before = 0.0;
+  for (int n = 0; n < 3;) {
+    const double station[4] = {0.025, 0.075, 0.325, 0.375};
+    double level[4];
+    OK(mps_fluid_step(t.fluid, 1));
+    OK(mps_fluid_get_levels(t.fluid, 4, station, level));
+    const double now = level[0] + level[1] - level[2] - level[3], time = mps_fluid_time(t.fluid);
+    assert_true(time < 2.0 * period);
+    if (last * now < 0.0) zero[n++] = before + (time - before) * last / (last - now);
+    last = now, before = time;
+  }
+  return (zero[2] - zero[0]) / period;
+}
+
+TEST(water_oscillates_under_a_wall_as_in_a_tube) {
+  for (int n = 0; n < (test_quick() ? 1 : 2); n++) {
+    const double l0 = (double[]){0.02, 0.0125}[n], ratio = time_tube(l0, n == 1 ? 2 : 1);
+    print_message("l0 %g m: period %.4f of that of a tube\n", l0, ratio);
+    NEAR(ratio, 1.0, 0.01);
+  }
 }
