@@ -440,7 +440,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_pressure(const mps_fluid *fl
 typedef enum mps_fluid_load_kind {
   MPS_FLUID_LOAD_BODY = 0,     /* `acceleration` on the particles chosen: a shaken tank, wind */
   MPS_FLUID_LOAD_PRESSURE = 1, /* `pressure` on the free surface that the chosen particles make: a
-                                 squall, the air in a chamber. Not with the classical scheme */
+                                 squall, the air in a chamber; on no dry face of a wall or body. Not
+                                with the classical scheme */
   MPS_FLUID_LOAD_DAMPING = 2   /* -`rate` u: a zone in which waves fade */
 } mps_fluid_load_kind;
 

@@ -125,8 +125,9 @@ TEST(a_body_that_rolls_onto_the_bed) {
 }
 
 /* A box of .2 x .1 m and `density` times the water's that the water moves, with its middle at x, y,
- * for some steps: what they return. */
-static mps_status let_go(mps_context *own, double x, double y, double density, int steps) {
+ * for some steps, with a pressure of the air (Pa): what they return. */
+static mps_status let_go(mps_context *own, double x, double y, double density, int steps,
+                         double air) {
   const double wide = 0.2, high = 0.1, mass = 1000.0 * density * wide * high, hi[2] = {1.2, 0.4};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
@@ -149,6 +150,9 @@ static mps_status let_go(mps_context *own, double x, double y, double density, i
   tank_wall(t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_float(t.fluid, box);
+  if (air != 0.0)
+    USING(fluid_load, mps_fluid_add_load(t.fluid, &given, NULL), .kind = MPS_FLUID_LOAD_PRESSURE,
+          .pressure = air, .all = 1);
   return mps_fluid_step(t.fluid, steps);
 }
 
@@ -164,18 +168,27 @@ TEST(a_floating_body_at_a_boundary) {
     journal j = {0};
     char text[80];
     scoped_context *own = journal_context(&j, NULL);
-    OK(let_go(own, at[k].x, at[k].y, at[k].density, 60));
+    OK(let_go(own, at[k].x, at[k].y, at[k].density, 60, 0.0));
     snprintf(text, sizeof text, "floating body 0 goes through boundary %s", at[k].boundary);
     assert_int_equal(j.count, 1);
     assert_non_null(strstr(j.last, text));
   }
   journal j = {0};
   scoped_context *own = journal_context(&j, NULL);
-  OK(let_go(own, 0.6, 0.4, 0.5, 60));
+  OK(let_go(own, 0.6, 0.4, 0.5, 60, 0.0));
   assert_int_equal(j.count, 0);
-  OK(let_go(own, 0.6, 0.3, 2.0, 400));
+  OK(let_go(own, 0.6, 0.3, 2.0, 400, 0.0));
   assert_true(j.count >= 2); /* and of the gap */
   assert_non_null(strstr(j.last, "floating body 0 goes through boundary 2"));
+}
+
+/* The air presses on the water alone: once. */
+TEST(air_beside_a_floating_body) {
+  journal j = {0};
+  scoped_context *own = journal_context(&j, NULL);
+  OK(let_go(own, 0.6, 0.4, 0.5, 5, 50.0));
+  assert_int_equal(j.count, 1);
+  assert_non_null(strstr(j.last, "not on the dry faces of floating body 0"));
 }
 
 /* Two boxes of .1 m in water, `gap` apart along their faces, turned by `angle`; the second one goes

@@ -80,8 +80,9 @@ struct mps_fluid {
   mpsi_fluid_weight weight; /* of water without rock near */
   double reach;             /* m, the largest radius of weights: in rock it may be more (rock.c) */
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
-  mpsi_fluid_wall *wall;      /* boundaries by number, from `boundaries` on the faces of bodies */
-  mpsi_fluid_body *body;      /* by number */
+  double rest; /* m: the level, where that is within the water; else the water's top at creation */
+  mpsi_fluid_wall *wall; /* boundaries by number, from `boundaries` on the faces of bodies */
+  mpsi_fluid_body *body; /* by number */
   int32_t boundaries, walls, bodies;
   mpsi_room wall_room, body_room;
   mpsi_room wedge_room, clip_room; /* see sight.c and closed.c: for so many walls */

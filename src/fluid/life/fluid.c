@@ -92,13 +92,28 @@ static void set_gravity(mps_fluid *f) {
   f->g = hypot(gravity[0], gravity[1]);
   f->up[0] = f->g > 0.0 ? -gravity[0] / f->g : 0.0;
   f->up[1] = f->g > 0.0 ? -gravity[1] / f->g : 1.0;
-  f->level = f->def.level;
-  if (!isnan(f->level)) return;
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
-  f->level = -INFINITY;
+  double low = INFINITY, top = -INFINITY;
+  for (int64_t i = 0; i < f->count; i++) {
+    const double height = f->up[0] * x[i] + f->up[1] * y[i];
+    low = fmin(low, height), top = fmax(top, height + 0.5 * f->l0);
+  }
+  f->level = isnan(f->def.level) ? top : f->def.level;
+  f->rest = f->level >= low && f->level <= top + 0.5 * f->l0 ? f->level : top;
+}
+
+/* q before the first step, as of water at rest: 0 where the level is the water's. With 0 and a
+ * level of another datum all water was under pressure, or none (in_wake), and the first steps
+ * differed. */
+static void guess_pressure(mps_fluid *f) {
+  double *q = mpsi_particles_column(f->particles, "reduced_pressure", 0);
+  double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
+  if (f->rest == f->level) return;
   for (int64_t i = 0; i < f->count; i++)
-    f->level = fmax(f->level, f->up[0] * x[i] + f->up[1] * y[i] + 0.5 * f->l0);
+    if (q[i] != 0.0 || old[i] != 0.0) return; /* of a fluid before */
+  for (int64_t i = 0; i < f->count; i++)
+    q[i] = old[i] = f->def.density * f->g * (f->rest - f->level);
 }
 
 static mps_status add_fields(mps_particles *particles) {
@@ -210,6 +225,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->most_near = 28, f->most_lower = 8 * 13;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
+  guess_pressure(f);
   mps_status status = mpsi_fluid_partition_create(f, function);
   if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);

@@ -44,6 +44,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "density", f->def.density);
   mpsi_state_agree_number(s, "radius_ratio", f->def.radius_ratio);
   mpsi_state_agree_number(s, "level", f->level);
+  if (f->rest != f->level) mpsi_state_f64(s, "rest", &f->rest, 1);
   mpsi_state_agree_number(s, "gamma", f->classical.gamma);
   mpsi_fluid_list_rocks(s, f);
   mpsi_state_f64(s, "time", &f->time, 1);

@@ -43,6 +43,11 @@
 #define FADE_FACE 1.0   /* l0, the same along a face of a body, of all images */
 #define OPPOSITE -0.9   /* product of the normals of walls with a gap in between */
 #define SQUEEZED 0.9    /* l0, width of a gap that holds no particle */
+#define LONELY 9        /* neighbours there: images of three particles */
+#define PARTED 0.05  /* l0^2, mean square of the distances along a gap: others are beyond reach */
+#define WIDE 1.5     /* l0, width of a gap with whole rows along it */
+#define CUT_OFF 0.01 /* of all particles in a narrow gap: a row there may be cut off as a whole */
+#define HOLDING 0.3  /* l0^2, likewise: particles along the gap are neighbours */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -85,7 +90,9 @@ static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
 static bool in_wake(const mps_fluid *f, int64_t i) {
   const double unit = f->def.density * f->g * f->l0;
   const double head = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]); /* f->q: of the last step */
-  return -head > DEEP * unit && f->q[i] - head > PRESSED * unit &&
+  const double depth = f->rest - (f->up[0] * f->x[0][i] + f->up[1] * f->x[1][i]);
+  const double air = f->over && f->last_dt > 0.0 ? f->over[i] : 0.0;
+  return depth > DEEP * f->l0 && f->q[i] - head - air > PRESSED * unit &&
          mpsi_fluid_within(f, i, WAKE * f->l0);
 }
 
@@ -204,13 +211,16 @@ static void take_turn(mps_fluid *f, int64_t i, mpsi_fluid_local *local) {
   for (int c = 0; c < 2; c++) local->rest[c] -= (float)turn.rest[c];
 }
 
-bool mpsi_fluid_is_squeezed(const mps_fluid *f, int64_t i) {
-  if (!(f->company[i] & MPSI_FLUID_NEAR_IMAGES) || (f->company[i] & MPSI_FLUID_NEAR_WEDGE))
-    return false;
+/* The narrowest gap between a body's face and a wall opposite, in both of which particle i has an
+ * image of its own: its width, m, and a unit vector along it. Infinite: none. */
+static double gap_around(const mps_fluid *f, int64_t i, double *along) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const double x[2] = {f->x[0][i], f->x[1][i]};
   const mpsi_fluid_wall *seen[8];
+  double least = INFINITY;
   int count = 0;
+  if (!(f->company[i] & MPSI_FLUID_NEAR_IMAGES) || (f->company[i] & MPSI_FLUID_NEAR_WEDGE))
+    return least;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t ghost = index[k] - f->count;
     if (ghost < 0 || f->parent[ghost] != i) continue;
@@ -221,13 +231,31 @@ bool mpsi_fluid_is_squeezed(const mps_fluid *f, int64_t i) {
     for (int n = 0; n < count; n++) {
       const mpsi_fluid_wall *o = seen[n];
       const double across = w->normal[0] * o->normal[0] + w->normal[1] * o->normal[1];
-      if ((w->of_body || o->of_body) && across < OPPOSITE &&
-          d + mpsi_fluid_distance(o, o->now.s, x[0], x[1]) < SQUEEZED * f->l0)
-        return true;
+      const double width = d + mpsi_fluid_distance(o, o->now.s, x[0], x[1]);
+      if (!(w->of_body || o->of_body) || !(across < OPPOSITE) || !(width < least)) continue;
+      least = width, along[0] = -w->normal[1], along[1] = w->normal[0];
     }
     if (count < 8) seen[count++] = w;
   }
-  return false;
+  return least;
+}
+
+double mpsi_fluid_squeezed(const mps_fluid *f, int64_t i) {
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
+  double along[2] = {0.0, 0.0}, square = 0.0;
+  const double width = gap_around(f, i, along);
+  if (width < SQUEEZED * f->l0 && f->near[i] <= LONELY) return 1.0;
+  if (!isfinite(width) || f->state[i] != MPSI_FLUID_INSIDE) return 0.0;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const double d =
+        (f->x[0][index[k]] - f->x[0][i]) * along[0] + (f->x[1][index[k]] - f->x[1][i]) * along[1];
+    square += w[k] * d * d;
+  }
+  const double spread = square / (f->local[i].n * f->l0 * f->l0);
+  const double parted = (HOLDING - spread) / (HOLDING - PARTED);
+  const double narrow = (WIDE - width / f->l0) / (WIDE - SQUEEZED);
+  return fmin(fmax(fmax(parted, CUT_OFF * fmin(narrow, 1.0)), 0.0), 1.0);
 }
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {

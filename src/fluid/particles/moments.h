@@ -35,5 +35,6 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
 double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
-/* Whether a particle is between a body's face and a wall that are less than a spacing apart. */
-bool mpsi_fluid_is_squeezed(const mps_fluid *fluid, int64_t i);
+/* 1 where particle i, between a body's face and a wall opposite, has no neighbours along the gap
+ * but those beside it, 0 where it has, and in between. */
+double mpsi_fluid_squeezed(const mps_fluid *fluid, int64_t i);

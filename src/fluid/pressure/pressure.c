@@ -30,8 +30,7 @@
 #define LOOSE 0.03          /* of n/n0: missing around bodies in any flow */
 #define CLOSING 4.0         /* |G|: rate at which more than that closes where water rushes past */
 #define MOST_CLOSED 0.5     /* of it, in a step */
-#define HELD 5.0            /* n: of a particle in a gap, to its last pressure, .. */
-#define FEW 9               /* .. with at most so many neighbours, images of three */
+#define HELD 5.0            /* n: of a particle in a gap without others, to its last pressure */
 #define IN_ROCK 0.1         /* of k, in rock and beside it */
 #define CORNER 1.5          /* l0 */
 #define PAST_CORNER 6.0     /* l0: where water that passes a corner expands */
@@ -157,12 +156,12 @@ static void find_datum(mps_fluid *f) {
   if (sum_of(f, sum_squares, &none) > weight * mean * mean / (FAR * FAR)) f->system.datum = 0.0;
 }
 
-/* Weight with which a particle in a gap of less than a spacing is held to its pressure of the step
- * before, where few others are near. One, two or three there see one another alone, with no
+/* Weight with which a particle in a narrow gap is held to its pressure of the step before. Some
+ * that part from the others there, or a row that is cut off, see one another alone, with no
  * surface: their pressure had no datum, and the water pressed on a box .5 l0 above the bed with
- * 2e11 N. */
+ * 2e11 N, on one 1.1 l0 before a wall with 3e11 N. */
 static double hold_of(const mps_fluid *f, int64_t i) {
-  return f->faces && f->near[i] <= FEW && mpsi_fluid_is_squeezed(f, i) ? HELD * f->local[i].n : 0.0;
+  return f->faces ? HELD * f->local[i].n * mpsi_fluid_squeezed(f, i) : 0.0;
 }
 
 /* The diagonal, and a start vector by extrapolation of q over the last step. */

@@ -226,6 +226,16 @@ static int64_t wet_point(const mps_fluid *f, const mpsi_fluid_wall *w, const fit
   return -1;
 }
 
+/* Pressure of the water, p at a point, over the length of wall that it stands for: with air's on
+ * the surface a part of the length is dry, where that is near, and has none of it. With all or
+ * nothing the force of 100 Pa had steps of 2 N at the waterline of a box, as p passed the air's,
+ * and no acceleration of it was in balance. */
+static double from_water(const mps_fluid *f, double p, double air) {
+  const double unit = f->def.density * f->g * f->l0;
+  if (!isfinite(air) || air == 0.0 || !(unit > 0.0)) return p > air ? p : 0.0;
+  return fmax(p - air, 0.0) + air * fmin(fmax(0.5 + (p - air) / unit, 0.0), 1.0);
+}
+
 /* Calls `point` for each wetted point of a wall with its position and pressure. */
 typedef void (*point_fn)(void *user, const double *x, double p);
 
@@ -260,7 +270,8 @@ static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char 
     const int64_t of = wet_point(f, w, sum, low, high - low, k - low, x);
     if (of < 0 || !among_walls(f, w, x)) continue;
     const double p = fit_value(f, &sum[of]) - mpsi_fluid_head(f, x[0], x[1]);
-    if (p > driest(&sum[of])) point(user, x, p);
+    const double air = driest(&sum[of]), bears = from_water(f, p, air);
+    if (p > air || bears != 0.0) point(user, x, bears);
   }
   return MPS_OK;
 }

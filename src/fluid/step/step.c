@@ -166,6 +166,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   mpsi_fluid_warn_of_angles(f);
   mpsi_fluid_warn_of_ground(f);
   mpsi_fluid_warn_of_bodies(f);
+  mpsi_fluid_warn_of_air(f);
   mpsi_fluid_drop_leaving(f);
   mpsi_fluid_remove_outflow(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;

@@ -238,3 +238,19 @@ mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
   }
   return MPS_OK;
 }
+
+/* The air's pressure on a body's dry faces is not known: a load has the surface's particles alone.
+ * Without it the water lifts the body by that pressure. */
+void mpsi_fluid_warn_of_air(mps_fluid *f) {
+  for (int b = 0; f->over && b < f->bodies; b++) {
+    const double *load = f->body[b].floats ? f->body[b].body->load.force : NULL;
+    if (!load || load[0] != 0.0 || load[1] != 0.0 || !first_time(f, MPSI_FLUID_WARNED_AIR))
+      continue;
+    mpsi_log(
+        f->context, MPS_CONTEXT_LOG_WARNING,
+        "step %lld of the fluid: a load presses on the water's surface, not on the dry faces of "
+        "floating body %d, which the water lifts by that pressure: give the force on these "
+        "faces with mps_body_set_load",
+        (long long)f->steps, b);
+  }
+}
