@@ -19,7 +19,7 @@
 
 #include <string.h>
 
-#define LINK 0.02       /* see link_between; filled parts of cells that pass */
+#define LINK 0.01       /* see link_between; filled parts of cells that pass */
 #define NEARLY_FULL 0.9 /* nothing to those beside them, */
 #define IN_PART 0.6     /* and all of it */
 
