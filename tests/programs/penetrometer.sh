@@ -47,16 +47,16 @@ force=$(sed -n 's/^ *"force_total": \([^,]*\),*$/\1/p' "$work/q/summary.json")
 in_range "$work/w/summary.json" force_total \
   "$(awk "BEGIN { printf \"%.17g\", $force * (1 - 4e-3) }")" "$(awk "BEGIN { printf \"%.17g\", $force * (1 + 4e-3) }")"
 
-# A blunt cone on D/8: faces end before their edges, and q is within 2 % of that on D/16, 8.61 c
+# A blunt cone on D/8: faces end before their edges, and q is within 2 % of that on D/16, 8.52 c
 # (verification); with sharp edges 10.8.
 blunt="--soil 0.6x0.6x0.5 --depth 0.2 --apex-angle 120"
 "$1/mps-penetrometer" $blunt --threads 1 --out "$work/blunt" >/dev/null
-in_range "$work/blunt/summary.json" n_factor 8.44 8.78
+in_range "$work/blunt/summary.json" n_factor 8.35 8.69
 in_range "$work/blunt/summary.json" particles_inside 0 0
-# What transfers take is kept for D/(40 rate): without that the same cone bears 9.07 c.
+# What transfers take is kept for D/(40 rate): without that the same cone bears 8.66 c.
 in_range "$work/blunt/summary.json" flip_time 0.00999999 0.01000001
 "$1/mps-penetrometer" $blunt --threads 1 --flip-time 0 --out "$work/blunt0" >/dev/null
-in_range "$work/blunt0/summary.json" n_factor 8.9 9.25
+in_range "$work/blunt0/summary.json" n_factor 8.5 8.85
 in_range "$work/q/summary.json" flip_time 0 0
 "$1/mps-penetrometer" $blunt --threads 3 --out "$work/blunt3" >/dev/null
 cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give another force.csv"

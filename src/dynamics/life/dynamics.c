@@ -257,7 +257,7 @@ static void describe(mps_dynamics *dynamics, mps_context *context, mps_particles
 static void warn_of_gap(const mps_dynamics *dynamics, double width) {
   const double re = dynamics->def.radius_ratio * dynamics->spacing;
   const double gap = dynamics->def.period_x - width; /* NaN without a period */
-  if (gap >= re * (1.0 - 1e-12))
+  if (!isnan(gap) && gap >= re * (1.0 - 1e-12))
     mpsi_log(dynamics->context, MPS_CONTEXT_LOG_WARNING,
              "period_x is %g m, and the body %g m wide between outer particle centres: its ends "
              "have no neighbours in the next period, %g m away where re is %g m; ground without "

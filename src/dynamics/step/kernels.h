@@ -6,6 +6,8 @@
 
 #include <mps/dynamics.h>
 
+#include <float.h>
+
 /* The arrays of a body, one value a particle, in sorted order. Names follow the paper. */
 typedef struct mpsi_dynamics_state {
   double *rx, *ry;       /* reference position, m */
@@ -27,10 +29,12 @@ typedef struct mpsi_dynamics_state {
 /* Twice the shear modulus of a pair. Half of its length lies in either material, and both halves
  * bear the same stress, so it is the harmonic mean: with the arithmetic one of (A6) a soft layer on
  * stiff ground lacks half a spacing of its thickness. Where both are the same it is their sum, to
- * the last bit. */
+ * the last bit. DBL_MIN: lanes without a pair have 0, and would divide by it, which a host may
+ * trap.
+ */
 static inline double mpsi_dynamics_pair_shear(double a, double b) {
   const double least = a < b ? a : b, most = a < b ? b : a;
-  return 4.0 * least * (most / (least + most));
+  return 4.0 * least * (most / (least + most + DBL_MIN));
 }
 
 /* Which stiffness-proportional damping a body needs. One ratio for all: by particles is the same as
