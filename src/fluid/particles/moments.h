@@ -4,8 +4,6 @@
 
 #include <mps/fluid.h>
 
-#include <stdbool.h>
-
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
 typedef struct mpsi_fluid_weight {
   double re, inverse; /* m, 1/m */
