@@ -158,7 +158,8 @@ static inline int64_t mps_fluid_steps(const mps_fluid *fluid) {
 static inline double mps_fluid_dt(const mps_fluid *fluid) {
   return mps_solver_dt(mps_fluid_solver(fluid));
 }
-/** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|). */
+/** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|); without
+ *  gravity g is the acceleration of BODY loads and `external_force`. */
 static inline double mps_fluid_limit(const mps_fluid *fluid) {
   return mps_solver_limit(mps_fluid_solver(fluid));
 }

@@ -91,3 +91,34 @@ TEST(a_step_far_above_the_limit_is_refused) {
   OK(mps_fluid_set_dt(t.fluid, NAN));
   OK(run(&t, 5));
 }
+
+/* Without gravity the step follows the acceleration of loads and of the caller's forces: of water
+ * at rest under it, which nothing else limits, and of a drop where it turns. */
+TEST(without_gravity_loads_limit_the_step) {
+  const double l0[] = {0.03, 0.02, 0.015}, g = 9.81;
+  for (int k = 0; k < 6; k++) {
+    const double d = l0[k / 2], step = 0.1 * sqrt(d / g);
+    scoped_tank t = {NULL, NULL};
+    USING(particles, mps_particles_create(context, &given, &t.water), .spacing = d);
+    tank_fill(t.water, 0.6, 0.3, NULL, NULL);
+    USING(fluid, mps_fluid_create(context, t.water, &given, &t.fluid), .gravity[1] = 0.0);
+    tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+    const int32_t left = tank_wall(t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+    tank_wall(t.fluid, 0.6, 0.0, -1.0, 0.0, NULL);
+    FAILS(mps_fluid_step(t.fluid, 1), MPS_ERROR_STATE, "nothing limits the step");
+    if (k % 2 == 0)
+      USING(fluid_load, mps_fluid_add_load(t.fluid, &given, NULL), .acceleration[1] = -g, .all = 1);
+    else {
+      OK(mps_particles_add_field(t.water, "external_force", 0));
+      EDIT(edit, t.water, "external_force")
+        for (int64_t i = 0; i < mps_particles_count(t.water); i++)
+          *mps_edit_f64(&edit, i, 1) = -g * 1000.0 * d * d;
+    }
+    NEAR(mps_fluid_limit(t.fluid), step, 1e-12);
+    OK(mps_fluid_run(t.fluid, 0.2, 1000, NULL, NULL));
+    mps_reaction r;
+    OK(mps_fluid_get_reaction(t.fluid, left, &r));
+    NEAR(r.force[0], 500.0 * g * 0.09, 0.01 * 500.0 * g * 0.09);
+    NEAR(mps_fluid_dt(t.fluid), step, 1e-12);
+  }
+}

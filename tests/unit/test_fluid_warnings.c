@@ -125,9 +125,9 @@ TEST(a_body_that_rolls_onto_the_bed) {
 }
 
 /* A box of .2 x .1 m and `density` times the water's that the water moves, with its middle at x, y,
- * for some steps, with a pressure of the air (Pa): what they return. */
+ * for some steps, with a load (may be NULL): what they return. */
 static mps_status let_go(mps_context *own, double x, double y, double density, int steps,
-                         double air) {
+                         const mps_fluid_load_def *load) {
   const double wide = 0.2, high = 0.1, mass = 1000.0 * density * wide * high, hi[2] = {1.2, 0.4};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
@@ -150,9 +150,7 @@ static mps_status let_go(mps_context *own, double x, double y, double density, i
   tank_wall(t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
   tank_wall(t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_float(t.fluid, box);
-  if (air != 0.0)
-    USING(fluid_load, mps_fluid_add_load(t.fluid, &given, NULL), .kind = MPS_FLUID_LOAD_PRESSURE,
-          .pressure = air, .all = 1);
+  if (load) OK(mps_fluid_add_load(t.fluid, load, NULL));
   return mps_fluid_step(t.fluid, steps);
 }
 
@@ -168,25 +166,31 @@ TEST(a_floating_body_at_a_boundary) {
     journal j = {0};
     char text[80];
     scoped_context *own = journal_context(&j, NULL);
-    OK(let_go(own, at[k].x, at[k].y, at[k].density, 60, 0.0));
+    OK(let_go(own, at[k].x, at[k].y, at[k].density, 60, NULL));
     snprintf(text, sizeof text, "floating body 0 goes through boundary %s", at[k].boundary);
     assert_int_equal(j.count, 1);
     assert_non_null(strstr(j.last, text));
   }
   journal j = {0};
   scoped_context *own = journal_context(&j, NULL);
-  OK(let_go(own, 0.6, 0.4, 0.5, 60, 0.0));
+  OK(let_go(own, 0.6, 0.4, 0.5, 60, NULL));
   assert_int_equal(j.count, 0);
-  OK(let_go(own, 0.6, 0.3, 2.0, 400, 0.0));
+  OK(let_go(own, 0.6, 0.3, 2.0, 400, NULL));
   assert_true(j.count >= 2); /* and of the gap */
   assert_non_null(strstr(j.last, "floating body 0 goes through boundary 2"));
 }
 
-/* The air presses on the water alone: once. */
+/* The air presses on the water alone: once. Loads that do not press are no air. */
 TEST(air_beside_a_floating_body) {
   journal j = {0};
   scoped_context *own = journal_context(&j, NULL);
-  OK(let_go(own, 0.6, 0.4, 0.5, 5, 50.0));
+  DEF(fluid_load, damping, .kind = MPS_FLUID_LOAD_DAMPING, .rate = 1.0, .all = 1);
+  DEF(fluid_load, shake, .kind = MPS_FLUID_LOAD_BODY, .acceleration[0] = 0.1, .all = 1);
+  DEF(fluid_load, air, .kind = MPS_FLUID_LOAD_PRESSURE, .pressure = 50.0, .all = 1);
+  OK(let_go(own, 0.6, 0.4, 0.5, 5, &damping));
+  OK(let_go(own, 0.6, 0.4, 0.5, 5, &shake));
+  assert_int_equal(j.count, 0);
+  OK(let_go(own, 0.6, 0.4, 0.5, 5, &air));
   assert_int_equal(j.count, 1);
   assert_non_null(strstr(j.last, "not on the dry faces of floating body 0"));
 }

@@ -121,11 +121,18 @@ static void add_forces(mps_fluid *f) {
   }
 }
 
-static mps_status evaluate_signals(mps_fluid *f, const char *function, double t, bool *any) {
+/* Which loads there are. */
+typedef struct kinds {
+  bool any, pressure;
+} kinds;
+
+static mps_status evaluate_signals(const mps_fluid *f, const char *function, double t,
+                                   kinds *found) {
   for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++) {
     mpsi_fluid_given *g = mpsi_fluid_load_of(f, k);
     if (!g) continue;
-    *any = true;
+    found->any = true;
+    if (g->def->kind == MPS_FLUID_LOAD_PRESSURE) found->pressure = true;
     for (int c = 0; c < 2; c++) {
       const bool driven = c == 0 || g->def->kind == MPS_FLUID_LOAD_BODY;
       const mps_signal *signal = driven ? g->def->signal[c] : NULL;
@@ -139,19 +146,38 @@ static mps_status evaluate_signals(mps_fluid *f, const char *function, double t,
 }
 
 mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
-  bool any = mpsi_particles_column(f->particles, "external_force", 0) != NULL;
+  kinds found = {.any = mpsi_particles_column(f->particles, "external_force", 0) != NULL};
   f->push[0] = f->push[1] = f->over = NULL;
-  const mps_status status = evaluate_signals(f, function, t, &any);
-  if (status != MPS_OK || !any) return status;
+  const mps_status status = evaluate_signals(f, function, t, &found);
+  if (status != MPS_OK || !found.any) return status;
   if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);
   double *const scratch = f->push_room.item;
   for (int64_t k = 0; k < 3 * f->count; k++) scratch[k] = 0.0;
-  f->push[0] = scratch, f->push[1] = scratch + f->count, f->over = scratch + 2 * f->count;
+  f->push[0] = scratch, f->push[1] = scratch + f->count;
+  f->over = found.pressure ? scratch + 2 * f->count : NULL;
   add_forces(f);
   for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++)
     if (mpsi_fluid_load_of(f, k)) add_load(f, mpsi_fluid_load_of(f, k));
   return MPS_OK;
+}
+
+double mpsi_fluid_pushed(const mps_fluid *f) {
+  const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
+  const double *force[2];
+  kinds found = {false, false};
+  double sum = 0.0, most2 = 0.0;
+  /* a signal that fails here fails in the step */
+  const bool known = evaluate_signals(f, __func__, f->time, &found) == MPS_OK;
+  for (int32_t k = 0; known && k < mpsi_fluid_load_count(f); k++) {
+    const mpsi_fluid_given *g = mpsi_fluid_load_of(f, k);
+    if (g && g->def->kind == MPS_FLUID_LOAD_BODY)
+      sum += hypot(g->amount[0] * g->now[0], g->amount[1] * g->now[1]);
+  }
+  for (int c = 0; c < 2; c++) force[c] = mpsi_particles_column(f->particles, "external_force", c);
+  for (int64_t i = 0; force[0] && i < f->count; i++)
+    most2 = fmax(most2, force[0][i] * force[0][i] + force[1][i] * force[1][i]);
+  return sum + sqrt(most2) / mass;
 }
 
 double mpsi_fluid_work_of_loads(const mps_fluid *f) {
@@ -162,7 +188,7 @@ double mpsi_fluid_work_of_loads(const mps_fluid *f) {
     const double *before = mpsi_particles_column(f->particles, "velocity", c);
     for (int64_t i = 0; i < f->count; i++) {
       const double m = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->local[i].m[c];
-      const double force = mass * f->push[c][i] + f->over[i] * area * m;
+      const double force = mass * f->push[c][i] + (f->over ? f->over[i] * area * m : 0.0);
       sum += 0.5 * f->dt * force * (before[i] + f->u[c][i]);
     }
   }

@@ -20,6 +20,7 @@
 
 #define SORT_EVERY 32   /* steps */
 #define EVEN_STEPS 32   /* at the end of a run */
+#define AT_REST 0.1     /* (l0/g)^1/2 */
 #define LEAST_STEP 1e-4 /* of the step at rest */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
@@ -187,7 +188,7 @@ static mps_status take_step(mps_fluid *f, const char *function, double dt) {
 
 /* The step that gravity and viscosity allow a fluid at rest, s. */
 static double limit_at_rest(const mps_fluid *f) {
-  double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
+  double limit = f->g > 0.0 ? AT_REST * sqrt(f->l0 / f->g) : INFINITY;
   if (f->def.viscosity > 0.0)
     limit = fmin(limit, 0.2 * f->l0 * f->l0 * f->def.density / f->def.viscosity);
   return limit;
@@ -196,6 +197,9 @@ static double limit_at_rest(const mps_fluid *f) {
 double mpsi_fluid_limit(const void *solver) {
   const mps_fluid *f = solver;
   double limit = limit_at_rest(f);
+  /* what stands for gravity: at rest, and where a drop turns, no velocity limits the step */
+  const double push = f->g > 0.0 ? 0.0 : mpsi_fluid_pushed(f);
+  if (push > 0.0) limit = fmin(limit, AT_REST * sqrt(f->l0 / push));
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 * mpsi_fluid_least_porosity(f) / f->speed);
   for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
@@ -226,7 +230,7 @@ static mps_status check_dt(mps_fluid *f, const char *function, double span) {
         (long long)f->steps, f->time, f->speed, dt, least);
   if (isfinite(dt)) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                   "nothing limits the step: without gravity and motion, give dt");
+                   "nothing limits the step: without gravity, motion and loads, give dt");
 }
 
 /* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
