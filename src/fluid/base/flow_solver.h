@@ -136,6 +136,7 @@ struct mps_fluid {
   void *slab;                           /* of all arrays of fixed size */
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
+  double stir;            /* m/s, largest |u| in the frame of the walls, else of the water's mean */
   double travel;          /* m: of particles, and of walls, since the images were made, at most */
   double last_dt;         /* s, of the last step; 0 before the first */
   int64_t steps;
@@ -211,7 +212,7 @@ static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
 /* The rate (g/l0)^1/2, 1/s, of smoothing, shifting and the density's source; without gravity that
  * of the largest velocity. */
 static inline double mpsi_fluid_rate(const mps_fluid *f) {
-  return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
+  return f->g > 0.0 ? sqrt(f->g / f->l0) : f->stir / f->l0;
 }
 
 /* Coordinate along a wall, m. */

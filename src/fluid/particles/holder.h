@@ -13,6 +13,8 @@
 bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
 /* Finds the largest speed (m/s), which limits the next step. */
 void mpsi_fluid_find_speed(mps_fluid *fluid);
+/* Finds the speed that rates of a fluid without gravity follow in this step. */
+void mpsi_fluid_find_stir(mps_fluid *fluid);
 /* Removes the particles beyond an open side, at the end of a step. */
 void mpsi_fluid_remove_outflow(mps_fluid *fluid);
 

@@ -122,6 +122,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mpsi_fluid_begin_walls(f, dt);
   mpsi_fluid_begin_bound(f);
   mpsi_fluid_load_cloud(f);
+  if (!(f->g > 0.0)) mpsi_fluid_find_stir(f);
   status = add_loads(f, function);
   if (status == MPS_OK) status = mpsi_fluid_find_pores(f, function, dt);
   if (status == MPS_OK) status = mpsi_fluid_begin_exchange(f, function);
