@@ -21,6 +21,7 @@ TEST(blocks_that_strike_keep_the_energy_of_theory) {
   blocks_check(context, 10, 0.3, 0.04);
   for (int k = 0; k < 3; k++) blocks_check(context, 15, 0.5 * k, 0.03);
   blocks_check(context, 20, 0.3, 0.03);
+  blocks_check(context, 40, 0.0, 0.03); /* whose first step is too long */
 }
 
 /* The loss falls faster than the spacing, and short steps do not add to it without end. */

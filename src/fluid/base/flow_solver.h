@@ -145,6 +145,7 @@ struct mps_fluid {
   mpsi_fluid_outside outside;
   mpsi_fluid_change change; /* of the set, that is under way; energy_before is that of before */
   bool stale;               /* the cloud is not that of the fields */
+  bool shortens, too_long;  /* the step is tried again where a particle goes too far; it did */
   bool edited;              /* the caller has written fields, which ranks have not compared */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   uint32_t warned; /* logged already: mpsi_fluid_warning, bits */

@@ -21,6 +21,7 @@
 #define SORT_EVERY 32   /* steps */
 #define EVEN_STEPS 32   /* at the end of a run */
 #define AT_REST 0.1     /* (l0/g)^1/2 */
+#define HALVINGS 3      /* of a step in which a particle goes too far */
 #define LEAST_STEP 1e-4 /* of the step at rest */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
@@ -148,6 +149,8 @@ static mps_status finish(mps_fluid *f, const char *function) {
   const int64_t bad = mpsi_fluid_advance(f, &way);
   mpsi_fluid_end_exchange(f);
   MPSI_TRY(mpsi_fluid_lost(f, function));
+  f->too_long = bad >= 0 && f->shortens && isfinite(way);
+  if (f->too_long) return MPS_ERROR_DIVERGED; /* without a message: take_own_step tries again */
   if (bad >= 0) return went_wrong(f, function, bad, way);
   f->stage = MPSI_FLUID_MOVED;
   MPSI_TRY(mpsi_fluid_load_walls(f, function));
@@ -234,6 +237,20 @@ static mps_status check_dt(mps_fluid *f, const char *function, double span) {
                    "nothing limits the step: without gravity, motion and loads, give dt");
 }
 
+/* A step that the library chooses, halved where a particle goes too far in it: where water strikes
+ * water or a wall, velocities grow by more within a step than the limit, that of the velocities
+ * before it, allows for. *dt (s): tried first, then made. */
+static mps_status take_own_step(mps_fluid *f, const char *function, double *dt) {
+  for (int halved = 0;; halved++) {
+    f->shortens = isnan(f->def.dt) && halved < HALVINGS;
+    f->too_long = false;
+    const mps_status status = take_step(f, function, *dt);
+    f->shortens = false;
+    if (!f->too_long) return status;
+    *dt *= 0.5;
+  }
+}
+
 /* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
  * change of the step shows in the pressure. */
 static double even_step(double rest, double full) {
@@ -253,9 +270,10 @@ mps_status mpsi_fluid_advance_march(void *solver, const char *function, mpsi_mar
   const bool run = mpsi_march_is_run(m);
   MPSI_TRY(check_dt(f, function, run ? m->t_end - m->start : INFINITY));
   const double rest = m->t_end - f->time, full = dt_of(f);
-  if (!run) return take_step(f, function, full);
-  m->last = rest <= full * (1.0 + 1e-9);
-  mps_status status = take_step(f, function, m->last ? rest : even_step(rest, full));
+  const bool last = run && rest <= full * (1.0 + 1e-9);
+  double dt = !run ? full : last ? rest : even_step(rest, full);
+  const mps_status status = take_own_step(f, function, &dt);
+  m->last = last && dt == rest;
   if (status == MPS_OK && m->last) f->time = m->t_end;
   return status;
 }
