@@ -319,7 +319,7 @@ static void warn_of_angle(app *a, const settings *s) {
   app_warn(
       a,
       "sand of %g degrees that its weight alone keeps: above %g degrees its capacity comes out "
-      "up to a fourth too low, by cell and particles, and finer ones do not help",
+      "up to a tenth too low, by the place of its edge on the grid",
       degrees, STEEP);
 }
 

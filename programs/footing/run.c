@@ -38,6 +38,7 @@
 #define WEIGHT_FLIP 0.085
 #define ROUGH_FLIP 0.0245
 #define STEEPEST 50.0 /* degrees: the largest --phi */
+#define DEGREE (3.14159265358979323846 / 180.0)
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -159,19 +160,26 @@ static const char *check_ground(const settings *s, const option *table) {
   return NULL;
 }
 
+/* A smooth base that weight alone bears: 1 cell up to 35 degrees, from 40 on .95
+ * (docs/verification/wls-mpm/footing.md has the capacities). */
+static double inset_on_weight(const settings *s) {
+  const double degrees = footing_find_strength(s).phi / DEGREE;
+  return 1.0 - 0.01 * fmin(fmax(0.0, degrees - 35.0), 5.0);
+}
+
 /* An inset that makes a face on this ground as wide as its edges say: more where weight alone bears
  * it, less where a rough base holds such sand. An eccentric load presses ground at rest. */
 static double usual_inset(const settings *s) {
   if (s->eccentricity > 0.0) return 0.0;
   if (s->model != DRUCKER_PRAGER) return s->volumetric == MPS_MPM_VOLUMETRIC_POINT ? 0.9 : 0.6;
   if (s->surcharge > 0.0) return 0.65;
-  return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.4 : 0.95;
+  return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.45 : inset_on_weight(s);
 }
 
 /* Cones that pass outside the pyramid in plane strain have no limit from some angle on. */
 static const char *check_cone(const settings *s) {
   static char why[200];
-  const double degree = 3.14159265358979323846 / 180.0, phi = footing_find_strength(s).phi / degree;
+  const double phi = footing_find_strength(s).phi / DEGREE;
   if (s->model != DRUCKER_PRAGER || !(phi > STEEPEST + 1e-9)) return NULL;
   (void)snprintf(
       why, sizeof why,

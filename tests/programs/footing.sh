@@ -28,6 +28,8 @@ bears sand q_over_c 36.07 37.55 --law druckerprager --soil 3x1.5
 bears weight q_over_weight 7.27 8.4 --law druckerprager --cohesion 0 --soil 2x0.8 --rate 0.2mm/s
 in_range "$work/weight/summary.json" q_exact 37550 37640
 bears weak q_over_weight 1.506 1.664 --law druckerprager --cohesion 0 --phi 20
+# Steep sand (45 degrees, 116.6), where the open ground beside the edge takes nothing off the ground under it.
+bears steep q_over_weight 104.9 122.4 --law druckerprager --cohesion 0 --phi 45 --young 31GPa --settlement 0.213mm --cell 0.125
 # A rough base (14.75) bears the same wherever its edge lies: just beyond a line of nodes.
 bears rough q_over_weight 14.01 15.49 --law druckerprager --cohesion 0 --friction 1 --half-width 0.306
 # at two thirds of the speed too, with a shorter flip_time

@@ -19,6 +19,10 @@
  * At a wall or a surface all particles of a node lie on one side of it. So e goes to the nodes and
  * back along the slope that it has in ground at rest (closed_stress), and stays as it is there.
  *
+ * Where sand flows so slowly that its grains are at rest with one another, gaps are no roughness:
+ * ground that heaves beside a footing is open, and opens on, and would take the load off the ground
+ * under the edge. So K gap counts up to rho (h dg/dt/I)^2, I an inertial number.
+ *
  * p' is e' where that is closed, else what is left of p, the gap the rest; the deviatoric stress
  * stays; then the law's own return, without strain. V follows the elastic volume strain of p' - p.
  *
@@ -37,6 +41,8 @@
 #include <string.h>
 
 #define BETA 0.06
+#define QUASI_STATIC                                                                               \
+  0.005 /* I: heaps get rough pressures from .01 on, footings bear less below .002 */
 enum { EVERY = 8, EVERY_OF_FLUID = 4 }; /* steps */
 
 /* Sand and fluids are filtered each by themselves: a mean over both would be of neither. */
@@ -80,22 +86,28 @@ static double bulk_of(const mpsi_columns *p, int64_t k) {
   return mpsi_law_of(p, k)->bulk * mpsi_mpm_stiffness(p, k);
 }
 
+/* dg: plastic strain of this step. */
+static double flow_of(const mpsi_columns *p, int64_t k) {
+  return fmax(0.0, mpsi_law_of(p, k)->history[mpsi_law_of(p, k)->strain][k] - p->rough[k]);
+}
+
 /* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
  * without lateral strain; none where it is open. */
 MPSI_INLINE double closed_stress(const mpsi_grid *grid, const mpsi_columns *p,
-                                 const mps_mpm_def *def, filtered_kind kind, int64_t k,
+                                 const mps_mpm_def *def, double dt, filtered_kind kind, int64_t k,
                                  double *slope) {
   const mpsi_law_use *law = mpsi_law_of(p, k);
   const double gap = kind == FLUID ? 0.0 : *gap_of(law, k), density = p->m[k] / p->V[k];
   const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * grid->cell;
   for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
-  return mean_stress(p, k) + bulk_of(p, k) * gap;
+  if (!(gap > 0.0)) return mean_stress(p, k);
+  const double speed = grid->cell * flow_of(p, k) / (dt * QUASI_STATIC);
+  return mean_stress(p, k) + fmin(bulk_of(p, k) * gap, density * speed * speed);
 }
 
 /* K dg, Pa: the mean stress that the plastic strain of this step can have made. */
 static double made_stress(const mpsi_columns *p, int64_t k) {
-  const mpsi_law_use *law = mpsi_law_of(p, k);
-  return bulk_of(p, k) * fmax(0.0, law->history[law->strain][k] - p->rough[k]);
+  return bulk_of(p, k) * flow_of(p, k);
 }
 
 /* r: of the difference `off` from the nodes' mean; `made`, the nodes' mean of K dg. */
@@ -233,9 +245,10 @@ MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (!is_filtered(&mpm->p, k, kind)) continue;
     find_support(mpm, cells, &all, dim, spline, thin, k, &s);
-    const double closed = which == SUM_STRESS || which == FIND_ROUGH
-                              ? closed_stress(&mpm->grid, &mpm->p, &mpm->def, kind, k, slope)
-                              : 0.0;
+    const double closed =
+        which == SUM_STRESS || which == FIND_ROUGH
+            ? closed_stress(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, kind, k, slope)
+            : 0.0;
     if (which == SUM_STRESS)
       give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope,
            kind == FLUID ? 0.0 : made_stress(&mpm->p, k));
