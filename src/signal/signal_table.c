@@ -9,6 +9,8 @@
 
 #include <lapacke.h>
 
+#define BEYOND 0.05 /* of the range of samples, by which a spline goes past it unasked */
+
 /* ---- evaluation ------------------------------------------------------------------------------ */
 
 /* The knot that begins the piece with t in it; start <= t < end. Equal steps are found at once,
@@ -163,6 +165,37 @@ static mps_status check_finite(mps_context *context, const char *function, const
   return MPS_OK;
 }
 
+/* Displacement where the velocity v + a s + j s^2/2 of a piece of h seconds is 0 (m), at the sign
+ * of the root; the piece's own u where it is not 0 within. */
+static double turn(const mpsi_knot *k, double h, double sign) {
+  const double size = fmax(fabs(k->v), h * fmax(fabs(k->a), h * fabs(k->j)));
+  if (!(size > 0.0)) return k->u;
+  const double v = k->v / size, a = h * k->a / size, j = h * h * k->j / size;
+  const double square = a * a - 2.0 * v * j, below = a + sign * sqrt(fmax(square, 0.0));
+  if (square < 0.0 || below == 0.0) return k->u;
+  const double x = -2.0 * v / below, s = h * x; /* of h */
+  return x > 0.0 && x < 1.0 ? k->u + s * (k->v + s * (0.5 * k->a + s * k->j / 6.0)) : k->u;
+}
+
+/* A ramp and a long rest by few samples: the spline comes into the rest with a velocity. */
+static void warn_about_range(mps_context *context, const char *function, const mpsi_knot *knots,
+                             int64_t count) {
+  double low = knots[0].u, high = low, beyond = 0.0, farthest = low, at = knots[0].t;
+  for (int64_t i = 1; i < count; i++) low = fmin(low, knots[i].u), high = fmax(high, knots[i].u);
+  for (int64_t i = 0; i + 1 < count; i++)
+    for (int side = 0; side < 2; side++) {
+      const double u = turn(&knots[i], knots[i + 1].t - knots[i].t, side ? 1.0 : -1.0);
+      const double out = fmax(u - high, low - u);
+      if (out > beyond) beyond = out, farthest = u, at = knots[i].t;
+    }
+  if (!(beyond > BEYOND * (high - low)) || !(beyond > 1e-9 * fmax(-low, high))) return;
+  mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
+           "%s: the displacements are samples from %.6g to %.6g m, and the natural cubic spline "
+           "through them goes to %.6g m between t = %.6g s and the next sample: give more samples, "
+           "or velocities, which are linear between samples, as for ramps and rests",
+           function, low, high, farthest, at);
+}
+
 /* Fills the knots, whose times are set. */
 static mps_status fill_knots(mps_context *context, const char *function, int32_t quantity,
                              mpsi_knot *knots, int64_t count, const double *values) {
@@ -175,7 +208,11 @@ static mps_status fill_knots(mps_context *context, const char *function, int32_t
     status = fit_displacements(context, function, knots, count, values);
   else
     interpolate_values(knots, count, values, quantity == MPS_SIGNAL_QUANTITY_VALUE_STEPS);
-  return status == MPS_OK ? check_finite(context, function, knots, count) : status;
+  MPSI_TRY(status);
+  MPSI_TRY(check_finite(context, function, knots, count));
+  if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT)
+    warn_about_range(context, function, knots, count);
+  return MPS_OK;
 }
 
 mps_status mpsi_signal_from_table(mps_context *context, const char *function, int32_t quantity,

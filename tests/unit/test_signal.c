@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 #include "core/context/retain.h"
 
@@ -401,4 +402,28 @@ TEST(the_callers_function_is_a_signal) {
   assert_int_equal(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, parabola_at,
                                           NULL, NULL, NULL),
                    MPS_ERROR_ARGUMENT);
+}
+
+/* A ramp to 1 m in 0.4 s and a rest until `end`, by three samples. Returns the number of warnings.
+ */
+static int warned_of_rest(double end, double sign, int32_t quantity) {
+  const double times[] = {0.0, 0.4, end}, values[] = {0.0, sign, sign};
+  journal j = {0};
+  scoped_context *own = journal_context(&j, NULL);
+  scoped_signal *signal = NULL;
+  double largest = 0.0;
+  OK(mps_signal_create_table(own, quantity, 3, times, values, &signal));
+  for (int i = 0; i <= 10000; i++)
+    largest = fmax(largest, sign * mps_signal_displacement(signal, end * i / 1e4));
+  if (quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT) assert_true(j.count == (largest > 1.05));
+  return j.count;
+}
+
+TEST(says_where_a_spline_leaves_the_range_of_its_samples) {
+  for (int side = -1; side <= 1; side += 2) {
+    assert_int_equal(warned_of_rest(99.0, side, MPS_SIGNAL_QUANTITY_DISPLACEMENT), 1);
+    assert_int_equal(warned_of_rest(0.8, side, MPS_SIGNAL_QUANTITY_DISPLACEMENT), 1);
+    assert_int_equal(warned_of_rest(0.5, side, MPS_SIGNAL_QUANTITY_DISPLACEMENT), 0);
+    assert_int_equal(warned_of_rest(99.0, side, MPS_SIGNAL_QUANTITY_VELOCITY), 0);
+  }
 }

@@ -1,9 +1,10 @@
 /* test_mpm_pore_ground.c - water in grounds of other shapes than a layer: radial flow through two
  * rings against its closed form, a layer whose surface lies at any tenth of a cell; a strip on
- * ground that hardly drains, with explicit and implicit pressures. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * ground that hardly drains, with explicit and implicit pressures; what does not move water.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
+#include "test_journal.h"
 
 #define LOAD 1000.0 /* Pa */
 
@@ -222,4 +223,39 @@ TEST(water_fills_gaps) {
     assert_true(opened > 0.0 || q / 6 % 2); /* pressures that are solved for close gaps at once */
     NEAR(suction, opened + grown, 0.02 * (opened + fabs(grown)));
   }
+}
+
+/* ---- accelerations ----------------------------------------------------------------------------
+ */
+
+/* A layer under the field `body_acceleration`, -g for `half` steps, g for as many, and so on;
+ * returns the number of warnings. */
+static int warned_of_acceleration(int32_t scheme, double permeability, int half, int steps) {
+  const double lo[] = {0.0, 0.0}, hi[] = {0.5, 1.0};
+  journal j = {0};
+  scoped_context *own = journal_context(&j, NULL);
+  scoped_mpm_scene s = mpm_scene_begin_in(own, 2, 0.125, 0.0, 0.0, PORE_YOUNG);
+  OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
+  OK(mps_particles_set(s.particles, "density", 0, 2000.0));
+  DEF(mpm, def, .cell = 0.25, .viscous_damping = 20.0);
+  for (int c = 0; c < 2; c++) def.lower[c] = lo[c], def.upper[c] = c ? INFINITY : hi[c];
+  OK(mps_mpm_create(own, s.particles, s.material, &def, &s.mpm));
+  USING(pore_water, mps_mpm_add_pore_water(s.mpm, &given), .porosity = 0.4, .scheme = scheme,
+        .permeability = permeability);
+  for (int k = 0; k < steps; k += half) {
+    OK(mps_particles_set(s.particles, "body_acceleration", 1, k / half % 2 ? 9.81 : -9.81));
+    OK(mps_mpm_step(s.mpm, half));
+  }
+  if (j.count) assert_non_null(strstr(j.last, "body_acceleration"));
+  return j.count;
+}
+
+/* Water flows by the gravity of the definition alone, and the log says so of a steady acceleration:
+ * the pressures would go to 0 in place of those at rest. */
+TEST(says_that_a_steady_acceleration_moves_no_water) {
+  for (int32_t scheme = 0; scheme < 2; scheme++) {
+    assert_int_equal(warned_of_acceleration(scheme, 1e-4, 600, 1200), 1);
+    assert_int_equal(warned_of_acceleration(scheme, 1e-4, 100, 1200), 0);
+  }
+  assert_int_equal(warned_of_acceleration(0, NAN, 600, 600), 0); /* undrained */
 }

@@ -9,12 +9,14 @@
  *
  *   n/K_w dp/dt = -tr(d) - div q,   q = -k/(rho_w g) (grad p - rho_w b)
  *
- * with porosity n, permeability k (m/s), gravity b and g = 9.80665 m/s2 in the weight of water
- * rho_w g that k refers to, whatever b. The acceleration of the water relative to the grains is
- * left out, which is right for k below 1e-3 m/s and without shocks in the water. In the explicit
- * scheme, pressures, porosities and permeabilities follow the volume strain in each step; water
- * flows between cells, and pressures are smoothed, every 8 steps, more often if the stability limit
- * of the flow requires it.
+ * with porosity n, permeability k (m/s), gravity b, that of the solver's definition, and g
+ * = 9.80665 m/s2 in the weight of water rho_w g that k refers to, whatever b. The field
+ * `body_acceleration` moves the ground as a whole and no water through it: a steady one belongs to
+ * the gravity of the definition, which the log says once it has lasted. The acceleration of the
+ * water relative to the grains is left out, which is right for k below 1e-3 m/s and without shocks
+ * in the water. In the explicit scheme, pressures, porosities and permeabilities follow the volume
+ * strain in each step; water flows between cells, and pressures are smoothed, every 8 steps, more
+ * often if the stability limit of the flow requires it.
  *
  * Fields: `pore_pressure` (Pa) and `porosity`, which the caller may write between steps,
  * `pore_pressure_gradient` (Pa/m), `permeability` (m/s, the present one) where water flows, and

@@ -8,6 +8,7 @@
 #define VOLUMES_EVERY 16   /* looked at in so many steps, */
 #define BODIES_EVERY 64    /* as overlaps of bodies in so many */
 #define BEYOND 0.1         /* cells of a free body's reference point beyond a side */
+#define STEADY 500         /* steps after which an acceleration is none of a motion to and fro */
 
 static void warn_about_courant(mps_mpm *mpm) {
   const double dt = mpm->run.dt, limit = mpsi_mpm_limit(mpm), courant = mpm->def.courant;
@@ -107,7 +108,30 @@ void mpsi_step_warn_about_bodies(mps_mpm *mpm) {
   warn_about_sides(mpm);
 }
 
+/* Of water that flows as if there were gravity alone. Shaking, whose mean is 0, moves hardly any; a
+ * steady acceleration would change the pressures of water at rest. */
+static void warn_about_steady(mps_mpm *mpm) {
+  mpsi_run *run = &mpm->run;
+  double *const *a = mpm->loads.body_acceleration;
+  if (!mpm->water || !mpm->water->flows || run->steady_since < 0) return;
+  bool same = true, some = false;
+  for (int c = 0; c < mpm->grid.dim; c++) {
+    const double now = a[c] && mpm->p.count > 0 ? a[c][0] : 0.0;
+    same &= now == run->steady[c], some |= now != 0.0;
+    run->steady[c] = now;
+  }
+  if (!same || !some) run->steady_since = run->steps;
+  if (run->steps - run->steady_since < STEADY) return;
+  run->steady_since = -1;
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+           "step %lld: the field body_acceleration has been (%.4g, %.4g, %.4g) m/s2 for %d steps, "
+           "and the water in the pores does not feel it: it flows by the gravity of the "
+           "definition alone; give a steady acceleration as part of that gravity",
+           (long long)run->steps, run->steady[0], run->steady[1], run->steady[2], STEADY);
+}
+
 void mpsi_step_warn_before(mps_mpm *mpm) {
   warn_about_courant(mpm);
+  warn_about_steady(mpm);
   warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, mpm->run.dt);
 }

@@ -3,7 +3,8 @@
 
 #include "mpm/base/mpm_solver.h"
 
-/* Before the step: of a dt that is too long for the Courant limit or for a penalty contact. */
+/* Before the step: of a dt that is too long for the Courant limit or for a penalty contact, of a
+ * steady acceleration that water in the pores does not feel. */
 void mpsi_step_warn_before(mps_mpm *mpm);
 /* After it: of ground that has grown to more than the loosest sand. */
 void mpsi_step_warn_about_volume(mps_mpm *mpm);
