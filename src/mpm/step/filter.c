@@ -41,8 +41,7 @@
 #include <string.h>
 
 #define BETA 0.06
-#define QUASI_STATIC                                                                               \
-  0.005 /* I: heaps get rough pressures from .01 on, footings bear less below .002 */
+#define QUASI_STATIC 0.005 /* I: .001 takes a tenth off a footing, .01 leaves noise in heaps */
 enum { EVERY = 8, EVERY_OF_FLUID = 4 }; /* steps */
 
 /* Sand and fluids are filtered each by themselves: a mean over both would be of neither. */
