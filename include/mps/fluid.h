@@ -66,7 +66,8 @@ typedef struct mps_fluid_def {
                           particle */
   double measure;      /* m, thickness of the slab, > 0; default 1 */
   double dt;           /* s, > 0: at most the limit at rest, .5 (l0/g)^1/2; NaN (default): each step
-                          the largest by mps_fluid_limit, with MPS_ERROR_DIVERGED below 1e-4 of that at rest
+                          the largest by mps_fluid_limit, halved up to three times where a particle
+                          goes more than l0/2 in it, with MPS_ERROR_DIVERGED below 1e-4 of that at rest
                           (without gravity: 1e-7 of a run) */
   double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1. Not read with a kernel */
   double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
