@@ -77,11 +77,12 @@ MPS_API MPS_NODISCARD mps_status mps_signal_create_ramp(mps_context *context, in
  *  velocities are linear between samples (their acceleration is a step function, continuous from
  *  the right), and both are integrated exactly to u, which is 0 at the first sample or at t = 0,
  *  whichever is later; displacements are a natural cubic spline, with a warning where it leaves the
- *  range of the samples by 5 % of that. Before the table: at rest at the first displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
- *  last velocity otherwise. Numbers are linear between samples (VALUE), or that of the last sample
- *  up to t (VALUE_STEPS); before and after the table the first and the last. MPS_ERROR_ARGUMENT:
- *  `count` out of range, times that do not increase, a value that is not finite; MPS_ERROR_NUMERIC:
- *  the signal overflows. */
+ *  range of the samples by 5 % of that. Before the table: at rest at the first displacement. After
+ * it: acceleration 0, and velocity 0 for a table of displacements, the last velocity otherwise.
+ * Numbers are linear between samples (VALUE), or that of the last sample up to t (VALUE_STEPS);
+ * before and after the table the first and the last. MPS_ERROR_ARGUMENT: `count` out of range,
+ * times that do not increase, a value that is not finite; MPS_ERROR_NUMERIC: the signal overflows.
+ */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_table(mps_context *context, int32_t quantity,
                                                          int64_t count, const double *times,
                                                          const double *values, mps_signal **out);
