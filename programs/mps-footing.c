@@ -43,7 +43,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("corner", &s->corner, "with --inset 0", 0.6),
       OPTION_NUMBER("inset", &s->inset,
                     "default 0.6, --volumetric point 0.9, Drucker-Prager 0.75, with --surcharge "
-                    "0.65, on weight alone 1 (from 40 degrees on 0.95), rough 0.45; eccentric load "
+                    "0.65, on weight alone 1 (from 40 degrees on 0.95), rough 0.4; eccentric load "
                     "0",
                     NAN),
       OPTION_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,

@@ -173,7 +173,7 @@ static double usual_inset(const settings *s) {
   if (s->eccentricity > 0.0) return 0.0;
   if (s->model != DRUCKER_PRAGER) return s->volumetric == MPS_MPM_VOLUMETRIC_POINT ? 0.9 : 0.6;
   if (s->surcharge > 0.0) return 0.65;
-  return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.45 : inset_on_weight(s);
+  return !footing_weight_bears(s) ? 0.75 : s->mu > 0.0 ? 0.4 : inset_on_weight(s);
 }
 
 /* Cones that pass outside the pyramid in plane strain have no limit from some angle on. */
