@@ -316,4 +316,43 @@ static inline void spring_check(mps_context *c, double l0, double dt, double sti
   assert_true(got.late < got.early);
 }
 
+/* ---- a vortex under water -------------------------------------------------------------------- */
+
+#define VORTEX_LENGTH 1.2 /* m */
+#define VORTEX_DEPTH 0.8
+#define VORTEX_RADIUS 0.15
+#define VORTEX_X 0.6
+#define VORTEX_Y 0.35
+
+/* A vortex of u = spin r exp(-r^2/(2 R^2)) in a tank of still water, 0.5 s long: the water keeps
+ * its volume, and gains no energy. */
+static inline void vortex_check(mps_context *c, double l0, double spin) {
+  scoped_tank t = tank_make(c, VORTEX_LENGTH, VORTEX_DEPTH, l0, NULL, NAN);
+  const mps_view x = view_field(t.water, "position");
+  mps_edit u;
+  OK(mps_particles_edit(t.water, "velocity", &u));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double dx = *mps_view_f64(&x, k, 0) - VORTEX_X, dy = *mps_view_f64(&x, k, 1) - VORTEX_Y;
+    const double turn = spin * exp(-0.5 * (dx * dx + dy * dy) / (VORTEX_RADIUS * VORTEX_RADIUS));
+    *mps_edit_f64(&u, k, 0) = -turn * dy, *mps_edit_f64(&u, k, 1) = turn * dx;
+  }
+  OK(mps_particles_commit(t.water, &u));
+  mps_totals start, end;
+  OK(mps_fluid_get_totals(t.fluid, &start));
+  OK(mps_fluid_run(t.fluid, 0.5, 1000000, NULL, NULL));
+  OK(mps_fluid_get_totals(t.fluid, &end));
+  enum { STATIONS = 23 };
+  double station[STATIONS], level[STATIONS], rise = 0.0;
+  for (int k = 0; k < STATIONS; k++) station[k] = 0.05 + 0.05 * k;
+  OK(mps_fluid_get_levels(t.fluid, STATIONS, station, level));
+  for (int k = 0; k < STATIONS; k++) rise += (level[k] - VORTEX_DEPTH) / (STATIONS * l0);
+  const double kept = (end.kinetic + end.strain - start.strain) / start.kinetic;
+  print_message("l0 %g m, %g 1/s: the level rises by %.3f l0, %.3f of the energy is kept, %.3f as "
+                "motion\n",
+                l0, spin, rise, kept, end.kinetic / start.kinetic);
+  assert_true(fabs(rise) < 0.15);
+  assert_true(kept > 0.8 && kept < 1.1);
+  assert_true(end.kinetic > 0.92 * start.kinetic);
+}
+
 #endif

@@ -1,6 +1,7 @@
 /* test_fluid_energy.c - water drives no wall that vibrates, blocks of it that strike keep the
- * energy that theory leaves them, and its waves last. tests/property/test_fluid_energy_long.c has
- * more of each. SPDX-License-Identifier: BSD-3-Clause */
+ * energy that theory leaves them, and its waves and vortices last.
+ * tests/property/test_fluid_energy_long.c has more of each.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_energy.h"
@@ -36,4 +37,11 @@ TEST(standing_waves_last) {
   assert_true(fine > 0.99 && fine < 1.005);
   assert_true(1.0 - fine < (1.0 - coarse) * 0.02 / 0.03);
   assert_true(brief > 0.94 && brief < 1.005);
+}
+
+TEST(vortices_under_water_do_not_expand) {
+  for (int k = 1; k <= 3; k++) vortex_check(context, 0.02, 5.0 * k);
+  vortex_check(context, 0.02, -10.0);
+  vortex_check(context, 0.025, 10.0);
+  vortex_check(context, 0.0125, 10.0);
 }
