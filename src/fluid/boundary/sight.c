@@ -19,8 +19,10 @@
 #define CORNER 1.5 /* l0 */
 #define WEDGE 3.1  /* l0: to the edge of an acute corner */
 #define TOWARDS 0.5
-#define RUSH 2.5  /* (g l0)^1/2: from there on l0/|u| limits the step */
-#define SLOW 0.25 /* of its square: below, water is slow */
+#define RUSH 2.5       /* (g l0)^1/2: from there on l0/|u| limits the step */
+#define RUSH_BELOW 1.0 /* (g l0)^1/2: past a body in open water */
+#define ALONE 3.1      /* l0 */
+#define SLOW 0.25      /* of its square: below, water is slow */
 
 static bool join_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
@@ -212,11 +214,35 @@ bool mpsi_fluid_within(const mps_fluid *f, int64_t i, double reach) {
   return false;
 }
 
-double mpsi_fluid_rush(const mps_fluid *f, int64_t i, double reach) {
-  const double x[2] = {f->x[0][i], f->x[1][i]}, fast2 = RUSH * RUSH * f->g * f->l0;
+/* Whether the box around a body lies ALONE from the water's level, walls and other bodies. */
+static bool in_open_water(const mps_fluid *f, const mpsi_fluid_body *body) {
+  const double far = ALONE * f->l0;
+  double x[2]; /* the box's corner farthest along a direction */
+  for (int c = 0; c < 2; c++) x[c] = f->up[c] > 0.0 ? body->high[c] : body->low[c];
+  if (!(f->rest - f->up[0] * x[0] - f->up[1] * x[1] > far)) return false;
+  for (int b = 0; b < f->boundaries; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    for (int c = 0; c < 2; c++) x[c] = w->normal[c] > 0.0 ? body->low[c] : body->high[c];
+    if (w->used && !w->line && !(mpsi_fluid_distance(w, w->now.s, x[0], x[1]) > far)) return false;
+  }
+  for (int n = 0; n < f->bodies; n++) {
+    const mpsi_fluid_body *other = &f->body[n];
+    bool apart = other == body || !other->body;
+    for (int c = 0; c < 2; c++)
+      apart |= !(body->low[c] < other->high[c] + far && other->low[c] < body->high[c] + far);
+    if (!apart) return false;
+  }
+  return true;
+}
+
+/* 0 where particle i has less than half of the speed `fast`, (g l0)^1/2, relative to bodies within
+ * `reach`, to 1 from `fast` on; of bodies in open water where `below`. */
+static double rush_past(const mps_fluid *f, int64_t i, double reach, double fast, bool below) {
+  const double x[2] = {f->x[0][i], f->x[1][i]}, fast2 = fast * fast * f->g * f->l0;
   double most2 = 0.0;
   for (int n = 0; n < f->bodies; n++) {
     if (!mpsi_fluid_beside(&f->body[n], x, reach)) continue;
+    if (below && !in_open_water(f, &f->body[n])) continue;
     const mpsi_fluid_pose *p = &f->body[n].pose;
     const double v[2] = {f->u[0][i] - p->v[0] + p->spin * (x[1] - p->x[1]),
                          f->u[1][i] - p->v[1] - p->spin * (x[0] - p->x[0])};
@@ -224,6 +250,14 @@ double mpsi_fluid_rush(const mps_fluid *f, int64_t i, double reach) {
   }
   if (most2 >= fast2) return most2 > 0.0 ? 1.0 : 0.0;
   return fmax((most2 / fast2 - SLOW) / (1.0 - SLOW), 0.0);
+}
+
+double mpsi_fluid_rush(const mps_fluid *f, int64_t i, double reach) {
+  return rush_past(f, i, reach, RUSH, false);
+}
+
+double mpsi_fluid_rush_below(const mps_fluid *f, int64_t i, double reach) {
+  return rush_past(f, i, reach, RUSH_BELOW, true);
 }
 
 bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {

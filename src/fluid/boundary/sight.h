@@ -16,6 +16,8 @@ bool mpsi_fluid_within(const mps_fluid *fluid, int64_t i, double reach);
 /* Whether the water rushes past a body within `reach` (m) of particle i: 1 where its speed
  * relative to the body limits the step, 0 below half of that. */
 double mpsi_fluid_rush(const mps_fluid *fluid, int64_t i, double reach);
+/* The same past a body under water, away from walls and others, from a lower speed on. */
+double mpsi_fluid_rush_below(const mps_fluid *fluid, int64_t i, double reach);
 /* Where the sight of particle i passes a face towards an image in it: distance (m) along the face
  * from its nearer end; infinite where no end is a corner. The same from the parent to i's image. */
 double mpsi_fluid_past_corner(const mps_fluid *fluid, int64_t i, int64_t ghost);

@@ -28,6 +28,7 @@
 #define LEAST_DENSITY -3e-4 /* k */
 #define FAR 4.0             /* times the differences along the surface: its mean */
 #define LOOSE 0.03          /* of n/n0: missing around bodies in any flow */
+#define LOOSE_BELOW 0.01    /* beside a body in open water */
 #define CLOSING 4.0         /* |G|: rate at which more than that closes where water rushes past */
 #define MOST_CLOSED 0.5     /* of it, in a step */
 #define HELD 5.0            /* n: of a particle in a gap without others, to its last pressure */
@@ -63,12 +64,14 @@ static double share_at_corner(const mps_fluid *f, int64_t i, double excess) {
  * falls by u^2 dt/(2 R l0), dt a quarter of l0/u, by an eighth on the way of a radius. Below .72 it
  * would pass for a free surface, in the middle of the water: bodies that rose at 3 (g l0)^1/2 got
  * blows of their own buoyancy there. Such gaps close in the time 1/|G| in which the flow makes
- * them. */
+ * them. Beside a body in open water they close from a lower speed on: behind the corners of
+ * squares that moved at (g l0)^1/2 they had taken two fifths of a square's area within a second. */
 static double gap_source(const mps_fluid *f, int64_t i, double excess) {
   const double rush = mpsi_fluid_rush(f, i, PAST_CORNER * f->l0);
-  if (!(rush > 0.0)) return 0.0;
+  const double below = mpsi_fluid_rush_below(f, i, PAST_CORNER * f->l0);
+  if (!(rush > 0.0 || below > 0.0)) return 0.0;
   const double part = fmin(CLOSING * f->dt * sqrt(squared_gradient(f, i)), MOST_CLOSED);
-  return rush * part * (excess + LOOSE);
+  return part * fmin(rush * fmin(excess + LOOSE, 0.0), below * (excess + LOOSE_BELOW));
 }
 
 /* The particles of rock go 1/e of the way of those of water, so gaps of up to half a spacing open
@@ -82,7 +85,7 @@ static double density_source(const mps_fluid *f, int64_t i, double share) {
     k *= IN_ROCK;
   if (f->faces) k *= share_at_corner(f, i, excess);
   k = share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
-  return f->faces && excess < -LOOSE && !f->zone[i] ? k + gap_source(f, i, excess) : k;
+  return f->faces && excess < -LOOSE_BELOW && !f->zone[i] ? k + gap_source(f, i, excess) : k;
 }
 
 /* Divergence (1/s) with which a step keeps volumes: they change by det(1 + dt G) = 1 + dt D + dt^2
