@@ -1,11 +1,11 @@
-/* turn.h - the flow around a corner of a body, which no linear field is: see turn.c.
+/* turn.h - the flow around a corner of a body or a polyline, which no linear field is: see turn.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #pragma once
 
 #include "fluid/base/flow_solver.h"
 
 typedef struct mpsi_fluid_turn {
-  const mpsi_fluid_wall *face; /* that begins at the corner */
+  const mpsi_fluid_wall *face; /* or segment, that begins at the corner; NULL: none is near */
   double power;                /* of the distance from the corner, of the potential */
   double own[2];               /* of the field, at the particle */
   double strength;             /* m/s: A, of the field with lengths over l0 */

@@ -204,7 +204,7 @@ static bool sees_corner(const mps_fluid *f, int64_t i) {
          mpsi_fluid_within(f, i, f->reach + FADE_FACE * f->l0);
 }
 
-/* Takes the flow around a body's corner out of what a linear field leaves of the velocities. */
+/* Takes the flow around a corner out of what a linear field leaves of the velocities. */
 static void take_turn(mps_fluid *f, int64_t i, mpsi_fluid_local *local) {
   mpsi_fluid_turn turn;
   if (!mpsi_fluid_fit_turn(f, i, &turn)) return;
@@ -285,7 +285,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.rest[c] = (float)((s.du[c] - by_x * plain[0] - by_y * plain[1]) / s.n);
         local.shift[c] = (float)(s.shift[c] / n0);
       }
-      if (f->faces) take_turn(f, i, &local);
+      if (f->faces || f->segments > 0) take_turn(f, i, &local);
       const double whole = local.divergence;
       if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
         fade_divergence(f, i, I, &local.divergence);

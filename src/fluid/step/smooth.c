@@ -259,7 +259,7 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   double G[4];
   mpsi_fluid_turn turn;
-  const bool turns = f->faces && mpsi_fluid_fit_turn(f, i, &turn);
+  const bool turns = (f->faces || f->segments > 0) && mpsi_fluid_fit_turn(f, i, &turn);
   mpsi_fluid_gradient(local, G);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;

@@ -218,8 +218,10 @@ static void share_change(const side *s, const others *o, const double *x_after, 
 typedef struct tiles {
   mpsi_node *tile, *force;
   bool across;
-  double dt;   /* s */
-  bool silent; /* mirroring back leaves the impulses of the walls as they are */
+  double dt;      /* s */
+  double counted; /* fraction of a change of momentum, but for that of forces, which is the wall's
+                     impulse: particles keep the rest (`keep` of mpsi_transfer), and the same
+                     fraction of what mirroring back the velocities before the forces changes */
 } tiles;
 
 /* ---- folding --------------------------------------------------------------------------------- */
@@ -240,8 +242,8 @@ static void fold_node(const side *s, const couple *at, int layer, void *data) {
     const double folded = s->keeps[c] * q + m * velocity;
     partner[MPSI_VECTOR + c] += folded;
     if (apart) to[MPSI_VECTOR + c] += s->keeps[c] * f;
-    before[c] = q + of->dt * f;
-    after[c] = folded + of->dt * s->keeps[c] * f;
+    before[c] = of->counted * q + of->dt * f;
+    after[c] = of->counted * folded + of->dt * s->keeps[c] * f;
     s->mirror->passed += of->dt * f * velocity;
   }
   share_change(s, o, at->x_partner, after, at->x_ghost, before);
@@ -262,8 +264,9 @@ static void fold_tiles(const mpsi_transfer *work, tiles *of) {
 
 void mpsi_mpm_fold(const mpsi_transfer *work) {
   const mpsi_worker *worker = work->worker;
-  tiles own = {worker->tile, worker->force, false, work->run->dt, false};
-  tiles across = {worker->across_tile, worker->across_force, true, work->run->dt, false};
+  const double counted = 1.0 - work->keep;
+  tiles own = {worker->tile, worker->force, false, work->run->dt, counted};
+  tiles across = {worker->across_tile, worker->across_force, true, work->run->dt, counted};
   fold_tiles(work, &own);
   if (work->cells->thin) fold_tiles(work, &across);
 }
@@ -272,7 +275,8 @@ void mpsi_mpm_fold(const mpsi_transfer *work) {
 
 static void mirror_node(const side *s, const couple *at, int layer, void *data) {
   const tiles *of = data;
-  double *ghost = of->tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
+  double *ghost = of->tile[at->ghost];
+  const double m = layer == 1 ? of->counted * s->mass[at->place] : 0.0;
   const double *partner = of->tile[at->partner];
   double before[3], after[3];
   others o[3];
@@ -284,7 +288,7 @@ static void mirror_node(const side *s, const couple *at, int layer, void *data) 
     before[c] = m * partner[MPSI_VECTOR + c];
     after[c] = m * ghost[MPSI_VECTOR + c];
   }
-  if (m != 0.0 && !of->silent) share_change(s, o, at->x_ghost, after, at->x_partner, before);
+  if (m != 0.0) share_change(s, o, at->x_ghost, after, at->x_partner, before);
 }
 
 static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
@@ -297,7 +301,7 @@ static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
 
 void mpsi_mpm_unfold(const mpsi_transfer *work) {
   const mpsi_worker *worker = work->worker;
-  tiles own = {.tile = worker->tile, .silent = work->before}, across = own;
+  tiles own = {.tile = worker->tile, .counted = work->before ? -work->keep : 1.0}, across = own;
   across.tile = worker->across_tile, across.across = true;
   unfold_tiles(work, &own);
   if (work->cells->thin) unfold_tiles(work, &across);
