@@ -83,6 +83,8 @@ static void print_rule(const mpsi_definition *d, const mpsi_def_rule *r) {
   if (r->end == 2 && r->begin == 0 && m->count == 3) printf("components 0 and 1 ");
   if (r->demand == MPSI_DEMAND_GIVEN || r->demand == MPSI_DEMAND_NOT_GIVEN)
     printf(r->demand == MPSI_DEMAND_GIVEN ? "given" : "not given");
+  else if (r->demand == MPSI_DEMAND_UNUSED)
+    printf("without effect, warned of");
   else if (r->demand == MPSI_DEMAND_RANGE)
     printf("%s", allowed(m, &r->allowed, text));
   else if (r->demand >= MPSI_DEMAND_EACH)

@@ -49,8 +49,10 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
   contact->def = def;
   contact->friction = def.friction;
   if (def.friction_factor) contact->def.friction_factor = mpsi_signal_retain(def.friction_factor);
-  if (isnan(def.tolerance)) contact->def.tolerance = 0.0;
-  if (def.sweeps == 0) contact->def.sweeps = contact->def.tolerance > 0.0 ? SWEEPS_AT_MOST : SWEEPS;
+  const bool sweeps = def.method == MPS_CONTACT_METHOD_IMPULSE;
+  if (isnan(def.tolerance) && sweeps) contact->def.tolerance = 0.0;
+  if (def.sweeps == 0 && sweeps)
+    contact->def.sweeps = contact->def.tolerance > 0.0 ? SWEEPS_AT_MOST : SWEEPS;
   contact->source.moves = def.mover == MPS_CONTACT_MOVER_SOLVER;
   *out = contact;
   return MPS_OK;

@@ -896,6 +896,7 @@ static bool break_rule(const row *r, const mpsi_def_rule *rule, char *def, int w
     forget(r, m, def);
     return way == 0;
   case MPSI_DEMAND_NOT_GIVEN:
+  case MPSI_DEMAND_UNUSED:
     give(m, def, rule->begin);
     return way == 0;
   case MPSI_DEMAND_RANGE:
@@ -937,6 +938,7 @@ TEST(broken_rules_are_refused_by_name) {
     const user *u = user_of(r->type);
     for (const mpsi_def_rule *rule = r->rule; rule && rule < r->rule + r->rules; rule++) {
       const char *name = r->member[rule->member].name;
+      if (rule->demand == MPSI_DEMAND_UNUSED) continue;
       for (int way = 0;; way++, broken++) {
         char *def = good_definition(r, u, r->size), why[MPSI_WHY] = "";
         const uint32_t scene = enter(r, rule, def);
@@ -959,6 +961,58 @@ TEST(broken_rules_are_refused_by_name) {
   }
   print_message("%d rules broken\n", broken);
   assert_true(broken > 0);
+}
+
+typedef struct heard_of {
+  const char *wanted;
+  bool found;
+} heard_of;
+
+static void hear(void *log_user, int32_t level, const char *message) {
+  heard_of *h = log_user;
+  h->found |= level == MPS_CONTEXT_LOG_WARNING && strstr(message, h->wanted);
+}
+
+/* Whether the definition is taken, by a context that has to hear of `why`. */
+static bool expect_warning(const char *type, const user *u, const void *def, const char *why) {
+  heard_of heard = {.wanted = why};
+  mps_context_def own = test_context_defaults();
+  mps_context *outer = context;
+  own.executor = MPS_CONTEXT_EXECUTOR_SERIAL, own.log = hear, own.log_user = &heard;
+  context = NULL;
+  OK(mps_context_create(&own, &context, NULL, 0));
+  const bool taken = u->use(def) == MPS_OK;
+  mps_context_destroy(&context);
+  context = outer;
+  if (taken && !heard.found) fail_msg("%s: no warning \"%s\"", type, why);
+  return taken;
+}
+
+/* A member that has no effect beside the others is warned of by the function that takes the
+ * definition, with its value; at its default it is not. */
+TEST(members_without_effect_are_warned_of) {
+  int found = 0, taken = 0;
+  for (size_t k = 0; k < ROWS; k++) {
+    const row *r = row_of(k);
+    const user *u = user_of(r->type);
+    for (const mpsi_def_rule *rule = r->rule; rule && rule < r->rule + r->rules; rule++) {
+      if (rule->demand != MPSI_DEMAND_UNUSED) continue;
+      const mpsi_def_member *m = &r->member[rule->member];
+      char *def = good_definition(r, u, r->size), why[MPSI_WHY] = "";
+      const uint32_t scene = enter(r, rule, def);
+      forget(r, m, def);
+      if (!mpsi_rule_check(r, rule, def, scene, why))
+        fail_msg("%s: \"%s\", and it is not given", r->type, why);
+      give(m, def, rule->begin);
+      if (mpsi_rule_check(r, rule, def, scene, why) || strncmp(why, m->name, strlen(m->name)) != 0)
+        fail_msg("%s.%s: \"%s\"", r->type, m->name, why);
+      if (is_built(r->type)) taken += expect_warning(r->type, u, def, why);
+      found++;
+      free(def);
+    }
+  }
+  print_message("%d members, %d in a scene\n", found, taken);
+  assert_true(taken > 20);
 }
 
 /* A default is allowed, or it is NaN or 0: the caller has to give the member. */

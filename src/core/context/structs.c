@@ -1,5 +1,5 @@
-/* structs.c - definitions (in) and results (out) of any size, of an older or a newer program.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* structs.c - defaults of definitions (in), and results (out) of any size, of an older or a newer
+ * program. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 
 #include <string.h>
@@ -17,15 +17,6 @@ mps_status mps_def_init(int32_t kind, void *def, size_t size) {
                      size, d->released, MPSI_STRUCT_MOST);
   mpsi_definition_fill(d, def, size);
   return MPS_OK;
-}
-
-mps_status mpsi_def_read(mps_context *context, const char *function,
-                         const mpsi_definition *definition, const void *def, bool needed,
-                         uint32_t scene, void *known) {
-  char why[MPSI_WHY];
-  if (!def && needed) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  const mps_status status = mpsi_definition_take(definition, def, known, scene, why);
-  return status == MPS_OK ? status : mpsi_fail(context, function, status, "%s", why);
 }
 
 mps_status mpsi_out_check(mps_context *context, const char *function, const void *out,

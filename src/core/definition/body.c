@@ -83,6 +83,9 @@ MPSI_DEFINITION_RULED(mps_body_motion, "body_motion", BODY_MOTION, BODY_MOTION_R
   X(S, inset,    NOT_GIVEN, WITH(S, corner)) \
   X(S, inset,    NOT_GIVEN, IN_SPACE, BECAUSE("the edges of a solid can be rounded by `corner`")) \
   X(S, adhesion, NOT_GIVEN, PENALTY(S)) \
-  X(S, strength, NOT_GIVEN, PENALTY(S))
+  X(S, strength, NOT_GIVEN, PENALTY(S)) \
+  X(S, sweeps,    UNUSED, IS(S, method, MPS_CONTACT_METHOD_PENALTY)) \
+  X(S, tolerance, UNUSED, IS(S, method, MPS_CONTACT_METHOD_PENALTY)) \
+  X(S, friction_factor, UNUSED, WITHOUT(S, friction))
 MPSI_DEFINITION_RULED(mps_contact_def, "contact", CONTACT, CONTACT_RULES)
 /* clang-format on */

@@ -379,10 +379,13 @@ static bool check_component(writing *w, const mpsi_definition *d, const mpsi_def
                             const void *known, int32_t c) {
   const mpsi_def_member *m = &d->member[r->member], *o = &d->member[r->other];
   const double value = is_number(m) ? mpsi_member_value(m, known, c) : 0.0;
-  if (r->demand == MPSI_DEMAND_NOT_GIVEN) {
+  const bool unused = r->demand == MPSI_DEMAND_UNUSED;
+  if (unused || r->demand == MPSI_DEMAND_NOT_GIVEN) {
     if (!component_given(m, known, c)) return true;
     say_value(w, m, known, c, default_of(m, c), default_of(m, c));
-    if (!is_number(m) || isnan(default_of(m, c)))
+    if (unused)
+      say(w, "without effect");
+    else if (!is_number(m) || isnan(default_of(m, c)))
       say(w, is_number(m) ? "must be NaN" : "must be NULL");
     else if (m->allowed.choices) {
       say(w, "must be ");
@@ -467,7 +470,7 @@ bool mpsi_definition_check(const mpsi_definition *d, const void *known, uint32_t
         return false;
       }
   for (const mpsi_def_rule *r = d->rule; r && r < d->rule + d->rules; r++)
-    if (!mpsi_rule_check(d, r, known, scene, why)) return false;
+    if (r->demand != MPSI_DEMAND_UNUSED && !mpsi_rule_check(d, r, known, scene, why)) return false;
   return true;
 }
 

@@ -40,6 +40,8 @@
  *                                          IN_PLANE and IN_AXISYMMETRY apply
  *            BECAUSE("text")               no case: ends the message
  *   demand   GIVEN, NOT_GIVEN
+ *            UNUSED                        a member that is given has no effect: a warning, as
+ *                                          releases without the rule take it
  *            a range as above              NaN is refused unless OR_NAN stands before it
  *            LESS(S, m), MORE(S, m)        than the member m, component by component
  *            AT_MOST(S, m, f), AT_LEAST(S, m, f)  f times m; these four pass where either is NaN
@@ -134,7 +136,8 @@ typedef enum mpsi_demand {
   MPSI_DEMAND_AT_MOST,
   MPSI_DEMAND_AT_LEAST,
   MPSI_DEMAND_EACH,
-  MPSI_DEMAND_RISING
+  MPSI_DEMAND_RISING,
+  MPSI_DEMAND_UNUSED
 } mpsi_demand;
 
 #define MPSI_CASES 4
@@ -173,7 +176,8 @@ const mpsi_definition *mpsi_definition_of(int32_t kind);
  * says which member, its value and what is allowed. `scene`: an mpsi_scene, or 0. */
 mps_status mpsi_definition_take(const mpsi_definition *definition, const void *def, void *known,
                                 uint32_t scene, char why[MPSI_WHY]);
-/* Whether each member is as its line says, and each rule passes; else the first that does not. */
+/* Whether each member is as its line says, and each rule passes, those of unused members aside;
+ * else the first that does not. */
 bool mpsi_definition_check(const mpsi_definition *definition, const void *known, uint32_t scene,
                            char why[MPSI_WHY]);
 /* Whether one rule passes, or does not apply. */

@@ -48,7 +48,12 @@ MPSI_DEFINITION_RULED(mps_dynamics_def, "dynamics", DYNAMICS, DYNAMICS_RULES)
   X(S, dofs, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_ABSORBING)) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, signal, GIVEN, IS(S, kind, MPS_BOUNDARY_DRIVEN)) \
-  X(S, signal, COMPONENT(2) NOT_GIVEN, IN_PLANE)
+  X(S, signal, COMPONENT(2) NOT_GIVEN, IN_PLANE) \
+  X(S, factor, UNUSED, WITHOUT(S, signal), FACTOR_OF_SIGNALS) \
+  X(S, axis, UNUSED, ISNT(S, kind, MPS_BOUNDARY_ABSORBING)) \
+  X(S, density, UNUSED, ISNT(S, kind, MPS_BOUNDARY_ABSORBING)) \
+  X(S, shear_velocity, UNUSED, ISNT(S, kind, MPS_BOUNDARY_ABSORBING)) \
+  X(S, pressure_velocity, UNUSED, ISNT(S, kind, MPS_BOUNDARY_ABSORBING))
 MPSI_DEFINITION_RULED(mps_dynamics_boundary_def, "dynamics_boundary", DYNAMICS_BOUNDARY, DYNAMICS_BOUNDARY_RULES)
 
 #define DYNAMICS_LOAD(X, S) \
@@ -67,7 +72,10 @@ MPSI_DEFINITION_RULED(mps_dynamics_boundary_def, "dynamics_boundary", DYNAMICS_B
 #define DYNAMICS_LOAD_RULES(X, S) \
   X(S, traction, COMPONENT(2) IN(0, 0), IN_PLANE) \
   X(S, acceleration, COMPONENT(2) IN(0, 0), IN_PLANE) \
-  X(S, signal, COMPONENT(2) NOT_GIVEN, IN_PLANE)
+  X(S, signal, COMPONENT(2) NOT_GIVEN, IN_PLANE) \
+  X(S, traction, UNUSED, IS(S, kind, MPS_DYNAMICS_LOAD_BODY)) \
+  X(S, area, UNUSED, IS(S, kind, MPS_DYNAMICS_LOAD_BODY)) \
+  X(S, acceleration, UNUSED, IS(S, kind, MPS_DYNAMICS_LOAD_TRACTION))
 MPSI_DEFINITION_RULED(mps_dynamics_load_def, "dynamics_load", DYNAMICS_LOAD, DYNAMICS_LOAD_RULES)
 
 #define DYNAMICS_PREDICT(X, S) \

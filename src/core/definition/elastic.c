@@ -38,11 +38,17 @@ MPSI_DEFINITION(mps_elastic_def, "elastic", ELASTIC)
   X(S, ADDRESS, values,   1, "m", ANY,                                         NULL,  OWN) \
   X(S, ADDRESS, signal,   3, "",  ANY,                                         NULL,  OWN) \
   X(S, REAL,    factor,   3, "",  FINITE,                                      1,     OWN)
+#define ALONG_NORMAL BECAUSE("signal[0] is along the normal")
 #define ELASTIC_BOUNDARY_RULES(X, S) \
   X(S, values, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, signal, NOT_GIVEN, IS(S, kind, MPS_BOUNDARY_HELD), BECAUSE("make its kind MPS_BOUNDARY_DRIVEN")) \
   X(S, values, EACH(S, id_count, 3) FINITE, IS(S, kind, MPS_BOUNDARY_DRIVEN)) \
-  X(S, values, EACH(S, id_count, 1) FINITE, IS(S, kind, MPS_BOUNDARY_ROLLER))
+  X(S, values, EACH(S, id_count, 1) FINITE, IS(S, kind, MPS_BOUNDARY_ROLLER)) \
+  X(S, factor, UNUSED, WITHOUT(S, signal), FACTOR_OF_SIGNALS) \
+  X(S, signal, COMPONENT(1) UNUSED, IS(S, kind, MPS_BOUNDARY_ROLLER), ALONG_NORMAL) \
+  X(S, signal, COMPONENT(2) UNUSED, IS(S, kind, MPS_BOUNDARY_ROLLER), ALONG_NORMAL) \
+  X(S, normal, UNUSED, ISNT(S, kind, MPS_BOUNDARY_ROLLER)) \
+  X(S, dofs, UNUSED, IS(S, kind, MPS_BOUNDARY_ROLLER))
 MPSI_DEFINITION_RULED(mps_elastic_boundary_def, "elastic_boundary", ELASTIC_BOUNDARY, ELASTIC_BOUNDARY_RULES)
 
 #define ELASTIC_LOAD(X, S) \
@@ -59,11 +65,17 @@ MPSI_DEFINITION_RULED(mps_elastic_boundary_def, "elastic_boundary", ELASTIC_BOUN
   X(S, ADDRESS, user,     1, "",  ANY,             NULL,  OWN) \
   X(S, ADDRESS, signal,   3, "",  ANY,             NULL,  OWN) \
   X(S, REAL,    factor,   3, "",  FINITE,          1,     OWN)
+#define ONE_PRESSURE BECAUSE("the pressure is force[0]")
 #define ELASTIC_LOAD_RULES(X, S) \
   X(S, function, GIVEN, IS(S, kind, MPS_ELASTIC_LOAD_FUNCTION)) \
   X(S, values, NOT_GIVEN, IS(S, kind, MPS_ELASTIC_LOAD_BODY, MPS_ELASTIC_LOAD_VOLUME, MPS_ELASTIC_LOAD_FUNCTION)) \
   X(S, values, EACH(S, id_count, 3) FINITE, IS(S, kind, MPS_ELASTIC_LOAD_FORCE, MPS_ELASTIC_LOAD_TRACTION)) \
-  X(S, values, EACH(S, id_count, 1) FINITE, IS(S, kind, MPS_ELASTIC_LOAD_PRESSURE))
+  X(S, values, EACH(S, id_count, 1) FINITE, IS(S, kind, MPS_ELASTIC_LOAD_PRESSURE)) \
+  X(S, function, UNUSED, ISNT(S, kind, MPS_ELASTIC_LOAD_FUNCTION)) \
+  X(S, force, UNUSED, IS(S, kind, MPS_ELASTIC_LOAD_FUNCTION)) \
+  X(S, force, UNUSED, WITH(S, values)) \
+  X(S, force, COMPONENT(1) UNUSED, IS(S, kind, MPS_ELASTIC_LOAD_PRESSURE), ONE_PRESSURE) \
+  X(S, force, COMPONENT(2) UNUSED, IS(S, kind, MPS_ELASTIC_LOAD_PRESSURE), ONE_PRESSURE)
 MPSI_DEFINITION_RULED(mps_elastic_load_def, "elastic_load", ELASTIC_LOAD, ELASTIC_LOAD_RULES)
 
 #define ELASTIC_MOTION(X, S) \

@@ -47,7 +47,8 @@ MPSI_DEFINITION_RULED(mps_fluid_def, "fluid", FLUID, FLUID_RULES)
   X(S, nodes, EACH(S, node_count, 3) IN(-1e12, 1e12), ALWAYS) \
   X(S, corners, GIVEN, WITH(S, corner_count)) \
   X(S, kind, ONE_OF(MPS_BOUNDARY_, "HELD||ROLLER"), WITH(S, corner_count)) \
-  X(S, normal, COMPONENT(2) IN(0, 0), WITHOUT(S, corner_count))
+  X(S, normal, COMPONENT(2) IN(0, 0), WITHOUT(S, corner_count)) \
+  X(S, factor, UNUSED, WITHOUT(S, signal), FACTOR_OF_SIGNALS)
 MPSI_DEFINITION_RULED(mps_fluid_boundary_def, "fluid_boundary", FLUID_BOUNDARY, FLUID_BOUNDARY_RULES)
 
 #define FLUID_LOAD(X, S) \
@@ -68,7 +69,11 @@ MPSI_DEFINITION_RULED(mps_fluid_boundary_def, "fluid_boundary", FLUID_BOUNDARY, 
   X(S, acceleration, COMPONENT(2) IN(0, 0), IN_PLANE) \
   X(S, lower, COMPONENT(0) FINITE, RISES(S)) \
   X(S, upper, COMPONENT(0) FINITE, RISES(S)) \
-  X(S, lower, COMPONENT(0) LESS(S, upper), RISES(S))
+  X(S, lower, COMPONENT(0) LESS(S, upper), RISES(S)) \
+  X(S, acceleration, UNUSED, ISNT(S, kind, MPS_FLUID_LOAD_BODY)) \
+  X(S, pressure, UNUSED, ISNT(S, kind, MPS_FLUID_LOAD_PRESSURE)) \
+  X(S, rate, UNUSED, ISNT(S, kind, MPS_FLUID_LOAD_DAMPING)) \
+  X(S, rise, UNUSED, ISNT(S, kind, MPS_FLUID_LOAD_DAMPING))
 MPSI_DEFINITION_RULED(mps_fluid_load_def, "fluid_load", FLUID_LOAD, FLUID_LOAD_RULES)
 
 #define FLUID_CONTACT(X, S) \

@@ -30,7 +30,10 @@
 
 #define MATERIAL_VON_MISES_RULES(X, S) \
   X(S, hardening, NOT_GIVEN, WITH(S, residual)) \
-  X(S, hardening, NOT_GIVEN, WITH(S, rate_factor))
+  X(S, hardening, NOT_GIVEN, WITH(S, rate_factor)) \
+  X(S, slip, UNUSED, WITHOUT(S, residual)) \
+  X(S, band, UNUSED, WITHOUT(S, residual)) \
+  X(S, rate_reference, UNUSED, WITHOUT(S, rate_factor))
 MPSI_DEFINITION_RULED(mps_material_von_mises_def, "material_von_mises", MATERIAL_VON_MISES, MATERIAL_VON_MISES_RULES)
 
 /* Of laws of friction: flow, strength, the end of dilation. */
@@ -72,13 +75,19 @@ MPSI_DEFINITION_RULED(mps_material_drucker_prager_def, "material_drucker_prager"
   X(S, REAL, void_ratio,        1, "",    OR_NAN IN(VOID_RATIOS),  UNSET,    OWN) \
   X(S, REAL, max_void_ratio,    1, "",    OR_NAN IN(VOID_RATIOS),  UNSET,    OWN)
 
+#define NO_RESIDUAL(S) WITHOUT(S, residual_friction), WITHOUT(S, residual_cohesion)
 #define MATERIAL_MOHR_COULOMB_RULES(X, S) \
   FRICTION_RULES(X, S) \
   X(S, residual_friction, AT_MOST(S, friction, 1),             ALWAYS) \
   X(S, residual_cohesion, AT_MOST(S, cohesion, 1),             ALWAYS) \
   X(S, residual_friction, OR_NAN BETWEEN(0, RIGHT_ANGLE),      WITHIN(S, cohesion, 0)) \
   X(S, residual_cohesion, OR_NAN ABOVE(0, INFINITY),           WITHIN(S, friction, 0)) \
-  X(S, residual_cohesion, OR_NAN ABOVE(0, INFINITY),           WITHIN(S, residual_friction, 0))
+  X(S, residual_cohesion, OR_NAN ABOVE(0, INFINITY),           WITHIN(S, residual_friction, 0)) \
+  X(S, slip,              UNUSED,                              NO_RESIDUAL(S)) \
+  X(S, band,              UNUSED,                              NO_RESIDUAL(S)) \
+  X(S, softening,         UNUSED,                              NO_RESIDUAL(S)) \
+  X(S, rate_factor,       UNUSED,                              WITHIN(S, cohesion, 0)) \
+  X(S, rate_reference,    UNUSED,                              WITHOUT(S, rate_factor))
 MPSI_DEFINITION_RULED(mps_material_mohr_coulomb_def, "material_mohr_coulomb", MATERIAL_MOHR_COULOMB, MATERIAL_MOHR_COULOMB_RULES)
 
 #define MATERIAL_NEWTONIAN(X, S) \

@@ -34,6 +34,7 @@
 /* Of tables of rules: a demand, */
 #define GIVEN .demand = MPSI_DEMAND_GIVEN
 #define NOT_GIVEN .demand = MPSI_DEMAND_NOT_GIVEN
+#define UNUSED .demand = MPSI_DEMAND_UNUSED
 #define LESS(S, m) MPSI_COMPARE(LESS, S, m, 1.0)
 #define MORE(S, m) MPSI_COMPARE(MORE, S, m, 1.0)
 #define AT_MOST(S, m, factor) MPSI_COMPARE(AT_MOST, S, m, factor)
@@ -57,6 +58,8 @@
 #define IN_AXISYMMETRY {.kind = MPSI_CASE_SCENE, .values = MPSI_SCENE_AXIS}
 #define IN_SPACE {.kind = MPSI_CASE_SCENE, .values = MPSI_SCENE_SPACE}
 #define BECAUSE(advice) {.kind = MPSI_CASE_BECAUSE, .text = (advice)}
+/* Of boundaries, whose signals are motions; a load has its factor without a signal too. */
+#define FACTOR_OF_SIGNALS BECAUSE("it multiplies signals")
 #define MPSI_AT(S, m) MPSI_AT_OF(S, m)
 #define MPSI_AT_OF(S, m) mpsi_at_##S##_##m
 #define MPSI_SET(...) MPSI_SET_OF(__VA_ARGS__, -1, -1, -1, -1, -1, -1)

@@ -50,7 +50,8 @@ typedef struct mpsi_contact_state {
   bool parts;         /* the body makes nodes two-sided in this step (thin_bodies.h) */
   bool warned;        /* the log has a warning that the penalty is too stiff for dt, */
   bool overlaps;      /* one that it overlaps a body before it, */
-  bool leaves;        /* and one that it goes through a side of the domain */
+  bool leaves;        /* one that it goes through a side of the domain, */
+  bool wet;           /* and one of its friction where water bears */
   int64_t first_step; /* of the contact: number of steps before it */
   double v[3],
       spin[3]; /* m/s, rad/s: velocity of the body outside mps_mpm_settle, which keeps it at rest */

@@ -1,6 +1,7 @@
 /* warnings.c - see warnings.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "warnings.h"
 
+#include "body/body_internal.h"
 #include "mpm/water/water.h"
 
 #define CHATTER 6.0        /* k dt^2/m above which a penalty contact oscillates */
@@ -8,6 +9,7 @@
 #define VOLUMES_EVERY 16   /* looked at in so many steps, */
 #define BODIES_EVERY 64    /* as overlaps of bodies in so many */
 #define BEYOND 0.1         /* cells of a free body's reference point beyond a side */
+#define WET 0.1            /* share of a normal force by water above which friction is warned of */
 #define STEADY 500         /* steps after which an acceleration is none of a motion to and fro */
 
 static void warn_about_courant(mps_mpm *mpm) {
@@ -102,10 +104,80 @@ static void warn_about_sides(mps_mpm *mpm) {
   }
 }
 
+/* ---- friction in saturated ground ------------------------------------------------------------ */
+
+/* What water and ground bear across a surface: sums over the particles beside it, Pa. */
+typedef struct bearing {
+  double water, ground;
+} bearing;
+
+static void add_bearing(bearing *sum, const mpsi_columns *p, int dim, int64_t k, const double *n) {
+  static const int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  sum->water += p->u[k];
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++) sum->ground -= n[i] * n[j] * p->s[component[i][j]][k];
+}
+
+static bearing beside_body(const mps_mpm *mpm, const mps_body *body) {
+  const double reach = mps_particles_spacing(mpm->p.set);
+  bearing sum = {0.0, 0.0};
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    double x[3] = {0.0};
+    for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
+    const mpsi_foot foot = mpsi_body_foot(body, x);
+    if (foot.distance < reach) add_bearing(&sum, &mpm->p, mpm->grid.dim, k, foot.normal);
+  }
+  return sum;
+}
+
+static bearing beside_side(const mps_mpm *mpm, int side) {
+  const int axis = side / 2;
+  const double at = side % 2 ? mpm->def.upper[axis] : mpm->def.lower[axis];
+  double normal[3] = {0.0};
+  bearing sum = {0.0, 0.0};
+  normal[axis] = 1.0;
+  for (int64_t k = 0; k < mpm->p.count; k++)
+    if (fabs(mpm->p.x[axis][k] - at) < mps_particles_spacing(mpm->p.set))
+      add_bearing(&sum, &mpm->p, mpm->grid.dim, k, normal);
+  return sum;
+}
+
+/* Coulomb's law is of the impulses on the surface, the total stress; friction of ground is of the
+ * effective one. */
+static void warn_about_wet(mps_mpm *mpm, bearing sum, const char *what, int number, double friction,
+                           bool *warned) {
+  const double share = sum.water / (sum.water + sum.ground);
+  if (!(sum.water > 0.0 && share > WET)) return;
+  *warned = true;
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+           "step %lld: the friction %.4g of %s %d acts on the total normal stress, of which the "
+           "water in the pores bears %.0f %%: that of the effective stress alone is as large with "
+           "a friction of %.3g",
+           (long long)mpm->run.steps, friction, what, number, 100.0 * fmin(share, 1.0),
+           friction * fmax(0.0, 1.0 - share));
+}
+
+static void warn_about_friction(mps_mpm *mpm) {
+  if (!mpm->water) return;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const double friction = mpm->contact.handle[b]->friction;
+    bool *warned = &mpm->contact.state[b].wet;
+    if (friction > 0.0 && !*warned)
+      warn_about_wet(mpm, beside_body(mpm, mpm->contact.body[b]), "body", b, friction, warned);
+  }
+  for (int side = 0; side < 2 * mpm->grid.dim && !mpm->run.warned_about_wet; side++) {
+    const mpsi_boundary *boundary = &mpm->boundaries.boundary[side];
+    if (boundary->kind == MPS_BOUNDARY_FRICTIONAL && boundary->friction > 0.0)
+      warn_about_wet(mpm, beside_side(mpm, side), "side", side, boundary->friction,
+                     &mpm->run.warned_about_wet);
+  }
+}
+
 void mpsi_step_warn_about_bodies(mps_mpm *mpm) {
   if (mpm->run.steps % BODIES_EVERY != 0) return;
   mpsi_mpm_warn_about_overlaps(mpm->context, &mpm->grid, &mpm->contact, mpm->run.steps);
   warn_about_sides(mpm);
+  warn_about_friction(mpm);
 }
 
 /* Of water that flows as if there were gravity alone. Shaking, whose mean is 0, moves hardly any; a
