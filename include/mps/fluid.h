@@ -160,7 +160,8 @@ static inline double mps_fluid_dt(const mps_fluid *fluid) {
   return mps_solver_dt(mps_fluid_solver(fluid));
 }
 /** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|); without
- *  gravity g is the acceleration of BODY loads and `external_force`. */
+ *  gravity g is the acceleration of BODY loads and `external_force`. A step calls a caller's
+ *  function that a load follows, and takes its value too; this and mps_fluid_dt do not. */
 static inline double mps_fluid_limit(const mps_fluid *fluid) {
   return mps_solver_limit(mps_fluid_solver(fluid));
 }

@@ -162,17 +162,27 @@ mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   return MPS_OK;
 }
 
-double mpsi_fluid_pushed(const mps_fluid *f) {
+/* Part c of load k at the solver's time; 0 where it follows a caller's function, unless `call`, or
+ * fails: what fails here fails in the step. */
+static double factor_now(const mps_fluid *f, int32_t k, int c, bool call) {
+  const mpsi_fluid_given *g = mpsi_fluid_load_of(f, k);
+  const mpsi_signal_use use = {f->context, __func__, "load", k, c};
+  double factor = 0.0;
+  if (!call && mpsi_signal_may_fail(g->def->signal[c])) return 0.0;
+  return mpsi_signal_factor(g->def->signal[c], use, f->time, &factor) == MPS_OK
+             ? g->def->factor[c] * factor
+             : 0.0;
+}
+
+double mpsi_fluid_pushed(const mps_fluid *f, bool call) {
   const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
   const double *force[2];
-  kinds found = {false, false};
   double sum = 0.0, most2 = 0.0;
-  /* a signal that fails here fails in the step */
-  const bool known = evaluate_signals(f, __func__, f->time, &found) == MPS_OK;
-  for (int32_t k = 0; known && k < mpsi_fluid_load_count(f); k++) {
+  for (int32_t k = 0; k < mpsi_fluid_load_count(f); k++) {
     const mpsi_fluid_given *g = mpsi_fluid_load_of(f, k);
     if (g && g->def->kind == MPS_FLUID_LOAD_BODY)
-      sum += hypot(g->amount[0] * g->now[0], g->amount[1] * g->now[1]);
+      sum +=
+          hypot(g->amount[0] * factor_now(f, k, 0, call), g->amount[1] * factor_now(f, k, 1, call));
   }
   for (int c = 0; c < 2; c++) force[c] = mpsi_particles_column(f->particles, "external_force", c);
   for (int64_t i = 0; force[0] && i < f->count; i++)

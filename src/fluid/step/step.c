@@ -198,11 +198,12 @@ static double limit_at_rest(const mps_fluid *f) {
   return limit;
 }
 
-double mpsi_fluid_limit(const void *solver) {
-  const mps_fluid *f = solver;
+/* The step that is recommended, s; where `call`, callers' functions that loads follow are called: a
+ * reading does not. */
+static double find_limit(const mps_fluid *f, bool call) {
   double limit = limit_at_rest(f);
   /* what stands for gravity: at rest, and where a drop turns, no velocity limits the step */
-  const double push = f->g > 0.0 ? 0.0 : mpsi_fluid_pushed(f);
+  const double push = f->g > 0.0 ? 0.0 : mpsi_fluid_pushed(f, call);
   if (push > 0.0) limit = fmin(limit, AT_REST * sqrt(f->l0 / push));
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 * mpsi_fluid_least_porosity(f) / f->speed);
   for (int b = 0; b < f->walls; b++) {
@@ -215,16 +216,22 @@ double mpsi_fluid_limit(const void *solver) {
   return limit;
 }
 
-static double dt_of(const mps_fluid *f) {
+double mpsi_fluid_limit(const void *solver) { return find_limit(solver, false); }
+
+double mpsi_fluid_dt(void *solver, const char *function) {
+  const mps_fluid *f = solver;
   return isnan(f->def.dt) ? mpsi_fluid_limit(f) : f->def.dt;
 }
 
-double mpsi_fluid_dt(void *solver, const char *function) { return dt_of(solver); }
+/* Of the step that is about to be made. */
+static double dt_of(const mps_fluid *f) {
+  return isnan(f->def.dt) ? find_limit(f, true) : f->def.dt;
+}
 
 /* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
  * (`span`, s) where nothing limits that: the fluid has diverged, and the run would hardly end. */
-static mps_status check_dt(mps_fluid *f, const char *function, double span) {
-  const double dt = dt_of(f), rest = limit_at_rest(f);
+static mps_status check_dt(mps_fluid *f, const char *function, double dt, double span) {
+  const double rest = limit_at_rest(f);
   const double least = LEAST_STEP * (isfinite(rest) ? rest : 1e-3 * span);
   if (isnan(f->def.dt) && isfinite(least) && dt < least)
     return mpsi_fail(
@@ -268,8 +275,8 @@ mps_status mpsi_fluid_advance_march(void *solver, const char *function, mpsi_mar
   mps_fluid *f = solver;
   (void)count; /* 1 */
   const bool run = mpsi_march_is_run(m);
-  MPSI_TRY(check_dt(f, function, run ? m->t_end - m->start : INFINITY));
   const double rest = m->t_end - f->time, full = dt_of(f);
+  MPSI_TRY(check_dt(f, function, full, run ? m->t_end - m->start : INFINITY));
   const bool last = run && rest <= full * (1.0 + 1e-9);
   double dt = !run ? full : last ? rest : even_step(rest, full);
   const mps_status status = take_own_step(f, function, &dt);
@@ -289,9 +296,9 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
                      "the classical scheme's steps cannot be made in parts");
   mpsi_guard_enter(&f->guard, f->context, __func__);
   mps_status status = mpsi_solver_check_cancel(&f->base, __func__);
-  if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
+  if (status == MPS_OK && isnan(dt)) dt = dt_of(f), status = check_dt(f, __func__, dt, INFINITY);
   if (status == MPS_OK) {
-    status = begin(f, __func__, isnan(dt) ? dt_of(f) : dt);
+    status = begin(f, __func__, dt);
     if (status != MPS_OK) abandon(f);
   }
   mpsi_guard_end(&f->guard);
