@@ -367,7 +367,11 @@ int64_t mpsi_fluid_advance(mps_fluid *f, double *way) {
     }
     /* a drop by itself flies as far as it flies */
     const bool alone = f->state[i] == MPSI_FLUID_APART && f->classical.gamma == 0.0;
-    if (!alone && moved > *way) *way = moved, farthest = i;
+    if (alone || !(moved > *way)) continue;
+    /* one that a gap between a body and a wall has closed on comes out of the body */
+    if (moved > most && mpsi_fluid_inside_body(f, 0, (double[]){start[0][i], start[1][i]}))
+      continue;
+    *way = moved, farthest = i;
   }
   return *way > most ? farthest : -1;
 }
