@@ -53,8 +53,9 @@ typedef struct mps_contact_def {
       sweeps; /* Gauss-Seidel sweeps over the contacts of a step, 1 to 100000, by METHOD_IMPULSE;
                  0 (default): 10, with a tolerance at most 30. Each step is warm-started from
                  the last impulses; the solver makes the largest number of all its contacts */
-  double friction; /* Coulomb's mu, 0 to 1e3; default 0. Of the total normal stress: where water in
-                      the pores bears a part of it, a warning says which mu is that of the rest */
+  double friction; /* Coulomb's mu, 0 to 1e3; default 0. Where water presses in the pores, of
+                      the effective normal stress; by METHOD_PENALTY of the total one, and a warning
+                      says so */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
                       thickness; in axisymmetry per m of radius and rad, times the particle's
                       radius), > 0; NaN (default): from xi, or where that is NaN too 1.33 (K + 4G/3)

@@ -417,13 +417,13 @@ typedef struct mps_mpm_boundary_def {
   mps_signal *signal[3]; /* by component, kept alive, not of HELD; NULL: at rest. Of a roller the
                             one across */
   double factor[3];      /* default 1 */
-  double friction;       /* Coulomb's mu of FRICTIONAL, >= 0; default 0. Of the total normal stress,
-                            as of contacts */
-  double settle; /* s, >= 0: duration in which an ABSORBING side is held, and over which R is the
-                    mean traction; what stops moving ground is part of that. 0 (default): R balances
-                    the other forces at the nodes in the first step. On the grid, stress and gravity
-                    that balance in theory leave up to a percent unbalanced; without settling, the
-                    dashpots move under that */
+  double friction; /* Coulomb's mu of FRICTIONAL, >= 0; default 0. Of the effective normal stress
+                      where water presses in the pores */
+  double settle;   /* s, >= 0: duration in which an ABSORBING side is held, and over which R is the
+                      mean traction; what stops moving ground is part of that. 0 (default): R balances
+                      the other forces at the nodes in the first step. On the grid, stress and gravity
+                      that balance in theory leave up to a percent unbalanced; without settling, the
+                      dashpots move under that */
 } mps_mpm_boundary_def;
 
 static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {

@@ -88,6 +88,8 @@ static mps_status make_wet(mps_context *own, mps_domain *domain, int what, scene
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
   TRY(add_water(s->mpm, kind, what >= IMPLICIT));
+  if (status == MPS_OK && kind == SETTLED) /* friction of the effective stress, at both */
+    status = mps_mpm_set_side(s->mpm, MPS_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.3);
   if (status == MPS_OK && kind == SETTLED) status = add_disc(own, domain, s);
   return status;
 }

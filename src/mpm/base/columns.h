@@ -99,3 +99,25 @@ static inline void mpsi_mpm_saturated(const mpsi_columns *p, int64_t particle, d
   mpsi_mpm_elastic(p, particle, wave, shear);
   if (p->n) *wave += p->K_w / p->n[particle];
 }
+
+/* What the ground and the water in its pores bear across a surface, Pa; or sums over particles. */
+typedef struct mpsi_borne {
+  double ground, water;
+} mpsi_borne;
+
+/* Of particle k across the unit vector n. Only with water. */
+static inline mpsi_borne mpsi_mpm_borne(const mpsi_columns *p, int dim, int64_t k,
+                                        const double *n) {
+  static const int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  mpsi_borne out = {0.0, p->u[k]};
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++) out.ground -= n[i] * n[j] * p->s[component[i][j]][k];
+  return out;
+}
+
+/* The part of a normal force that is on the ground, by which friction is limited. Of what water
+ * pulls the ground bears no more than the force. */
+static inline double mpsi_ground_share(mpsi_borne by) {
+  const double ground = fmax(by.ground, 0.0);
+  return by.water > 0.0 ? ground / (ground + by.water) : 1.0;
+}

@@ -37,8 +37,7 @@ typedef struct mpsi_run {
   bool broken;    /* a step has given values that are not finite */
   bool lost;      /* a particle has left the domain in the last step, which is complete otherwise */
   bool warned_about_dt;     /* the log has a warning that dt is above the Courant limit */
-  bool warned_about_volume; /* one of a particle that has grown too far, */
-  bool warned_about_wet;    /* and one of friction along a side where water bears */
+  bool warned_about_volume; /* and one of a particle that has grown too far */
   int64_t steady_since;     /* step since which the first particle's body acceleration is */
   double steady[3];         /* this (m/s2); steady_since -1: the log has a warning of it */
 } mpsi_run;

@@ -11,7 +11,10 @@
  *
  * R is the traction by the stress at rest: the mean of the force on the node while the wall is held
  * and settles, or what balances the forces of the first step.
- * SPDX-License-Identifier: BSD-3-Clause */
+ *
+ * By the same sums frictional sides of saturated ground find in each step what ground and water
+ * bear at their nodes (mpsi_borne times the volume of each particle). SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "mpm/base/shape.h"
 #include "mpm/ranks/messages.h"
 #include "mpm/contact/thin_bodies.h"
@@ -73,14 +76,22 @@ static void fit_along(const mpsi_grid *grid, int c, double X, int64_t *base, dou
   }
 }
 
-static mpsi_dashpot *dashpot_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
-                                int32_t number, int64_t node) {
+/* Adds to the sums of a node of the wall. */
+static void add_terms(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int32_t number,
+                      int64_t node, const double *term) {
   const mpsi_node_block *nodes = &grid->nodes[node / grid->block_nodes];
   int32_t t = nodes->first_held;
   while (boundaries->held[t].boundary != number) t++;
-  return &boundaries->dashpot[boundaries->held[t].dashpot +
-                              mpsi_plane_index(boundaries->boundary[number].axis,
-                                               (int)(node % grid->block_nodes))];
+  const mpsi_held *held = &boundaries->held[t];
+  const int plane =
+      mpsi_plane_index(boundaries->boundary[number].axis, (int)(node % grid->block_nodes));
+  if (held->borne >= 0) {
+    boundaries->borne[held->borne + plane].ground += term[0];
+    boundaries->borne[held->borne + plane].water += term[1];
+  } else {
+    boundaries->dashpot[held->dashpot + plane].across += term[0];
+    boundaries->dashpot[held->dashpot + plane].along += term[1];
+  }
 }
 
 /* Index, in the plane across `axis`, of tile node `at`. */
@@ -88,15 +99,30 @@ static int tile_plane_index(int axis, const int *at) {
   return at[axis == 2 ? 1 : 2] * MPSI_TILE_SIDE + at[axis == 0 ? 1 : 0];
 }
 
-/* Adds the coefficients of a particle of which `part` lies in a cell at the wall. */
+/* What a particle of which `part` lies in a cell at the wall adds to the sums there. */
+static void find_terms(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_boundary *boundary,
+                       int64_t k, double part, double *term) {
+  const double per_area = part * p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
+  double wave, shear, normal[3] = {0.0};
+  if (mpsi_kind_of(boundary)->friction) {
+    normal[boundary->axis] = 1.0;
+    const mpsi_borne borne = mpsi_mpm_borne(p, grid->dim, k, normal);
+    term[0] = part * p->V[k] * borne.ground;
+    term[1] = part * p->V[k] * borne.water;
+    return;
+  }
+  mpsi_mpm_saturated(p, k, &wave, &shear);
+  term[0] = per_area * sqrt(wave / density);
+  term[1] = per_area * sqrt(shear / density);
+}
+
+/* Adds a particle to the nodes of the wall in the plane of a tile. */
 static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                          int32_t number, int64_t k, double part, double (*tile)[2]) {
   const int axis = boundaries->boundary[number].axis;
-  const double per_area = part * p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
-  double wave, shear;
-  mpsi_mpm_saturated(p, k, &wave, &shear);
-  const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
+  double term[2];
+  find_terms(grid, p, &boundaries->boundary[number], k, part, term);
   int64_t base[3] = {0};
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};
   for (int c = 0; c < grid->dim; c++)
@@ -111,14 +137,14 @@ static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
     int at[3];
     for (int c = 0; c < 3; c++) at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
     double *to = tile[tile_plane_index(axis, at)];
-    to[0] += fraction * across;
-    to[1] += fraction * along;
+    to[0] += fraction * term[0];
+    to[1] += fraction * term[1];
   }
 }
 
-bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
-                           const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
-                           int32_t number, double (*tile)[2]) {
+bool mpsi_mpm_sum_at_side(const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
+                          int32_t number, double (*tile)[2]) {
   const int c = boundaries->boundary[number].axis;
   /* layer of cells at the wall */
   const int64_t layer = boundaries->boundary[number].first[c] - number % 2;
@@ -141,10 +167,8 @@ static void add_tile(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
     int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
     at[axis] = (int)(boundary->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
     if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
-    mpsi_dashpot *dashpot =
-        dashpot_of(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]));
-    dashpot->across += tile[2 * k];
-    dashpot->along += tile[2 * k + 1];
+    add_terms(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]),
+              tile + 2 * k);
   }
 }
 
@@ -157,7 +181,7 @@ static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
     (void)mpsi_mpm_find_message(ranks, cells, &tile);
     if (tile)
       tile += number * (ranks->doubles / MPSI_SIDES);
-    else if (mpsi_mpm_sum_dashpots(grid, p, boundaries, cells, number, own))
+    else if (mpsi_mpm_sum_at_side(grid, p, boundaries, cells, number, own))
       tile = own[0];
     if (tile) add_tile(grid, boundaries, cells, number, tile);
   }
@@ -198,4 +222,19 @@ void mpsi_mpm_find_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
     all[k].across = fmax(all[k].across, 0.0);
     all[k].along = fmax(all[k].along, 0.0);
   }
+}
+
+bool mpsi_mpm_has_friction(const mpsi_boundaries *boundaries) {
+  bool any = false;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    any = any || mpsi_kind_of(&boundaries->boundary[k])->friction;
+  return any;
+}
+
+void mpsi_mpm_sum_borne(const mpsi_grid *grid, const mpsi_columns *p,
+                        const mpsi_boundaries *boundaries, const mpsi_partition *ranks) {
+  const size_t bytes = (size_t)boundaries->borne_count * sizeof *boundaries->borne;
+  if (bytes > 0) memset(boundaries->borne, 0, bytes);
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (mpsi_kind_of(&boundaries->boundary[k])->friction) add_wall(grid, p, boundaries, ranks, k);
 }

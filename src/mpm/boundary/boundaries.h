@@ -72,6 +72,7 @@ static inline bool mpsi_find_range(int dim, const int32_t *at, const mpsi_bounda
 typedef struct mpsi_held {
   int32_t boundary, at[3];      /* at: coordinates of the block */
   int64_t dashpot;              /* absorbing: first of its plane's dashpots, else -1 */
+  int64_t borne;                /* frictional: likewise in `borne` */
   double impulse[3], moment[3]; /* N s, N m s, of the step being made */
   double work;                  /* J, likewise */
   int64_t count;                /* nodes with mass */
@@ -85,12 +86,14 @@ typedef struct mpsi_boundaries {
   mpsi_room boundary_room;
   mpsi_held *held;
   mpsi_dashpot *dashpot;
-  int64_t held_count, dashpot_count;
+  mpsi_borne *borne; /* Pa m3, sums over the particles in the cells at a frictional side; with
+                        water, of the step being made */
+  int64_t held_count, dashpot_count, borne_count;
   uint32_t open;   /* bit k: side k is open, in the step being made */
   bool outdated;   /* the lists are not those of the present blocks and boundaries */
   bool renew;      /* the coefficients of dashpots are out of date */
   mpsi_exact work; /* J, of removed boundaries */
-  mpsi_room held_room, dashpot_room, old_held_room, old_dashpot_room;
+  mpsi_room held_room, dashpot_room, borne_room, old_held_room, old_dashpot_room;
   mpsi_room warm_room; /* dashpots of a state to restore, until the blocks of this rank are known */
   int64_t warm;
 } mpsi_boundaries;
@@ -182,23 +185,39 @@ void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *bound
 /* boundaries.c: extends the sides to the nodes beyond them, which the standard method has. */
 mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
                                 mpsi_boundaries *boundaries, const char *function);
-/* absorb.c: dashpots of the list before; coefficients of the dashpots of absorbing sides
- * (`ranks`: with the messages of dashpots.c, or NULL); contribution of a block to those of a side,
- * false: none; order of the list; whether a side absorbs; velocity of a node with a dashpot. */
+/* absorb.c: dashpots of the list before; coefficients of the dashpots of absorbing sides, and what
+ * is borne at frictional ones (`ranks`: with the messages of dashpots.c, or NULL); contribution of
+ * a block to those of a side, false: none; order of the list; whether a side absorbs, or has
+ * friction; velocity of a node with a dashpot. */
 void mpsi_mpm_carry_dashpots(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                              const mpsi_held_list *old);
 void mpsi_mpm_find_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
                             const mpsi_boundaries *boundaries, const mpsi_partition *ranks);
-bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
-                           const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
-                           int32_t side, double (*tile)[2]);
+void mpsi_mpm_sum_borne(const mpsi_grid *grid, const mpsi_columns *p,
+                        const mpsi_boundaries *boundaries, const mpsi_partition *ranks);
+bool mpsi_mpm_sum_at_side(const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
+                          int32_t side, double (*tile)[2]);
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
 bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries);
+bool mpsi_mpm_has_friction(const mpsi_boundaries *boundaries);
 /* dashpots.c: the two of absorb.c on several ranks. Collective. */
 mps_status mpsi_mpm_send_dashpots(const mpsi_boundary_setup *setup, const char *function,
                                   const mpsi_held_list *old);
 mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
                                       mps_status status);
+/* dashpots.c: what ground and water bear at frictional sides, in a step with water, on one rank or
+ * several. Collective. */
+mps_status mpsi_mpm_find_borne(const mpsi_boundary_setup *setup, const char *function,
+                               mps_status status);
+/* The part of the normal impulse at node k of a block by which its friction is limited. */
+static inline double mpsi_side_share(const mpsi_boundaries *boundaries, const mpsi_held *held,
+                                     int k) {
+  const int axis = boundaries->boundary[held->boundary].axis;
+  return boundaries->borne_count > 0 && held->borne >= 0
+             ? mpsi_ground_share(boundaries->borne[held->borne + mpsi_plane_index(axis, k)])
+             : 1.0;
+}
 /* dashpots.c: dashpots of a checkpoint: gathers those of all ranks, in the order of the file, on
  * rank 0; keeps those of a file with these blocks of cells that lie on blocks of nodes of this
  * rank. `status` as above. */

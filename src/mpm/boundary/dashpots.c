@@ -1,6 +1,7 @@
 /* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: sums of coefficients of the
  * ranks' own blocks are exchanged as tiles are, and dashpots are sent to ranks that newly have a
- * block of nodes when the lists are rebuilt, after a sort.
+ * block of nodes when the lists are rebuilt, after a sort. Sums of frictional sides are exchanged
+ * likewise.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kinds.h"
 #include "core/base/order.h"
@@ -15,31 +16,55 @@ static int64_t plane_doubles(const mpsi_grid *grid) {
   return 2 * (grid->dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
 }
 
+/* Sums at the sides that absorb, or at those with friction. */
+typedef struct side_sums {
+  const mpsi_boundary_setup *setup;
+  bool friction;
+} side_sums;
+
 /* The planes of all sides. */
 static void pack(void *data, int64_t b, int32_t worker, double *message) {
-  const mpsi_boundary_setup *setup = data;
+  const side_sums *sums = data;
+  const mpsi_boundary_setup *setup = sums->setup;
   const mpsi_grid *grid = setup->grid;
   const size_t bytes = (size_t)plane_doubles(grid) * sizeof *message;
   for (int32_t side = 0; side < MPSI_SIDES; side++, message += plane_doubles(grid)) {
     double tile[MPSI_DASH_PLANE][2];
     memset(message, 0, bytes);
-    if (mpsi_kind_of(&setup->boundaries->boundary[side])->absorbs &&
-        mpsi_mpm_sum_dashpots(grid, setup->p, setup->boundaries, &grid->cells[b], side, tile))
+    const mpsi_boundary_kind *kind = mpsi_kind_of(&setup->boundaries->boundary[side]);
+    if ((sums->friction ? kind->friction : kind->absorbs) &&
+        mpsi_mpm_sum_at_side(grid, setup->p, setup->boundaries, &grid->cells[b], side, tile))
       memcpy(message, tile, bytes);
   }
 }
 
-mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
-                                      mps_status status) {
+static mps_status exchange_sums(const mpsi_boundary_setup *setup, const char *function,
+                                mps_status status, bool friction) {
   mpsi_partition *partition = setup->partition;
+  side_sums sums = {setup, friction};
   const int64_t doubles = MPSI_SIDES * plane_doubles(setup->grid);
   if (status == MPS_OK)
     status = mpsi_mpm_reserve_messages(setup->context, partition, function, doubles);
   status = mpsi_domain_agree(partition->domain, function, status);
   if (status == MPS_OK)
-    status = mpsi_mpm_exchange_messages(setup->context, partition, function, doubles, pack,
-                                        (void *)setup);
-  if (status == MPS_OK) mpsi_mpm_find_dashpots(setup->grid, setup->p, setup->boundaries, partition);
+    status = mpsi_mpm_exchange_messages(setup->context, partition, function, doubles, pack, &sums);
+  return status;
+}
+
+mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                      mps_status status) {
+  status = exchange_sums(setup, function, status, false);
+  if (status == MPS_OK)
+    mpsi_mpm_find_dashpots(setup->grid, setup->p, setup->boundaries, setup->partition);
+  return status;
+}
+
+mps_status mpsi_mpm_find_borne(const mpsi_boundary_setup *setup, const char *function,
+                               mps_status status) {
+  if (!setup->water || !mpsi_mpm_has_friction(setup->boundaries)) return status;
+  if (setup->partition) status = exchange_sums(setup, function, status, true);
+  if (status == MPS_OK)
+    mpsi_mpm_sum_borne(setup->grid, setup->p, setup->boundaries, setup->partition);
   return status;
 }
 

@@ -4,7 +4,8 @@
  *
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse normal to the side
  * removes the velocity into it; the impulse along the side is the smaller of mu times that and the
- * impulse that stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
+ * impulse that stops the sliding. In saturated ground the limit is of the ground's part of the
+ * normal impulse (absorb.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/room_array.h"
 #include "corners.h"
 #include "free_field.h"
@@ -20,9 +21,11 @@
 /* Lists the boundary conditions of each block of nodes; false where there is no memory, `count` is
  * the number needed. */
 static bool list_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
-                      mpsi_partition *partition, int64_t *count, int64_t *dashpots) {
+                      mpsi_partition *partition, int64_t *count, int64_t *dashpots,
+                      int64_t *borne) {
   mpsi_held *held = boundaries->held_room.item;
-  *count = *dashpots = 0;
+  const int64_t plane = grid->block_nodes / MPSI_SIDE;
+  *count = *dashpots = *borne = 0;
   for (int64_t g = 0; g < grid->node_count; g++) {
     mpsi_node_block *nodes = &grid->nodes[g];
     nodes->first_held = (int32_t)*count;
@@ -35,11 +38,13 @@ static bool list_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
       if (*count < boundaries->held_room.capacity) {
         held[*count] = (mpsi_held){.boundary = k,
                                    .dashpot = kind->absorbs ? *dashpots : -1,
+                                   .borne = kind->friction ? *borne : -1,
                                    .counted = !partition || mpsi_mpm_counts_node_block(grid, g),
                                    .whole = !partition || mpsi_mpm_node_block_complete(grid, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
-      if (kind->absorbs) *dashpots += grid->block_nodes / MPSI_SIDE;
+      if (kind->absorbs) *dashpots += plane;
+      if (kind->friction) *borne += plane;
       (*count)++;
     }
     nodes->held_count = (int32_t)*count - nodes->first_held;
@@ -55,18 +60,21 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 
 /* Makes a new list in other memory than the old one, which stays valid if there is no memory. */
 static mps_status make_list(const mpsi_boundary_setup *setup, const char *function) {
-  int64_t count, dashpots;
+  int64_t count, dashpots, borne;
   setup->boundaries->outdated = true;
   MPSI_TRY(mpsi_mpm_list_mirrors(setup->context, setup->grid, setup->boundaries, setup->mirrors,
                                  setup->def, function));
   swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
   swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
-  bool good = list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
+  bool good =
+      list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots, &borne);
   if (!good) {
     good = MPSI_ENSURE(setup->context, setup->boundaries, held, count);
-    if (good) list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
+    if (good)
+      list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots, &borne);
   }
-  good = good && MPSI_ENSURE(setup->context, setup->boundaries, dashpot, dashpots);
+  good = good && MPSI_ENSURE(setup->context, setup->boundaries, dashpot, dashpots) &&
+         (!setup->water || MPSI_ENSURE(setup->context, setup->boundaries, borne, borne));
   if (!good) {
     swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
     swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
@@ -76,10 +84,14 @@ static mps_status make_list(const mpsi_boundary_setup *setup, const char *functi
   if (!good)
     return mpsi_fail_memory(setup->context, function,
                             (size_t)count * sizeof *setup->boundaries->held +
-                                (size_t)dashpots * sizeof(mpsi_dashpot));
+                                (size_t)dashpots * sizeof(mpsi_dashpot) +
+                                (size_t)borne * sizeof(mpsi_borne));
   setup->boundaries->outdated = false;
   setup->boundaries->held_count = count;
   setup->boundaries->dashpot_count = dashpots;
+  setup->boundaries->borne_count = setup->water ? borne : 0;
+  if (borne > 0 && setup->water)
+    memset(setup->boundaries->borne, 0, (size_t)borne * sizeof *setup->boundaries->borne);
   if (dashpots > 0)
     memset(setup->boundaries->dashpot, 0, (size_t)dashpots * sizeof *setup->boundaries->dashpot);
   return MPS_OK;
@@ -317,7 +329,8 @@ static void stop_inward(block *b, const mpsi_boundary *boundary, mpsi_held *held
 
 static double most_friction(const block *b, const mpsi_boundary *boundary, const mpsi_held *held,
                             int k) {
-  return boundary->friction * b->normal_impulse[held->boundary][k];
+  return boundary->friction * mpsi_side_share(b->boundaries, held, k) *
+         b->normal_impulse[held->boundary][k];
 }
 
 /* Whether a node with the velocity `v` along axis c would go into a frictional side that shares it;

@@ -1,8 +1,8 @@
 /* area.c - the area of the surface that each contact constraint represents, where the shear stress
- * on the surface has a strength or an adhesion in Pa. The constraints of one step do not measure
- * it: where soil flows along a body, few of the particles beside it are in contact in any one step.
- * The layer of soil next to the surface does: a particle of volume V at the distance D from the
- * surface represents the area
+ * on the surface has a strength or an adhesion in Pa, and the ground's part of the stress there.
+ * The constraints of one step do not measure it: where soil flows along a body, few of the
+ * particles beside it are in contact in any one step. The layer of soil next to the surface does: a
+ * particle of volume V at the distance D from the surface represents the area
  *
  *   a = V J w(D),   w = t^2/d for t = D/d from 0 to 1, (1 - (t - 1)^2)/d from 1 to 2,
  *
@@ -19,7 +19,13 @@
  * the sum of their areas is that of the surface that soil covers. The factor is needed because
  * among constraints that share nodes only the sum of the normal impulses is determined: with equal
  * parts, a constraint with hardly any normal impulse could not carry the shear of its part by
- * friction. Sums of a block are made separately and added to the nodes in the order of the colours;
+ * friction.
+ *
+ * In saturated ground friction is limited by mu P s'/(s' + p), with the effective stress s' across
+ * the surface and the pressure p of the water: means over the same layer, weighted by volumes
+ * alone, by the same way over the nodes. The constraints themselves do not have them: particles
+ * that bear have more of s' than those between them, and P changes from step to step while s' and p
+ * do not. Sums of a block are made separately and added to the nodes in the order of the colours;
  * those of other ranks arrive with their constraints (exchange.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
@@ -95,22 +101,30 @@ static double weight_at(layer l, double distance) {
   return (t < 1.0 ? t * t : t * (2.0 - t)) / l.row;
 }
 
-static double area_of(const mpsi_grid *grid, const mpsi_columns *p, layer l, int64_t k,
-                      const mpsi_foot *foot) {
-  if (!(foot->distance < l.reach)) return 0.0;
-  const double area = p->V[k] * foot->narrowing * weight_at(l, foot->distance);
-  return grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / p->x[0][k] : area;
+/* What a particle at a foot represents of the surface. */
+static mpsi_area area_of(const mpsi_grid *grid, const mpsi_columns *p, layer l, int64_t k,
+                         const mpsi_foot *foot, bool wet) {
+  mpsi_area out = {.area = 0.0};
+  if (!(foot->distance < l.reach)) return out;
+  out.area = p->V[k] * foot->narrowing * weight_at(l, foot->distance);
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+    out.area = out.area * foot->at[0] / p->x[0][k];
+  if (!wet) return out;
+  out.borne = mpsi_mpm_borne(p, grid->dim, k, foot->normal);
+  out.borne.ground *= p->V[k];
+  out.borne.water *= p->V[k];
+  return out;
 }
 
 /* Particles that the distance of the last one excludes are skipped, as in constraints.c. */
 bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
-                        const mpsi_cell_pair *pair, double *tile) {
+                        const mpsi_cell_pair *pair, mpsi_area *tile) {
   const mpsi_cell_block *cells = &grid->cells[pair->cells];
   const mps_contact *contact = contacts->handle[pair->body];
   const layer l = find_layer(grid, p);
   double known[3] = {0.0}, distance = -1.0;
   bool any = false;
-  if (!mpsi_has_strength(contact)) return false;
+  if (!mpsi_has_areas(contact, contacts->wet)) return false;
   memset(tile, 0, (size_t)grid->tile_nodes * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double x[3] = {0.0}, square = 0.0;
@@ -123,13 +137,14 @@ bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     memcpy(known, x, sizeof known);
     distance = foot.distance;
-    const double area = area_of(grid, p, l, k, &foot);
-    if (!(area > 0.0)) continue;
+    const mpsi_area own = area_of(grid, p, l, k, &foot, contacts->wet);
+    if (!(own.area > 0.0)) continue;
     const around corners = find_around(grid, cells->at, foot.at, 2);
     for (int n = 0; n < nodes_around(grid, 2); n++) {
       int at[3];
       const double weight = node_around(&corners, n, at);
-      tile[mpsi_tile_index(at[0], at[1], at[2])] += weight * area;
+      mpsi_mpm_add_area(&tile[mpsi_tile_index(at[0], at[1], at[2])], weight * own.area,
+                        (mpsi_borne){weight * own.borne.ground, weight * own.borne.water});
     }
     any = true;
   }
@@ -141,8 +156,8 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_grid *grid = stage->transfer.grid;
   const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_cell_block *cells = &grid->cells[grid->coloured[all->area_first + unit]];
-  double *tile = grid->workers[worker].scratch;
-  _Static_assert(sizeof(double[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE]) <=
+  mpsi_area *tile = grid->workers[worker].scratch;
+  _Static_assert(sizeof(mpsi_area[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE]) <=
                      MPSI_WORKER_SCRATCH,
                  "scratch of a worker");
   for (int32_t q = 0; q < cells->pairs; q++) {
@@ -151,14 +166,16 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
     for (int k = 0; k < grid->tile_nodes; k++) {
       int at[3];
       mpsi_unravel(k, MPSI_TILE_SIDE, at);
-      if (tile[k] > 0.0) area_under(grid, stage->contact, cells, at, pair->body)->area += tile[k];
+      if (tile[k].area > 0.0)
+        mpsi_mpm_add_area(area_under(grid, stage->contact, cells, at, pair->body), tile[k].area,
+                          tile[k].borne);
     }
   }
 }
 
 /* ---- constraints ----------------------------------------------------------------------------- */
 
-/* The nodes around the feet of a block's constraints. */
+/* The nodes around the feet of a block's constraints; friction of what the ground bears there. */
 static void surround_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_contact_stage *stage = data;
   const mpsi_grid *grid = stage->transfer.grid;
@@ -166,8 +183,9 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_constraint_block *block = &all->block[unit];
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
+    mpsi_borne borne = {0.0, 0.0};
     constraint->areas = 0;
-    if (!mpsi_has_strength(stage->contact->handle[constraint->body])) continue;
+    if (!mpsi_has_areas(stage->contact->handle[constraint->body], stage->contact->wet)) continue;
     const around nodes = find_around(grid, block->at, constraint->impulse.at, 4);
     for (int k = 0; k < nodes_around(grid, 4); k++) {
       int at[3];
@@ -176,10 +194,12 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
           stage->partition
               ? mpsi_mpm_shared_area(&stage->contact->exchange, block->at, at, constraint->body)
               : area_under(grid, stage->contact, &grid->cells[block->cells], at, constraint->body);
-      if (area && area->area > 0.0 && weight > 0.0)
-        all->around[n * nodes_around(grid, 4) + constraint->areas++] =
-            (mpsi_area_share){area, weight};
+      if (!area || !(area->area > 0.0 && weight > 0.0)) continue;
+      all->around[n * nodes_around(grid, 4) + constraint->areas++] =
+          (mpsi_area_share){area, weight};
+      borne.ground += weight * area->borne.ground, borne.water += weight * area->borne.water;
     }
+    constraint->impulse.friction *= mpsi_ground_share(borne); /* of dry ground 1 */
   }
 }
 
@@ -223,9 +243,11 @@ bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contac
                         mpsi_partition *partition, int64_t constraints) {
   mpsi_impulses *all = &contacts->impulses;
   bool wanted = false;
-  for (int32_t b = 0; b < contacts->bodies; b++)
-    wanted = wanted || mpsi_has_strength(contacts->handle[b]);
-  all->areas = false;
+  all->areas = all->strengths = false;
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    wanted = wanted || mpsi_has_areas(contacts->handle[b], contacts->wet);
+    all->strengths = all->strengths || mpsi_has_strength(contacts->handle[b]);
+  }
   if (!wanted) return true;
   const int64_t nodes = partition ? 0 : contacts->node_pair_count * grid->block_nodes;
   if (!MPSI_ENSURE(context, all, area, nodes) ||
@@ -253,7 +275,7 @@ void mpsi_mpm_find_areas(const mpsi_contact_stage *stage) {
 void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage) {
   const mpsi_grid *grid = stage->transfer.grid;
   mpsi_impulses *all = &stage->contact->impulses;
-  if (!all->areas) return;
+  if (!all->strengths) return;
   for (int64_t n = 0; n < all->constraint_count; n++)
     for (int32_t q = 0; q < all->constraint[n].areas; q++)
       all->around[n * nodes_around(grid, 4) + q].node->normal = 0.0;

@@ -30,6 +30,7 @@ typedef struct head {
 typedef struct named_area {
   int32_t place, body;
   double area;
+  mpsi_borne borne;
 } named_area;
 
 typedef struct named_node {
@@ -62,7 +63,8 @@ static int64_t entry_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts,
   const mpsi_impulses *all = &contacts->impulses;
   int64_t bytes = (int64_t)sizeof(head), nodes = 0;
   for (int32_t q = 0; q < cells->pairs && all->areas; q++)
-    if (mpsi_has_strength(contacts->handle[contacts->cell_pair[cells->first_pair + q].body]))
+    if (mpsi_has_areas(contacts->handle[contacts->cell_pair[cells->first_pair + q].body],
+                       contacts->wet))
       bytes += grid->tile_nodes * (int64_t)sizeof(named_area);
   if (!block) return bytes;
   for (int64_t n = block->first; n < block->first + block->count + block->groups; n++) {
@@ -125,16 +127,17 @@ static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *conta
 static char *write_areas(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_contacts *contacts, const mpsi_cell_block *cells, head *h,
                          char *to) {
-  double *tile = grid->workers[0].scratch;
+  mpsi_area *tile = grid->workers[0].scratch;
   named_area *out = (named_area *)to;
   for (int32_t q = 0; q < cells->pairs && contacts->impulses.areas; q++) {
     const mpsi_cell_pair *pair = &contacts->cell_pair[cells->first_pair + q];
     if (!mpsi_mpm_sum_areas(grid, p, contacts, pair, tile)) continue;
     for (int k = 0; k < grid->tile_nodes; k++) {
       int at[3];
-      if (!(tile[k] > 0.0)) continue;
+      if (!(tile[k].area > 0.0)) continue;
       mpsi_unravel(k, MPSI_TILE_SIDE, at);
-      out[h->areas++] = (named_area){under_index(at[0], at[1], at[2]), pair->body, tile[k]};
+      out[h->areas++] =
+          (named_area){under_index(at[0], at[1], at[2]), pair->body, tile[k].area, tile[k].borne};
     }
   }
   return to + h->areas * (int64_t)sizeof *out;
@@ -239,9 +242,10 @@ static void add_areas(exchange *m, const head *h, const char *from) {
     int32_t at[3];
     memcpy(&named, from, sizeof named);
     place_of(h->at, named.place, at);
-    mpsi_mpm_shared_node(&m->stage->contact->exchange, m->stage->transfer.grid, at,
-                         MPSI_SHARED_AREA + named.body, none)
-        ->area.area += named.area;
+    mpsi_area *to = &mpsi_mpm_shared_node(&m->stage->contact->exchange, m->stage->transfer.grid, at,
+                                          MPSI_SHARED_AREA + named.body, none)
+                         ->area;
+    mpsi_mpm_add_area(to, named.area, named.borne);
   }
 }
 

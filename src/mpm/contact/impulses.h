@@ -64,12 +64,18 @@ typedef struct mpsi_warm_impulse {
   double by[3]; /* N s */
 } mpsi_warm_impulse;
 
-/* At a node, for one body: the area of the surface that soil covers, and the sum of the normal
- * impulses of the constraints beside it (area.c). */
+/* At a node, for one body: the area of the surface that soil covers, what ground and water bear
+ * there, and the sum of the normal impulses of the constraints beside it (area.c). */
 typedef struct mpsi_area {
-  double area;   /* m2, for the thickness or sector angle of the model */
-  double normal; /* N s, weighted */
+  double area;      /* m2, for the thickness or sector angle of the model */
+  mpsi_borne borne; /* Pa m3, sums over particles; with water */
+  double normal;    /* N s, weighted */
 } mpsi_area;
+static inline void mpsi_mpm_add_area(mpsi_area *to, double area, mpsi_borne borne) {
+  to->area += area;
+  to->borne.ground += borne.ground;
+  to->borne.water += borne.water;
+}
 typedef struct mpsi_area_share {
   mpsi_area *node;
   double weight;
@@ -96,7 +102,8 @@ typedef struct mpsi_impulses {
   int32_t *
       lookup; /* hash table by particle and body: index into `warm`, or -1; lookup_mask + 1 slots */
   uint64_t lookup_mask;
-  bool areas;      /* some contact has a strength or an adhesion */
+  bool areas;      /* some contact needs them: mpsi_has_areas; */
+  bool strengths;  /* has a strength or an adhesion */
   mpsi_area *area; /* indexed as contact.node; on several ranks see exchange.h */
   int64_t area_count;
   int64_t area_first; /* first block of the colour being processed */
@@ -113,8 +120,9 @@ void mpsi_mpm_fit_constraints(const mpsi_contact_stage *stage);
 /* step/inset_edges.c: the bearers of inset edges among the candidates, of all ranks. Collective. */
 mps_status mpsi_mpm_find_bearers(const mpsi_contact_stage *stage, const char *function,
                                  mps_status status);
-/* area.c: memory for the areas of the step and of so many constraints; areas at the nodes; shear
- * strength of each constraint by its part of these, with the present normal impulses. */
+/* area.c: memory for the areas of the step and of so many constraints; areas at the nodes, and
+ * friction of the constraints by what ground and water bear there; shear strength of each
+ * constraint by its part of these, with the present normal impulses. */
 bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
                         mpsi_partition *partition, int64_t constraints);
 void mpsi_mpm_find_areas(const mpsi_contact_stage *stage);
@@ -164,6 +172,12 @@ static inline bool mpsi_has_strength(const mps_contact *contact) {
 
 static inline bool mpsi_by_impulses(const mps_contact *contact) {
   return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
+}
+
+/* In saturated ground (`wet`) friction is of what the ground bears beside the surface. */
+static inline bool mpsi_has_areas(const mps_contact *contact, bool wet) {
+  return mpsi_has_strength(contact) ||
+         (wet && contact->def.friction > 0.0 && mpsi_by_impulses(contact));
 }
 
 /* Weights of an even constraint: pairs of 1/m and psi. */

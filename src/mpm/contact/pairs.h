@@ -51,7 +51,7 @@ typedef struct mpsi_contact_state {
   bool warned;        /* the log has a warning that the penalty is too stiff for dt, */
   bool overlaps;      /* one that it overlaps a body before it, */
   bool leaves;        /* one that it goes through a side of the domain, */
-  bool wet;           /* and one of its friction where water bears */
+  bool wet;           /* and one of its friction by penalty where water bears */
   int64_t first_step; /* of the contact: number of steps before it */
   double v[3],
       spin[3]; /* m/s, rad/s: velocity of the body outside mps_mpm_settle, which keeps it at rest */
@@ -63,6 +63,7 @@ typedef struct mpsi_contacts {
   mps_body **body; /* body of each contact */
   mpsi_contact_state *state;
   int32_t bodies, penalty_bodies; /* number of contacts; of those by penalty */
+  bool wet;                       /* there is water in the pores, in the step being made */
   double least_mass; /* kg, least mass of a particle; in axisymmetry over its radius, kg/m */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
@@ -121,7 +122,7 @@ mps_status mpsi_mpm_exchange_corners(mpsi_inside_search *of, mpsi_partition *par
 /* area.c: distributes the surface area that the pair's particles represent to the nodes of the
  * tile; false: there is none. */
 bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
-                        const mpsi_cell_pair *pair, double *tile);
+                        const mpsi_cell_pair *pair, mpsi_area *tile);
 /* penalty_friction.c: memory for the sums of loads; normal penalty forces of all bodies on a block
  * of nodes; friction; loads on the bodies, and their motion. */
 bool mpsi_mpm_sum_room(mps_context *context, mpsi_contacts *contacts);

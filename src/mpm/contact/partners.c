@@ -65,7 +65,8 @@ void mpsi_mpm_mark_contact_blocks(const mpsi_contacts *contacts, mpsi_grid *grid
     mpsi_cell_block *cells = &grid->cells[b];
     cells->in_contact = cells->sent = false;
     for (int32_t q = 0; q < cells->pairs && all->areas && !cells->ghost; q++)
-      if (mpsi_has_strength(contacts->handle[contacts->cell_pair[cells->first_pair + q].body]))
+      if (mpsi_has_areas(contacts->handle[contacts->cell_pair[cells->first_pair + q].body],
+                         contacts->wet))
         cells->in_contact = true;
   }
   for (int64_t k = 0; k < all->block_count; k++) grid->cells[all->block[k].cells].in_contact = true;

@@ -376,13 +376,13 @@ static void free_rooms(mps_mpm *mpm) {
       mpm->contact.sum_room.item, mpm->contact.handle_room.item, mpm->contact.body_room.item,
       mpm->contact.state_room.item, mpm->grid.across_room.item, mpm->mirrors.mirror_room.item,
       mpm->mirrors.mass_room.item, mpm->boundaries.held_room.item,
-      mpm->boundaries.dashpot_room.item, mpm->boundaries.old_held_room.item,
-      mpm->boundaries.old_dashpot_room.item, mpm->boundaries.warm_room.item,
-      mpm->energy.cells_room.item, mpm->energy.nodes_room.item, mpm->settling.nodes_room.item,
-      mpm->rooms.force.item, mpm->rooms.radix.item, mpm->rooms.stencil.item, mpm->rooms.places.item,
-      mpm->rooms.strain.item, mpm->rooms.rough.item, mpm->rooms.gone.item, mpm->undo.list_room.item,
-      mpm->undo.room.item, mpm->undo.dashpot_room.item, mpm->undo.sums_room.item,
-      mpm->undo.boundary_room.item);
+      mpm->boundaries.dashpot_room.item, mpm->boundaries.borne_room.item,
+      mpm->boundaries.old_held_room.item, mpm->boundaries.old_dashpot_room.item,
+      mpm->boundaries.warm_room.item, mpm->energy.cells_room.item, mpm->energy.nodes_room.item,
+      mpm->settling.nodes_room.item, mpm->rooms.force.item, mpm->rooms.radix.item,
+      mpm->rooms.stencil.item, mpm->rooms.places.item, mpm->rooms.strain.item,
+      mpm->rooms.rough.item, mpm->rooms.gone.item, mpm->undo.list_room.item, mpm->undo.room.item,
+      mpm->undo.dashpot_room.item, mpm->undo.sums_room.item, mpm->undo.boundary_room.item);
 }
 
 static void destroy(void *solver) {

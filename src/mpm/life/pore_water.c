@@ -223,7 +223,8 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
     if (!mpsi_pore_predicts(mpm)) mpsi_mpm_soak_laws(&mpm->p, &mpm->def);
     warn(mpm->context, &mpm->p);
     warn_of_contrast(mpm->context, &mpm->grid, &mpm->p);
-    mpm->boundaries.renew = true; /* dashpots */
+    mpm->boundaries.renew = true;    /* dashpots */
+    mpm->boundaries.outdated = true; /* lists: frictional sides have sums with water */
   } else if (kept_values) {
     restore(mpm, &before);
   }

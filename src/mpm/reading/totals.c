@@ -37,6 +37,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
                sizeof *mpm->boundaries.held},
               {mpm->boundaries.dashpot_room.capacity + mpm->boundaries.old_dashpot_room.capacity,
                sizeof *mpm->boundaries.dashpot},
+              {mpm->boundaries.borne_room.capacity, sizeof *mpm->boundaries.borne},
               {mpm->grid.worker_count, mpsi_worker_bytes(&mpm->grid)},
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},

@@ -141,6 +141,7 @@ static mps_status find_blocks(step *s) {
                                         mpsi_mpm_any_body_removes(&mpm->contact), s->function);
     const bool dashpots = mpm->boundaries.dashpot_count > 0, well = status == MPS_OK;
     status = mpsi_mpm_update_boundaries(&boundaries, s->function, status);
+    status = mpsi_mpm_find_borne(&boundaries, s->function, status);
     if (mpm->partition && well && status != MPS_OK) mpm->run.broken = dashpots;
     status = mpsi_mpm_find_near(mpm, s->function, status);
     status = mpsi_mpm_clear_bodies(&contacts, s->function, status, &removed);
@@ -193,11 +194,13 @@ static bool can_solve_in_one_wave(const step *s) {
   bool can = s->in_contact && !on_ranks(s) && !predicts(s) && !has_lists(s) &&
              mpsi_mpm_passes_alone(&s->mpm->grid, &s->mpm->p) && contacts->penalty_bodies == 0;
   for (int32_t b = 0; can && b < contacts->bodies; b++)
-    can = mpsi_by_impulses(contacts->handle[b]) && !mpsi_has_strength(contacts->handle[b]);
+    can = mpsi_by_impulses(contacts->handle[b]) &&
+          !mpsi_has_areas(contacts->handle[b], contacts->wet);
   return can;
 }
 
 static mps_status find_constraints(step *s) {
+  s->mpm->contact.wet = s->mpm->water != NULL;
   const mpsi_contact_stage stage = mpsi_contact_stage_of(s->mpm);
   s->in_contact = on_ranks(s) ? has_bodies(s) : s->mpm->contact.cell_pair_count > 0;
   s->in_one_wave = can_solve_in_one_wave(s);

@@ -106,70 +106,37 @@ static void warn_about_sides(mps_mpm *mpm) {
 
 /* ---- friction in saturated ground ------------------------------------------------------------ */
 
-/* What water and ground bear across a surface: sums over the particles beside it, Pa. */
-typedef struct bearing {
-  double water, ground;
-} bearing;
-
-static void add_bearing(bearing *sum, const mpsi_columns *p, int dim, int64_t k, const double *n) {
-  static const int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  sum->water += p->u[k];
-  for (int i = 0; i < dim; i++)
-    for (int j = 0; j < dim; j++) sum->ground -= n[i] * n[j] * p->s[component[i][j]][k];
-}
-
-static bearing beside_body(const mps_mpm *mpm, const mps_body *body) {
+/* What ground and water bear in the particles beside a body: sums, Pa. */
+static mpsi_borne beside_body(const mps_mpm *mpm, const mps_body *body) {
   const double reach = mps_particles_spacing(mpm->p.set);
-  bearing sum = {0.0, 0.0};
+  mpsi_borne sum = {0.0, 0.0};
   for (int64_t k = 0; k < mpm->p.count; k++) {
     double x[3] = {0.0};
     for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
     const mpsi_foot foot = mpsi_body_foot(body, x);
-    if (foot.distance < reach) add_bearing(&sum, &mpm->p, mpm->grid.dim, k, foot.normal);
+    if (!(foot.distance < reach)) continue;
+    const mpsi_borne own = mpsi_mpm_borne(&mpm->p, mpm->grid.dim, k, foot.normal);
+    sum.ground += own.ground, sum.water += own.water;
   }
   return sum;
 }
 
-static bearing beside_side(const mps_mpm *mpm, int side) {
-  const int axis = side / 2;
-  const double at = side % 2 ? mpm->def.upper[axis] : mpm->def.lower[axis];
-  double normal[3] = {0.0};
-  bearing sum = {0.0, 0.0};
-  normal[axis] = 1.0;
-  for (int64_t k = 0; k < mpm->p.count; k++)
-    if (fabs(mpm->p.x[axis][k] - at) < mps_particles_spacing(mpm->p.set))
-      add_bearing(&sum, &mpm->p, mpm->grid.dim, k, normal);
-  return sum;
-}
-
-/* Coulomb's law is of the impulses on the surface, the total stress; friction of ground is of the
- * effective one. */
-static void warn_about_wet(mps_mpm *mpm, bearing sum, const char *what, int number, double friction,
-                           bool *warned) {
-  const double share = sum.water / (sum.water + sum.ground);
-  if (!(sum.water > 0.0 && share > WET)) return;
-  *warned = true;
-  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
-           "step %lld: the friction %.4g of %s %d acts on the total normal stress, of which the "
-           "water in the pores bears %.0f %%: that of the effective stress alone is as large with "
-           "a friction of %.3g",
-           (long long)mpm->run.steps, friction, what, number, 100.0 * fmin(share, 1.0),
-           friction * fmax(0.0, 1.0 - share));
-}
-
-static void warn_about_friction(mps_mpm *mpm) {
-  if (!mpm->water) return;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const double friction = mpm->contact.handle[b]->friction;
+/* By the penalty the stresses of the rows at a body are wrong, and friction is of the total normal
+ * force. */
+static void warn_about_friction(const mps_mpm *mpm) {
+  for (int32_t b = 0; b < mpm->contact.bodies && mpm->water; b++) {
+    const mps_contact *contact = mpm->contact.handle[b];
     bool *warned = &mpm->contact.state[b].wet;
-    if (friction > 0.0 && !*warned)
-      warn_about_wet(mpm, beside_body(mpm, mpm->contact.body[b]), "body", b, friction, warned);
-  }
-  for (int side = 0; side < 2 * mpm->grid.dim && !mpm->run.warned_about_wet; side++) {
-    const mpsi_boundary *boundary = &mpm->boundaries.boundary[side];
-    if (boundary->kind == MPS_BOUNDARY_FRICTIONAL && boundary->friction > 0.0)
-      warn_about_wet(mpm, beside_side(mpm, side), "side", side, boundary->friction,
-                     &mpm->run.warned_about_wet);
+    if (!(contact->friction > 0.0) || *warned || mpsi_by_impulses(contact)) continue;
+    const mpsi_borne sum = beside_body(mpm, contact->body);
+    const double share = sum.water / (sum.water + sum.ground);
+    if (!(sum.water > 0.0 && share > WET)) continue;
+    *warned = true;
+    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+             "step %lld: the friction %.4g of body %d by penalty acts on the total normal stress, "
+             "of which the water in the pores bears about %.0f %%: use the method IMPULSE, whose "
+             "friction is of the effective stress",
+             (long long)mpm->run.steps, contact->friction, b, 100.0 * fmin(share, 1.0));
   }
 }
 

@@ -8,6 +8,6 @@
 void mpsi_step_warn_before(mps_mpm *mpm);
 /* After it: of ground that has grown to more than the loosest sand. */
 void mpsi_step_warn_about_volume(mps_mpm *mpm);
-/* After it: of bodies that have come to overlap, or beyond a side of the domain, and of friction of
- * bodies and sides where water bears a part of the normal force. */
+/* After it: of bodies that have come to overlap, or beyond a side of the domain, and of friction by
+ * penalty where water bears a part of the normal force. */
 void mpsi_step_warn_about_bodies(mps_mpm *mpm);

@@ -36,7 +36,8 @@ static void prescribe(const wall_nodes *to, int k, int c, double v) {
   to->velocity[k][c] = v;
 }
 
-static void foresee_friction(const wall_nodes *to, const mpsi_boundary *boundary, int side, int k) {
+static void foresee_friction(const wall_nodes *to, const mpsi_boundary *boundary, int side,
+                             double share, int k) {
   const int axis = boundary->axis;
   const double into = (to->velocity[k][axis] - boundary->v[axis]) * (side % 2 ? 1.0 : -1.0);
   double square = 0.0;
@@ -44,7 +45,7 @@ static void foresee_friction(const wall_nodes *to, const mpsi_boundary *boundary
   prescribe(to, k, axis, boundary->v[axis]);
   for (int c = 0; c < to->dim; c++)
     if (!(to->held[k] >> c & 1)) square += pow(to->velocity[k][c] - boundary->v[c], 2);
-  const double most = boundary->friction * into;
+  const double most = boundary->friction * share * into;
   const double left = square > most * most ? 1.0 - most / sqrt(square) : 0.0;
   for (int c = 0; c < to->dim; c++) {
     if (to->held[k] >> c & 1) continue;
@@ -79,7 +80,7 @@ static void foresee(const mps_mpm *mpm, const wall_nodes *to, const mpsi_held *a
   const bool whole = kind->prescribes == MPSI_PRESCRIBES_ALL;
   const uint32_t dofs = at->boundary < MPSI_SIDES && !whole ? 1u << boundary->axis : boundary->dofs;
   if (kind->friction) {
-    foresee_friction(to, boundary, at->boundary, k);
+    foresee_friction(to, boundary, at->boundary, mpsi_side_share(&mpm->boundaries, at, k), k);
   } else if (kind->absorbs) {
     const mpsi_dashpot *plane = &mpm->boundaries.dashpot[at->dashpot];
     foresee_dashpot(to, boundary, &plane[mpsi_plane_index(boundary->axis, k)], k);
