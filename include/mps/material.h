@@ -133,7 +133,7 @@ typedef struct mps_material_newtonian_def {
   uint32_t struct_size;
   int32_t state;       /* mps_material_state_equation, default MPS_MATERIAL_STATE_EQUATION_TAIT */
   double bulk_modulus; /* Pa, K = rho0 c^2 > 0; no default */
-  double viscosity;    /* Pa s, >= 0; default 0. What it governs needs flip_time of mps_mpm_def */
+  double viscosity;    /* Pa s, >= 0; default 0. Viscous flow needs flip_time of mps_mpm_def */
   int32_t no_tension;  /* 1: p >= 0, and the volume does not grow beyond V0; default 0 */
   int32_t reserved;
 } mps_material_newtonian_def;

@@ -47,6 +47,41 @@ TEST(a_shaken_tank_is_a_loaded_one) {
   assert_true(largest > 20.0); /* N of 196 at rest: there is something to compare */
 }
 
+static mps_status pull(void *user, double t, double value[3]) {
+  ++*(int *)user;
+  value[0] = 3.0, value[1] = value[2] = 0.0;
+  return MPS_OK;
+}
+
+/* Without gravity the acceleration b of loads limits the step, .1 (l0/b)^1/2. A reading calls no
+ * function of the caller's: it changed with what that returned; a step does. */
+TEST(a_reading_of_the_limit_calls_no_function) {
+  const double middle[2] = {0.0, 0.0}, l0 = 0.1, limit = 0.1 * sqrt(l0 / 3.0);
+  for (int by_function = 0; by_function < 2; by_function++) {
+    int calls = 0;
+    DEF(particles, set, .spacing = l0);
+    DEF(fluid, def, .gravity[1] = 0.0);
+    DEF(fluid_load, load, .all = 1, .acceleration[0] = by_function ? 1.0 : 3.0);
+    MAKE(particles, water, create, context, &set);
+    OK(mps_particles_fill_ball(water, middle, 0.5, NULL));
+    MAKE(fluid, fluid, create, context, water, &def);
+    if (by_function)
+      OK(mps_signal_create_user(context, MPS_SIGNAL_QUANTITY_VALUE, pull, &calls, NULL,
+                                &load.signal[0]));
+    OK(mps_fluid_add_load(fluid, &load, NULL));
+    mps_signal_destroy(&load.signal[0]);
+    const double read = mps_fluid_limit(fluid);
+    assert_int_equal(calls, 0);
+    assert_true(by_function ? isinf(read) : fabs(read - limit) < 1e-12);
+    OK(mps_fluid_step(fluid, 1));
+    NEAR(mps_fluid_time(fluid), limit, 1e-12);
+    assert_int_equal(calls > 0, by_function);
+    const int made = calls;
+    assert_true(mps_fluid_limit(fluid) > 0.0 && mps_fluid_dt(fluid) > 0.0);
+    assert_int_equal(calls, made);
+  }
+}
+
 /* In free fall, without gravity: speed b t, work m b^2 t^2/2, nothing dissipated; only those in the
  * list, once each, whatever else it names. */
 TEST(a_drop_falls) {

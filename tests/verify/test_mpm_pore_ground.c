@@ -267,15 +267,15 @@ TEST(says_that_a_steady_acceleration_moves_no_water) {
 #define UNIT 1e4   /* N/m3, of water, and of ground under it */
 #define K0 0.25
 
-typedef struct rubbing {
+typedef struct drawn_scene {
   double cells, mu, bulk; /* K_w/n over K + 4G/3 */
   int32_t scheme;
   bool wall; /* or a frictional side */
   int32_t mirrored;
-} rubbing;
+} drawn_scene;
 
 /* Ground of 1 m^2 under water to its surface, at rest, without a boundary at one side. */
-static mpm_scene drowned(const rubbing *of) {
+static mpm_scene drowned(const drawn_scene *of) {
   const double h = 1.0 / of->cells, lo[] = {0.0, 0.0}, hi[] = {1.0, 1.0};
   mpm_scene s = mpm_scene_begin_in(context, 2, 0.5 * h, 0.0, 0.0, YOUNG);
   OK(mps_particles_fill_box(s.particles, lo, hi, NULL));
@@ -294,7 +294,7 @@ static mpm_scene drowned(const rubbing *of) {
 
 /* Shear on what is drawn up along the ground, by 2 mm in 0.1 s, over mu times the effective force.
  */
-static double rub(const rubbing *of) {
+static double draw_up(const drawn_scene *of) {
   const double speed = 0.02, end = 0.1, out[] = {of->mirrored ? -1.0 : 1.0, 0.0};
   const double t[] = {0.0, end}, way[] = {0.0, speed * end};
   const int32_t side = of->mirrored ? MPS_SIDE_X_UPPER : MPS_SIDE_X_LOWER;
@@ -328,22 +328,22 @@ static double rub(const rubbing *of) {
 /* By the total stress walls bore 4.7 times as much, frictional sides 4.0. Sides lack the half cell
  * at the floor, which bears there. */
 TEST(friction_is_of_the_effective_stress) {
-  static const rubbing scenes[] = {
+  static const drawn_scene scenes[] = {
       {4.0, 0.3, 50.0, 0, true, 0},  {8.0, 0.2, 50.0, 0, true, 0},  {8.0, 0.6, 10.0, 0, true, 0},
       {8.0, 0.3, 50.0, 0, true, 1},  {4.0, 0.3, 10.0, 1, true, 0},  {8.0, 0.2, 200.0, 1, true, 0},
       {8.0, 0.4, 50.0, 1, true, 1},  {4.0, 0.3, 50.0, 0, false, 0}, {8.0, 0.2, 10.0, 0, false, 0},
       {8.0, 0.3, 50.0, 0, false, 1}, {4.0, 0.3, 10.0, 1, false, 0}, {8.0, 0.3, 200.0, 1, false, 0},
       {16.0, 0.3, 50.0, 1, false, 0}};
   for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++) {
-    const rubbing *of = &scenes[k];
-    const double exact = of->wall ? 1.0 : 1.0 - 1.0 / of->cells, ratio = rub(of);
+    const drawn_scene *of = &scenes[k];
+    const double exact = of->wall ? 1.0 : 1.0 - 1.0 / of->cells, ratio = draw_up(of);
     print_message("%g cells, mu %g, K_w/n of %g M, %s, %s: %.3f\n", of->cells, of->mu, of->bulk,
                   of->scheme ? "implicit" : "explicit", of->wall ? "wall" : "side", ratio);
     NEAR(ratio, exact, 0.08);
     if (!of->mirrored) continue;
-    rubbing image = *of;
+    drawn_scene image = *of;
     image.mirrored = 0;
-    const double other = rub(&image);
+    const double other = draw_up(&image);
     print_message("  its image differs by %.1e\n", fabs(other - ratio));
     NEAR(other, ratio, of->wall ? 5e-3 : 1e-6); /* sweeps go one way first */
   }

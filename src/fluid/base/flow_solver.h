@@ -254,4 +254,13 @@ static inline bool mpsi_fluid_beside(const mpsi_fluid_body *body, const double *
          x[1] > body->low[1] - reach && x[1] < body->high[1] + reach;
 }
 
+/* Whether the boxes around two bodies are nearer than `reach` (m). */
+static inline bool mpsi_fluid_boxes_near(const mpsi_fluid_body *one, const mpsi_fluid_body *other,
+                                         double reach) {
+  for (int c = 0; c < 2; c++)
+    if (!(one->low[c] < other->high[c] + reach && other->low[c] < one->high[c] + reach))
+      return false;
+  return true;
+}
+
 MPSI_CONDITION_ACCESS(mpsi_fluid_load, mps_fluid, MPSI_LOADS, mpsi_fluid_given)

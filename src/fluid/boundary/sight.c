@@ -227,10 +227,7 @@ static bool in_open_water(const mps_fluid *f, const mpsi_fluid_body *body) {
   }
   for (int n = 0; n < f->bodies; n++) {
     const mpsi_fluid_body *other = &f->body[n];
-    bool apart = other == body || !other->body;
-    for (int c = 0; c < 2; c++)
-      apart |= !(body->low[c] < other->high[c] + far && other->low[c] < body->high[c] + far);
-    if (!apart) return false;
+    if (other != body && other->body && mpsi_fluid_boxes_near(body, other, far)) return false;
   }
   return true;
 }

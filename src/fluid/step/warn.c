@@ -121,13 +121,6 @@ static bool in_water(const mps_fluid *f, const mpsi_fluid_body *body) {
   return false;
 }
 
-static bool boxes_near(const mpsi_fluid_body *one, const mpsi_fluid_body *other, double reach) {
-  for (int c = 0; c < 2; c++)
-    if (!(one->low[c] < other->high[c] + reach && other->low[c] < one->high[c] + reach))
-      return false;
-  return true;
-}
-
 /* Gap (m) between the body's nearest corner and a plane boundary, of less than a spacing and more
  * than what closes; 0: none. */
 static double gap_to(const mps_fluid *f, const mpsi_fluid_body *body, int b) {
@@ -168,7 +161,7 @@ void mpsi_fluid_warn_of_bodies(mps_fluid *f) {
     if (in_water(f, body)) warn_of_gaps(f, number);
     for (int n = 0; n < f->bodies && !body->warned_of_bodies && in_water(f, body); n++) {
       mpsi_fluid_body *other = &f->body[n];
-      if (n == number || !other->body || !boxes_near(body, other, f->l0)) continue;
+      if (n == number || !other->body || !mpsi_fluid_boxes_near(body, other, f->l0)) continue;
       const double gap = fmax(apart_by(f, body, other), apart_by(f, other, body));
       if (gap >= f->l0 || fabs(gap) <= FACE_TO_FACE * f->l0) continue;
       body->warned_of_bodies = other->warned_of_bodies = true;
